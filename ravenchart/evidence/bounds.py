@@ -60,8 +60,8 @@ def _bounded(
 
 
 SUM = (
-    "response-time analysis of fixed priorities with blocking, and its sum in named numbers of "
-    "`Timing_Certificate`. It rests on the worst-case execution times that the model gives."
+    "response-time analysis of fixed priorities with blocking, and its sum in static expressions "
+    "of `Timing_Certificate`. It rests on the worst-case execution times that the model gives."
 )
 
 

@@ -84,12 +84,46 @@ def closing(items: Sequence[Token], start: int) -> int:
 # --- Numbers -------------------------------------------------------------------------
 
 
+WINDOWS = 2**60
+"""Of the runtime's Response_Times: times from 0 on that are below are a Window."""
+LAST = 2**62 - 1
+"""The last Time there: a sum or product that exceeds it is this."""
+
+
+def demand(window: int, late: int, period: int, cost: int, more: int = 0) -> int:
+    """Demand of the runtime's Response_Times: ceiling ((W + J) / T) * C, and what comes besides."""
+    if not (0 <= window < WINDOWS and 0 <= late < WINDOWS and 0 <= cost < WINDOWS):
+        raise ValueError("a Window out of range")
+    if not (0 < period < WINDOWS and 0 <= more <= LAST):
+        raise ValueError("a Separation or Time out of range")
+    return min(LAST, -(-(window + late) // period) * cost + more)
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A static function of a window W: what it is called, its body, and all that it counts."""
+
+    name: str
+    body: tuple[Token, ...]
+    names: frozenset[str]
+    before: tuple[Function, ...]
+    """Those that it calls, and those that they call, as they are declared."""
+
+
 class Evaluation:
     """The value of a static expression over named numbers, and the names it asks for."""
 
-    def __init__(self, items: Sequence[Token], known: Mapping[str, int]) -> None:
+    def __init__(
+        self,
+        items: Sequence[Token],
+        known: Mapping[str, int],
+        functions: Mapping[str, Function] | None = None,
+        values: Mapping[tuple[str, int], int] | None = None,
+    ) -> None:
         self.items = list(items)
         self.known = known
+        self.functions = functions or {}
+        self.values = values or {}
         self.names: set[str] = set()
         self.place = 0
         self.value = self._relation()
@@ -108,10 +142,11 @@ class Evaluation:
 
     def _relation(self) -> int:
         value = self._comparison()
-        while self._taken("and"):
-            self._taken("then")
+        while operator := self._taken("and", "or"):
+            self._taken("then" if operator == "and" else "else")
             other = self._comparison()
-            value = int(bool(value) and bool(other))
+            both, either = bool(value) and bool(other), bool(value) or bool(other)
+            value = int(both if operator == "and" else either)
         return value
 
     def _comparison(self) -> int:
@@ -170,10 +205,50 @@ class Evaluation:
             return int(word.replace("_", ""))
         if word == "system.default_priority":
             return 0
+        if word in ("time", "demand") or word in self.functions:
+            return self._called(word)
         if word in self.known:
             self.names.add(word)
             return self.known[word]
         raise ValueError(f"`{word}` is not declared before")
+
+    def _called(self, word: str) -> int:
+        """A call of one of the certificate's functions, or of those that it finds defined."""
+        if word == "time":
+            self._taken("'")
+            word = self._taken("max", "min")
+        values = self._arguments()
+        if word in ("max", "min") and len(values) == 2:
+            return max(values) if word == "max" else min(values)
+        if word == "demand" and len(values) in (4, 5):
+            return demand(*values)
+        if word not in self.functions or len(values) != 1:
+            raise ValueError(f"`{word}` has {len(values)} parameters")
+        self.names |= self.functions[word].names
+        return self._within(self.functions[word], values[0])
+
+    def _arguments(self) -> list[int]:
+        if not self._taken("("):
+            raise ValueError("`(` is missing")
+        values = [self._relation()]
+        while self._taken(","):
+            values.append(self._relation())
+        if not self._taken(")"):
+            raise ValueError("`)` is missing")
+        return values
+
+    def _within(self, function: Function, window: int) -> int:
+        """The value for a window; in the order of declaration, so that no call is deep."""
+        if not 0 <= window < WINDOWS:
+            raise ValueError("a Window out of range")
+        values = dict(self.values)
+        for one in (*function.before, function):
+            if (one.name, window) not in values:
+                known = {**self.known, "w": window}
+                found = Evaluation(one.body, known, self.functions, values)
+                values[one.name, window] = found.value
+        self.values = values
+        return values[function.name, window]
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,6 +267,7 @@ class Certificate:
 
     path: Path
     numbers: dict[str, Number]
+    functions: dict[str, Function]
     digest: tuple[str, int]
     problems: list[tuple[int, str]]
     """Conditions that are violated, and text that is none of a certificate."""
@@ -201,7 +277,7 @@ class Certificate:
 def certificate(path: Path, package: str) -> Certificate:
     """The certificate in a file."""
     items = read(path)
-    found = Certificate(path, {}, ("", 1), [], 0)
+    found = Certificate(path, {}, {}, ("", 1), [], 0)
     known: dict[str, int] = {}
     start = next((n for n, t in enumerate(items) if t.low == "is"), len(items) - 1)
     heading = [token.low for token in items[: start + 1]]
@@ -225,7 +301,7 @@ def _take(found: Certificate, part: list[Token], known: dict[str, int]) -> None:
         text = "".join(t.text.strip('"') for t in part[5:] if t.text.startswith('"'))
         found.digest = text, part[5].line if len(part) > 5 else line
     elif low[1:4] == [":", "constant", ":="]:
-        evaluated = Evaluation(part[4:], known)
+        evaluated = Evaluation(part[4:], known, found.functions)
         if low[0] in known:
             found.problems.append((line, f"{part[0].text} is declared twice"))
         known[low[0]] = evaluated.value
@@ -233,14 +309,38 @@ def _take(found: Certificate, part: list[Token], known: dict[str, int]) -> None:
         found.numbers[low[0]] = Number(part[0].text, line, evaluated.value, names)
     elif low[0] == "pragma" and low[1] in ("compile_time_error", "assert"):
         condition, *message = split(part[3:-1], ",")
-        held = bool(Evaluation(condition, known).value)
+        held = bool(Evaluation(condition, known, found.functions).value)
         found.conditions += 1
         if held != (low[1] == "assert"):
             words_ = "".join(t.text.strip('"') for p in message for t in p if t.text[0] == '"')
             found.problems.append((line, words_ or "a condition that must hold does not"))
-    elif low[:3] != ["pragma", "warnings", "("]:
+    elif low[0] == "function":
+        _function(found, part, known)
+    elif low[:3] != ["pragma", "warnings", "("] and low != USED:
         found.problems.append((line, f"`{part[0].text}` begins nothing that a certificate has"))
 
+
+def _function(found: Certificate, part: list[Token], known: dict[str, int]) -> None:
+    """One function of a window."""
+    low = [token.low for token in part]
+    name, body = low[1], tuple(part[11:-3])
+    if low[2:11] != HEADING or low[-3:] != [")", "with", "static"]:
+        raise ValueError("this is no static function of a Window")
+    if name in found.functions or name in known or name in ("demand", "time", "w"):
+        raise ValueError(f"{part[1].text} is declared twice")
+    used = {token.low for token in body}
+    names = {word for word in used if word in known}
+    calls = [function for word, function in found.functions.items() if word in used]
+    whole = {one.name for called in calls for one in (*called.before, called)}
+    before = tuple(one for word, one in found.functions.items() if word in whole)
+    names |= {word for called in calls for word in called.names}
+    made = Function(name, body, frozenset(names), before)
+    Evaluation(body, {**known, "w": 1}, found.functions, {(one.name, 1): 0 for one in before})
+    found.functions[name] = made
+
+
+HEADING = ["(", "w", ":", "window", ")", "return", "time", "is", "("]
+USED = ["use", "ravenchart.response_times"]
 
 # --- Charts --------------------------------------------------------------------------
 

@@ -146,7 +146,6 @@ class Timing:
             self.same("tasks", f"{own}_O", task.offset, f"the offset {why}")
         jitter = self.jitter(task)
         self.same("tasks", f"{own}_J", jitter, f"the lateness of {task.element}")
-        self.same("tasks", f"{own}_A", jitter + task.period - 1, "J + T - 1")
         if not task.rows:
             self.same("rows", f"{own}_Budget", task.wcet, f"the WCET {why}")
         for row in task.rows:
@@ -213,7 +212,6 @@ class Timing:
             self.same("messages", f"{own}_Renewal", message.renewal, f"the renewal {why}")
         late = self.late(message)
         self.same("messages", f"{own}_J", late, f"the lateness of {message.element}")
-        self.same("messages", f"{own}_A", late + message.period - 1, "J + T - 1")
         for part, bits in message.frame.parts().items():
             self.same("messages", f"{own}_{part}", bits, f"`{part}` {why}")
         self.same("messages", f"{own}_C", self.time(message), f"the transmission time {why}")
@@ -398,9 +396,9 @@ class Timing:
                 self.same("receptions", f"{own}_T", message.period, f"the period of {own}")
             late = self.value(f"{ada(driver)}_R")
             self.same("receptions", f"{own}_Turn_J", late, f"the response of {driver}")
-            busy = self.solved(partial(served, heard), 1)
-            self.same("receptions", f"{own}_Turn_Busy", busy, "the busy period of the reception")
-            self.same("receptions", f"{own}_Turn_Busy_Needs", busy, "the demand within it")
+            line, busy = ada(reception.element), self.solved(partial(served, heard), 1)
+            self.same("receptions", f"{line}_Busy", busy, f"the busy period of {line}")
+            self.same("receptions", f"{line}_Busy_Needs", busy, "the demand within it")
             others = [one for one in heard if one[0] is not message]
             count = -(-(busy + late) // message.period)
             turn, window = 0, 0

@@ -114,6 +114,8 @@ def sums(file: str, files: Files) -> Iterator[Found]:
             "interference",
             replaced(Span(match.start(2) + term, match.end(2)), ""),
         )
+    for match in matches(text, r"^   function (\w+) \(W : Window\)[^;]*?(,\s+\w+ \(W\))\)+\s"):
+        yield match.group(1), "interference", replaced(Span(*match.span(2)), "")
     for match in matches(text, r"^   (\w+)_C(?:_\d+)? : constant :=\s+(\w+_Budget\s+\+ )"):
         yield match.group(1), "budget", replaced(Span(*match.span(2)), "")
 

@@ -30,9 +30,11 @@ from ravenchart.gen.model.system import (
     Tick,
     Work,
 )
+from ravenchart.paths import ROOT
 from tests.support.systems import HERE, bus, message, system
 
 MS = 1_000_000
+RUNTIME = ROOT / "spark_runtime" / "src"
 
 
 def certificate(analysis: Analysis) -> str:
@@ -48,7 +50,7 @@ def compiled(text: str, folder: Path, name: str = "Sample") -> str:
     unit = f"{stem}-timing_certificate.ads"
     (folder / unit).write_text(text)
     done = subprocess.run(
-        ["gcc", "-c", "-gnatc", "-gnat2022", "-gnatwa", "-gnatyM79", unit],
+        ["gcc", "-c", "-gnatc", "-gnat2022", "-gnatwa", "-gnatyM79", f"-I{RUNTIME}", unit],
         cwd=folder,
         capture_output=True,
         text=True,

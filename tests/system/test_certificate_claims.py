@@ -49,7 +49,7 @@ def test_a_busy_period_of_no_time_hides_no_instance(tmp_path: Path) -> None:
     claims = claims_of(analyse(one))
     short = Claim(Ns(3 * FRAME), (Ns(2 * FRAME),), Ns(0))
     said = compiled(claimed(one, replace(claims, items={**claims.items, "bus.c": short})), tmp_path)
-    assert "bus.c can keep others waiting for longer than claimed" in said
+    assert "bus.c claims a wrong busy period" in said
 
 
 def test_negative_times_hold_no_demand(tmp_path: Path) -> None:
@@ -57,7 +57,7 @@ def test_negative_times_hold_no_demand(tmp_path: Path) -> None:
     one = of_messages(received("a", 1, 450_000, 900_000), received("b", 2, 450_000, 900_000))
     found = Claim(Ns(2 * FRAME), (Ns(FRAME),), Ns(-(10**9)))
     claims = Claims({"t": Claim(Ns(100_000), (Ns(100_000),)), "bus.a": found, "bus.b": found})
-    assert "bus.b can keep others waiting" in compiled(claimed(one, claims), tmp_path)
+    assert "bus.b claims a wrong busy period" in compiled(claimed(one, claims), tmp_path)
 
 
 def test_tasks_of_one_priority_cannot_claim_less_than_no_time(tmp_path: Path) -> None:
@@ -65,7 +65,7 @@ def test_tasks_of_one_priority_cannot_claim_less_than_no_time(tmp_path: Path) ->
     one = system([task(name, 1, 600, 1_000) for name in ("a", "b", "c")])
     none = Claim(Ns(-(10**6)), (Ns(-(10**6)),))
     said = compiled(claimed(one, Claims(dict.fromkeys(("a", "b", "c"), none))), tmp_path)
-    assert "a can take longer than its claimed response time" in said
+    assert "a claims a wrong response time" in said
 
 
 # --- Chains: the model says what a claim is about ---------------------------------------
@@ -80,12 +80,12 @@ def test_a_chain_that_is_not_claimed_is_refused(robot: Analysis, tmp_path: Path)
     claims = claims_of(robot)
     said = compiled(claimed(robot, replace(claims, chains={})), tmp_path, "Cartesian_Robot")
     for chain in robot.system.chains:
-        assert f"chain {chain.name} can have a longer reaction than claimed" in said
-        assert f"chain {chain.name} can have a longer age than claimed" in said
+        assert f"chain {chain.name} claims a wrong reaction" in said
+        assert f"chain {chain.name} claims a wrong age" in said
     short = ChainClaim(Ns(500_000), Ns(500_000))
     text = claimed(robot, replace(claims, chains={**claims.chains, "status": short}))
     said = compiled(text, tmp_path, "Cartesian_Robot")
-    assert "chain status can have a longer reaction than claimed" in said
+    assert "chain status claims a wrong reaction" in said
     assert "x_loop" not in said
 
 
@@ -94,8 +94,8 @@ def test_rows_and_deliveries_of_chains_are_claimed_or_refused(
 ) -> None:
     text = claimed(robot, replace(claims_of(robot), rows={}, turns={}))
     said = compiled(text, tmp_path, "Cartesian_Robot")
-    assert "joint_x.position_control can take longer than its claimed response time" in said
-    assert "robot_bus.x_feedback can keep others waiting for longer than claimed" in said
+    assert "joint_x.position_control claims a wrong response time" in said
+    assert "reception claims a wrong busy period" in said
 
 
 def test_waits_in_queues_are_exact(tmp_path: Path) -> None:
@@ -105,7 +105,7 @@ def test_waits_in_queues_are_exact(tmp_path: Path) -> None:
     made = [n for end in ("_Reaction", "_Age", r"_Wait_\d+") for n in numbers(text, end)]
     assert len(made) == 3
     for one in made:
-        assert "chain cmd can" in compiled(changed(text, one, -1), tmp_path)
+        assert "chain cmd claims a wrong" in compiled(changed(text, one, -1), tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -135,9 +135,10 @@ def test_residual_errors_and_detection_times_are_exact(tmp_path: Path) -> None:
     names = [*numbers(text, "_Residual"), *numbers(text, "_Stale")]
     assert len(names) == len(found.system.messages) + 1
     for name in names:
-        what = "passes corruption more often" if name.endswith("_Residual") else "can be stale"
-        for by, problem in ((-1, what), (1, "claims more than its terms add up to")):
-            assert problem in compiled(changed(text, name, by), tmp_path, found.system.name)
+        what = "residual error" if name.endswith("_Residual") else "time until it is stale"
+        for by in (-1, 1):
+            said = compiled(changed(text, name, by), tmp_path, found.system.name)
+            assert f"claims a wrong {what}" in said
 
 
 def test_residual_errors_and_detection_times_that_are_not_claimed_are_refused(
@@ -146,5 +147,5 @@ def test_residual_errors_and_detection_times_that_are_not_claimed_are_refused(
     found = checking.check(ROOT / "tests" / "feature" / "protected" / "model.yaml").analysis
     claims = replace(claims_of(found), residual={}, stale={})
     said = compiled(claimed(found, claims), tmp_path, found.system.name)
-    assert said.count("passes corruption more often than claimed") == len(found.system.messages)
-    assert said.count("can be stale for longer than claimed before it is known") == 1
+    assert said.count("claims a wrong residual error") == len(found.system.messages)
+    assert said.count("claims a wrong time until it is stale") == 1

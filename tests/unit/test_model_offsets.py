@@ -133,12 +133,12 @@ def test_a_deadline_that_only_offsets_keep_is_certified_by_them(tmp_path: Path) 
         "Timing_Certificate.Seldom_O",
     ]
     for name in ("Seldom_W_At_1", "Seldom_Reach"):
-        assert "seldom can" in compiled(changed(text, name, -1), tmp_path)
+        assert re.search("seldom (can|claims)", compiled(changed(text, name, -1), tmp_path))
     for name, late in (("Often_O", 5_000_000), ("Seldom_O", -5_000_000), ("Cpu_Tick_C", 100_000)):
-        assert "seldom can" in compiled(changed(text, name, late), tmp_path)
+        assert re.search("seldom (can|claims)", compiled(changed(text, name, late), tmp_path))
     none = {**claims.items, "seldom": replace(claims.of("seldom"), since=(Ns(1),))}
     hostile = emit_certificate(tight.system, replace(claims, items=none), "")
-    assert "seldom can take longer" in compiled(print_unit(hostile), tmp_path)
+    assert "seldom claims a wrong response time" in compiled(print_unit(hostile), tmp_path)
 
 
 def test_a_certificate_with_an_instant_left_out_does_not_compile(
@@ -230,7 +230,7 @@ def test_certificates_of_random_systems_hold_by_their_offsets(tmp_path: Path) ->
         windows = numbers(text, r"_W_At_\d+")
         assert windows, seed
         one = windows[seed % len(windows)]
-        assert "can take longer than its claimed" in compiled(changed(text, one, -1), tmp_path)
+        assert "claims a wrong response time" in compiled(changed(text, one, -1), tmp_path)
         assert not set(since) & set(by_offsets(analyse(shorter(found.system, since))))
         fewer += _less_one_is_refused(found, claims, tmp_path)
         shown += 1

@@ -109,14 +109,12 @@ is
         Ghost,
         Post =>
           (Raw in 1 | 2 | 128 | 129 | 130)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Service)
              in 1 | 2 | 128 | 129 | 130)
           and then (if Raw in 1 | 2 | 128 | 129 | 130
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Service)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Service)
                    = Code_Of_Service (Value_Of_Signal_Service (Raw)))
       is
       begin
@@ -124,8 +122,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Service)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Service;
@@ -146,14 +143,12 @@ is
         Ghost,
         Post =>
           (Raw <= 127)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Node)
              in 0 .. 127)
           and then (if Raw <= 127
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Node)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Node)
                    = Ravenchart.Number (Value_Of_Type_Addressee (Raw)))
       is
       begin
@@ -161,8 +156,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Node)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Node;
@@ -263,14 +257,12 @@ is
         Ghost,
         Post =>
           (Raw in 1 .. 240)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Value)
              in 1 .. 240)
           and then (if Raw in 1 .. 240
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Value)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Value)
                    = Ravenchart.Number (Value_Of_Signal_Value (Raw)))
       is
       begin
@@ -278,8 +270,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Value)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Value;
@@ -340,8 +331,7 @@ is
             = Item
       is
          Whole : constant Ravenchart.Number range 0 .. 65_535 :=
-           (if Ravenchart.Number (Item) >= 0
-               then Ravenchart.Number (Item)
+           (if Ravenchart.Number (Item) >= 0 then Ravenchart.Number (Item)
             else Ravenchart.Number (Item) + 65_536);
          Raw : constant Interfaces.Unsigned_16 :=
            Interfaces.Unsigned_16 (Whole);
@@ -366,14 +356,12 @@ is
         Ghost,
         Post =>
           (Raw in 0 .. 2_500 | 65_136 .. 65_535)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Temperature)
              in -400 .. 2_500)
           and then (if Raw in 0 .. 2_500 | 65_136 .. 65_535
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Temperature)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Temperature)
                    = Ravenchart.Number (Value_Of_Signal_Temperature (Raw)))
       is
       begin
@@ -381,11 +369,9 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Temperature)
-            = (if Raw <= 16#7FFF#
-                  then Ravenchart.Number (Raw)
+            = (if Raw <= 16#7FFF# then Ravenchart.Number (Raw)
                else Ravenchart.Number (Raw) - 65_536));
       end Lemma_Value_Temperature;
 
@@ -405,14 +391,12 @@ is
         Ghost,
         Post =>
           (Raw <= 1)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_At_Setpoint)
              in 0 .. 1)
           and then (if Raw <= 1
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_At_Setpoint)
+                     (Interfaces.Unsigned_64 (Raw), Signal_At_Setpoint)
                    = Boolean'Pos (Value_Of_Type_Boolean (Raw)))
       is
       begin
@@ -420,8 +404,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_At_Setpoint)
             = Ravenchart.Number (Raw));
       end Lemma_Value_At_Setpoint;
@@ -432,8 +415,7 @@ is
         return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Temperature)
          or Interfaces.Shift_Left
-             (Interfaces.Unsigned_64 (Local_At_Setpoint),
-              16))
+             (Interfaces.Unsigned_64 (Local_At_Setpoint), 16))
       with
         Post =>
           Raw_Of_Temperature (Word_Of'Result) = Local_Temperature
@@ -502,8 +484,7 @@ is
             = Item
       is
          Whole : constant Ravenchart.Number range 0 .. 65_535 :=
-           (if Ravenchart.Number (Item) >= 0
-               then Ravenchart.Number (Item)
+           (if Ravenchart.Number (Item) >= 0 then Ravenchart.Number (Item)
             else Ravenchart.Number (Item) + 65_536);
          Raw : constant Interfaces.Unsigned_16 :=
            Interfaces.Unsigned_16 (Whole);
@@ -528,14 +509,12 @@ is
         Ghost,
         Post =>
           (Raw in 0 .. 2_500 | 65_136 .. 65_535)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Setpoint)
              in -400 .. 2_500)
           and then (if Raw in 0 .. 2_500 | 65_136 .. 65_535
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Setpoint)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Setpoint)
                    = Ravenchart.Number (Value_Of_Signal_Setpoint (Raw)))
       is
       begin
@@ -543,11 +522,9 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Setpoint)
-            = (if Raw <= 16#7FFF#
-                  then Ravenchart.Number (Raw)
+            = (if Raw <= 16#7FFF# then Ravenchart.Number (Raw)
                else Ravenchart.Number (Raw) - 65_536));
       end Lemma_Value_Setpoint;
 
@@ -612,13 +589,11 @@ is
       with
         Ghost,
         Post =>
-          Ravenchart.Can.Layouts.Counted
-            (Interfaces.Unsigned_64 (Raw),
+          Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
              Signal_Command)
           in 0 .. 255
           and then Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
-               Signal_Command)
+              (Interfaces.Unsigned_64 (Raw), Signal_Command)
             = Ravenchart.Number (Value_Of_Type_Octet (Raw))
       is
       begin
@@ -626,8 +601,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Command)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Command;
@@ -647,13 +621,11 @@ is
       with
         Ghost,
         Post =>
-          Ravenchart.Can.Layouts.Counted
-            (Interfaces.Unsigned_64 (Raw),
+          Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
              Signal_Index)
           in 0 .. 65_535
           and then Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
-               Signal_Index)
+              (Interfaces.Unsigned_64 (Raw), Signal_Index)
             = Ravenchart.Number (Value_Of_Type_Index (Raw))
       is
       begin
@@ -661,8 +633,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Index)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Index;
@@ -682,13 +653,11 @@ is
       with
         Ghost,
         Post =>
-          Ravenchart.Can.Layouts.Counted
-            (Interfaces.Unsigned_64 (Raw),
+          Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
              Signal_Subindex)
           in 0 .. 255
           and then Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
-               Signal_Subindex)
+              (Interfaces.Unsigned_64 (Raw), Signal_Subindex)
             = Ravenchart.Number (Value_Of_Type_Octet (Raw))
       is
       begin
@@ -696,8 +665,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Subindex)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Subindex;
@@ -717,13 +685,11 @@ is
       with
         Ghost,
         Post =>
-          Ravenchart.Can.Layouts.Counted
-            (Interfaces.Unsigned_64 (Raw),
+          Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
              Signal_Data)
           in 0 .. 4_294_967_295
           and then Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
-               Signal_Data)
+              (Interfaces.Unsigned_64 (Raw), Signal_Data)
             = Ravenchart.Number (Value_Of_Type_Long (Raw))
       is
       begin
@@ -731,8 +697,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Data)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Data;
@@ -745,8 +710,7 @@ is
         return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Command)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Index), 8)
-         or Interfaces.Shift_Left
-             (Interfaces.Unsigned_64 (Local_Subindex),
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Subindex),
               24)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Data), 32))
       with
@@ -849,14 +813,12 @@ is
         Ghost,
         Post =>
           (Raw in 0 | 4 | 5 | 127)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Value)
              in 0 | 4 | 5 | 127)
           and then (if Raw in 0 | 4 | 5 | 127
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Value)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Value)
                    = Code_Of_Value (Value_Of_Signal_Value (Raw)))
       is
       begin
@@ -864,8 +826,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Value)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Value;

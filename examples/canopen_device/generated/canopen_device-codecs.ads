@@ -93,14 +93,10 @@ is
       function Value_Of_Signal_Service
         (Raw : Interfaces.Unsigned_8)
         return Canopen_Device.Nmt_Service is
-        (if Raw = 1
-            then Canopen_Device.Start
-         elsif Raw = 2
-            then Canopen_Device.Stop
-         elsif Raw = 128
-            then Canopen_Device.Enter_Pre_Operational
-         elsif Raw = 129
-            then Canopen_Device.Reset_Node
+        (if Raw = 1 then Canopen_Device.Start
+         elsif Raw = 2 then Canopen_Device.Stop
+         elsif Raw = 128 then Canopen_Device.Enter_Pre_Operational
+         elsif Raw = 129 then Canopen_Device.Reset_Node
          else Canopen_Device.Reset_Communication)
       with Pre => Raw in 1 | 2 | 128 | 129 | 130;
 
@@ -111,8 +107,7 @@ is
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Service)
           = Code_Of_Service (Item.Service)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Node)
             = Ravenchart.Number (Item.Node)
           and then (Pack'Result and 16#FFFFFFFFFFFF0000#) = 0;
@@ -133,8 +128,7 @@ is
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Service)
                    = Code_Of_Service (Item.Service)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Node)
                      = Ravenchart.Number (Item.Node)
              else Item = Canopen_Device.Default_Nmt_Command);
@@ -250,8 +244,7 @@ is
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Temperature)
           = Ravenchart.Number (Item.Temperature)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_At_Setpoint)
             = Boolean'Pos (Item.At_Setpoint)
           and then (Pack'Result and 16#FFFFFFFFFF000000#) = 0;
@@ -267,17 +260,14 @@ is
           Valid
           = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Temperature)
              in -400 .. 2_500
-             and then Ravenchart.Can.Layouts.Number_In
-                 (Word,
+             and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_At_Setpoint)
                in 0 .. 1)
           and then (if Valid
-                then Ravenchart.Can.Layouts.Number_In
-                     (Word,
+                then Ravenchart.Can.Layouts.Number_In (Word,
                       Signal_Temperature)
                    = Ravenchart.Number (Item.Temperature)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_At_Setpoint)
                      = Boolean'Pos (Item.At_Setpoint)
              else Item = Canopen_Device.Default_Status_Pdo);
@@ -337,8 +327,7 @@ is
           = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Setpoint)
              in -400 .. 2_500)
           and then (if Valid
-                then Ravenchart.Can.Layouts.Number_In
-                     (Word,
+                then Ravenchart.Can.Layouts.Number_In (Word,
                       Signal_Setpoint)
                    = Ravenchart.Number (Item.Setpoint)
              else Item = Canopen_Device.Default_Setpoint_Pdo);
@@ -420,16 +409,13 @@ is
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Command)
           = Ravenchart.Number (Item.Command)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Index)
             = Ravenchart.Number (Item.Index)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Subindex)
             = Ravenchart.Number (Item.Subindex)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Data)
             = Ravenchart.Number (Item.Data);
       --  The frame's raw values are the table's, and bits of no signal are 0.
@@ -446,8 +432,7 @@ is
              in 0 .. 255
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Index)
                in 0 .. 65_535
-             and then Ravenchart.Can.Layouts.Number_In
-                 (Word,
+             and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Subindex)
                in 0 .. 255
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Data)
@@ -455,16 +440,13 @@ is
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Command)
                    = Ravenchart.Number (Item.Command)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Index)
                      = Ravenchart.Number (Item.Index)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Subindex)
                      = Ravenchart.Number (Item.Subindex)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Data)
                      = Ravenchart.Number (Item.Data)
              else Item = Canopen_Device.Default_Sdo);
@@ -506,12 +488,9 @@ is
       function Value_Of_Signal_Value
         (Raw : Interfaces.Unsigned_8)
         return Canopen_Device.Nmt_State is
-        (if Raw = 0
-            then Canopen_Device.Boot_Up
-         elsif Raw = 4
-            then Canopen_Device.Stopped
-         elsif Raw = 5
-            then Canopen_Device.Operational
+        (if Raw = 0 then Canopen_Device.Boot_Up
+         elsif Raw = 4 then Canopen_Device.Stopped
+         elsif Raw = 5 then Canopen_Device.Operational
          else Canopen_Device.Pre_Operational)
       with Pre => Raw in 0 | 4 | 5 | 127;
 

@@ -49,15 +49,14 @@ is
          Beat.Elapsed := 0;
       else
          if ((Objects.Heartbeat > 0
-              and then (Beat.Elapsed + 5) >= Objects.Heartbeat)
+              and then Beat.Elapsed + 5 >= Objects.Heartbeat)
              and then not (Nmt = Nmt_States.Initialisation))
             and then not (Nmt = Nmt_States.Boot_Up_Due)
          then
             Heartbeat :=
               (if Nmt = Nmt_States.Operational
                   then Canopen_Device.Operational
-               else (if Nmt = Nmt_States.Stopped
-                      then Canopen_Device.Stopped
+               else (if Nmt = Nmt_States.Stopped then Canopen_Device.Stopped
                    else Canopen_Device.Pre_Operational));
             Send_Heartbeat := True;
             Beat.Elapsed := 0;
@@ -99,11 +98,8 @@ is
                     (Temperature
                      + Canopen_Device.Unit_0_1_DegC'Min
                          (Canopen_Device.Unit_0_1_DegC'Max
-                            (Objects.Setpoint - Temperature,
-                             (-5)),
-                          5),
-                     (-400)),
-                  2_500)
+                            (Objects.Setpoint - Temperature, (-5)), 5),
+                     (-400)), 2_500)
          else Temperature);
    end Regulate;
 end Canopen_Device.Controller.Flows;

@@ -41,9 +41,7 @@ is
         (Node'Val (Inbox_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -60,16 +58,14 @@ is
    procedure Fire (Self : in out Region; Item : Event; Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
    begin
@@ -84,14 +80,12 @@ is
             Self.Data.Request.Subindex := Item.Value_Sdo.Subindex;
             Self.Data.Request.Data := Item.Value_Sdo.Data;
             Self.Data.Request.Number :=
-              (if Self.Data.Request.Number = 255
-                  then 0
+              (if Self.Data.Request.Number = 255 then 0
                else Self.Data.Request.Number + 1);
          when Order =>
             Self.Data.Order.Setpoint := Item.Value_Setpoint_Pdo.Setpoint;
             Self.Data.Order.Number :=
-              (if Self.Data.Order.Number = 255
-                  then 0
+              (if Self.Data.Order.Number = 255 then 0
                else Self.Data.Order.Number + 1);
          when Synchronise =>
             Self.Data.Syncs :=

@@ -16,11 +16,7 @@ is
 
    --  [Controller.Inbox] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_Asked,
-      On_Ordered,
-      On_Sync_Came,
-      Conditions);
+     (Start_Of_Region, On_Asked, On_Ordered, On_Sync_Came, Conditions);
 
    --  [Controller.Inbox.transitions] in order of precedence, innermost
    --  source first
@@ -74,8 +70,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Inbox_States.Leaf)
+     (T : Transition; Leaf : Inbox_States.Leaf)
      return Boolean is
      (case T is
         when Ask => Leaf = Inbox_States.Open,
@@ -84,8 +79,7 @@ is
    --  Is its source the leaf, or around it?
 
    function Target
-     (T : Firing;
-      Leaf : Inbox_States.Leaf)
+     (T : Firing; Leaf : Inbox_States.Leaf)
      return Inbox_States.Leaf is
      (case T is
         when Initial_Entry => Inbox_States.Open,
@@ -134,11 +128,9 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now, Ins, Item))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old));
    --  One run-to-completion step.
 end Canopen_Device.Controller.Inbox;

@@ -125,22 +125,14 @@ is
    with Ghost
    is
       type Node is
-        (Nowhere,
-         Initialisation,
-         Boot_Up_Due,
-         Pre_Operational,
-         Operational,
-         Stopped,
-         Ready,
-         Disorder);
+        (Nowhere, Initialisation, Boot_Up_Due, Pre_Operational, Operational,
+         Stopped, Ready, Disorder);
 
       function Innermost (Leaf : Nmt_States.Leaf) return Node is
         (Node'Val (Nmt_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -169,24 +161,18 @@ is
    procedure Fire (Self : in out Region; Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen)
        and then Self.Timers (1)
-         = Timer_After
-             (1,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (1))
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
       procedure Exit_Initialisation
@@ -248,9 +234,7 @@ is
          when Start =>
             Active :=
               (if Self.Leaf in Nmt_States.Ready
-                  then Chart.Moved
-                       (Active,
-                        Chart.Innermost (Self.Leaf),
+                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                         Chart.Ready)
                else Chart.Disorder);
             Active := Chart.Moved (Active, Chart.Ready, Chart.Operational);
@@ -258,9 +242,7 @@ is
          when Stop =>
             Active :=
               (if Self.Leaf in Nmt_States.Ready
-                  then Chart.Moved
-                       (Active,
-                        Chart.Innermost (Self.Leaf),
+                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                         Chart.Ready)
                else Chart.Disorder);
             Active := Chart.Moved (Active, Chart.Ready, Chart.Stopped);
@@ -268,9 +250,7 @@ is
          when Prepare =>
             Active :=
               (if Self.Leaf in Nmt_States.Ready
-                  then Chart.Moved
-                       (Active,
-                        Chart.Innermost (Self.Leaf),
+                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                         Chart.Ready)
                else Chart.Disorder);
             Active :=
@@ -279,9 +259,7 @@ is
          when Reset_Node =>
             Active :=
               (if Self.Leaf in Nmt_States.Ready
-                  then Chart.Moved
-                       (Active,
-                        Chart.Innermost (Self.Leaf),
+                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                         Chart.Ready)
                else Chart.Disorder);
             Active := Chart.Moved (Active, Chart.Ready, Chart.Nowhere);
@@ -293,9 +271,7 @@ is
          when Reset_Communication =>
             Active :=
               (if Self.Leaf in Nmt_States.Ready
-                  then Chart.Moved
-                       (Active,
-                        Chart.Innermost (Self.Leaf),
+                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                         Chart.Ready)
                else Chart.Disorder);
             Active := Chart.Moved (Active, Chart.Ready, Chart.Nowhere);

@@ -19,23 +19,13 @@ is
 
    --  [Controller.Nmt] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_Commanded,
-      Expiry_Of_Initialised,
-      Conditions);
+     (Start_Of_Region, On_Commanded, Expiry_Of_Initialised, Conditions);
 
    --  [Controller.Nmt.transitions] in order of precedence, innermost source
    --  first
    type Selection is
-     (Initial_Entry,
-      Initialised,
-      Booted,
-      Start,
-      Stop,
-      Prepare,
-      Reset_Node,
-      Reset_Communication,
-      None);
+     (Initial_Entry, Initialised, Booted, Start, Stop, Prepare, Reset_Node,
+      Reset_Communication, None);
 
    subtype Firing is Selection range Initial_Entry .. Reset_Communication;
    subtype Transition is Selection range Initialised .. Reset_Communication;
@@ -112,8 +102,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Nmt_States.Leaf)
+     (T : Transition; Leaf : Nmt_States.Leaf)
      return Boolean is
      (case T is
         when Initialised => Leaf = Nmt_States.Initialisation,
@@ -163,8 +152,7 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Everything or else D = Beginning,
               D /= Beginning and then Before = Nmt_States.Initialisation,
               After = Nmt_States.Initialisation,
@@ -230,24 +218,13 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
-          else Is_Selection
-               (Fired,
-                Self.Leaf'Old,
-                Now,
-                Self.Data'Old,
-                Ins,
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
+          else Is_Selection (Fired, Self.Leaf'Old, Now, Self.Data'Old, Ins,
                 Item))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)
-               = Timer_After
-                   (1,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (1)));
+               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (1)));
    --  One run-to-completion step.
 end Canopen_Device.Controller.Nmt;

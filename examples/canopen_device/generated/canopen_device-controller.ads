@@ -37,11 +37,7 @@ is
    --  [Controller.Nmt.states]
    package Nmt_States is
       type Leaf is
-        (Initialisation,
-         Boot_Up_Due,
-         Pre_Operational,
-         Operational,
-         Stopped);
+        (Initialisation, Boot_Up_Due, Pre_Operational, Operational, Stopped);
 
       subtype Ready is Leaf range Pre_Operational .. Stopped;
    end Nmt_States;
@@ -60,8 +56,7 @@ is
 
    --  [Controller.sync_in] what its readers see
    package Sync_In_Port is new Ravenchart.Port_Regions
-     (Value_Type => Canopen_Device.Sync_Count,
-      Default => 1);
+     (Value_Type => Canopen_Device.Sync_Count, Default => 1);
 
    subtype Sync_In_View is Sync_In_Port.Port;
 

@@ -175,16 +175,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Nmt_In_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Device_Nmt_In,
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Device_Nmt_In,
          0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.Device_Nmt_In,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Device_Nmt_In,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
       end if;
@@ -195,15 +191,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Sync_In_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Device_Sync_In,
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Device_Sync_In,
          0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Device_Sync_In,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -212,16 +205,12 @@ is
 
    procedure Put_Rpdo_1 (Item : Canopen_Device.Setpoint_Pdo) is
       Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings
-        (GNATprove,
-         Off,
+      pragma Warnings (GNATprove, Off,
          """Status"" is set by ""Put"" but not used*",
          Reason => "a new sample replaces the old one");
    begin
       Rpdo_1_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Device_Rpdo_1,
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Device_Rpdo_1,
          0);
    end Put_Rpdo_1;
 
@@ -230,15 +219,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Sdo_Request_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Device_Sdo_Request,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+         Elements.Device_Sdo_Request, 0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Device_Sdo_Request,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -255,70 +241,56 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Device_Nmt,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Device_Commanded,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Device_Commanded, 0);
          when Controller.Sync_Came =>
             Inbox_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Device_Inbox,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Device_Sync_Came,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Device_Sync_Came, 0);
          when Controller.Ordered =>
             Inbox_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Device_Inbox,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Device_Ordered,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Device_Ordered, 0);
          when Controller.Asked =>
             Inbox_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Device_Inbox,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Device_Asked,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Device_Asked, 0);
       end case;
    end Offer;
 
    procedure Send_Sdo_Response (Item : Canopen_Device.Sdo) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Device_Sdo_Response,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Device_Sdo_Response, 0);
       Line.Send_Sdo_Response (Item);
    end Send_Sdo_Response;
 
@@ -330,9 +302,7 @@ is
 
    procedure Send_Heartbeat (Item : Canopen_Device.Nmt_State) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Device_Heartbeat,
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Device_Heartbeat,
          0);
       Line.Send_Heartbeat (Item);
    end Send_Heartbeat;
@@ -360,10 +330,8 @@ is
          when Controller.Nmt_In_Port.Nothing =>
             null;
          when Controller.Nmt_In_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Device_Nmt_In,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Device_Nmt_In, 0);
             Offer
               (Controller.Event'(Name => Controller.Commanded,
                 Value_Nmt_Command => Nmt_In_Port.Value,
@@ -371,8 +339,7 @@ is
          when Controller.Nmt_In_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Device_Nmt_In,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -388,17 +355,14 @@ is
          when Controller.Sync_In_Port.Nothing =>
             null;
          when Controller.Sync_In_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Device_Sync_In,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Device_Sync_In, 0);
             Offer
               (Controller.Event'(Name => Controller.Sync_Came, others => <>));
          when Controller.Sync_In_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Device_Sync_In,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -414,10 +378,8 @@ is
          when Controller.Rpdo_1_Port.Nothing =>
             null;
          when Controller.Rpdo_1_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Device_Rpdo_1,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Device_Rpdo_1, 0);
             Offer
               (Controller.Event'(Name => Controller.Ordered,
                 Value_Setpoint_Pdo => Rpdo_1_Port.Value,
@@ -425,8 +387,7 @@ is
          when Controller.Rpdo_1_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Device_Rpdo_1,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -442,10 +403,8 @@ is
          when Controller.Sdo_Request_Port.Nothing =>
             null;
          when Controller.Sdo_Request_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Device_Sdo_Request,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Device_Sdo_Request, 0);
             Offer
               (Controller.Event'(Name => Controller.Asked,
                 Value_Sdo => Sdo_Request_Port.Value,
@@ -453,8 +412,7 @@ is
          when Controller.Sdo_Request_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Device_Sdo_Request,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -481,16 +439,13 @@ is
       Controller.Nmt.Step (Nmt_Region, Now, Ins, Event, Fired);
       if Fired /= Controller.Nmt.None then
          if Fired in Controller.Nmt.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Device_Nmt,
                Controller.Nmt.Selection'Pos (Fired)
                - Controller.Nmt.Selection'Pos
                    (Controller.Nmt.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.Device_Nmt,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Device_Nmt,
             Controller.Nmt_States.Leaf'Pos (Nmt_Region.Leaf));
       end if;
    end Step_Nmt;
@@ -527,16 +482,13 @@ is
       Controller.Inbox.Step (Inbox_Region, Now, Ins, Event, Fired);
       if Fired /= Controller.Inbox.None then
          if Fired in Controller.Inbox.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Device_Inbox,
                Controller.Inbox.Selection'Pos (Fired)
                - Controller.Inbox.Selection'Pos
                    (Controller.Inbox.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.Device_Inbox,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Device_Inbox,
             Controller.Inbox_States.Leaf'Pos (Inbox_Region.Leaf));
       end if;
    end Step_Inbox;

@@ -23,8 +23,8 @@ is
 
    pragma Compile_Time_Error
      (Probe.Given_Period /= Timing_Certificate.Board_Probe_T,
-      "board.probe " & "has another period than its certificate");
+      "board.probe has another period than its certificate");
    pragma Compile_Time_Error
      (Probe.Given_Priority /= Timing_Certificate.Board_Probe_Priority,
-      "board.probe " & "has another priority than its certificate");
+      "board.probe has another priority than its certificate");
 end Canopen_Device.Host_Probe;

@@ -16,7 +16,6 @@ is
    pragma Warnings (Off, "*can never be *");
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
-
    Frame : Ravenchart.Can.Any_Frames.Any_Frame :=
      Ravenchart.Can.Any_Frames.Null_Any_Frame;
 
@@ -41,21 +40,16 @@ is
            = Ravenchart.Can.Standard
       then
          Codecs.Message_Nmt.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Nmt_Item,
-            Valid);
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Nmt_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Line_Nmt_Length)
          then
             pragma Assert
               (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Nmt));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Nmt_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Nmt_Message, 0);
             Device.Put_Nmt_In (Nmt_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -64,21 +58,16 @@ is
            = Ravenchart.Can.Standard
       then
          Codecs.Message_Sync.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Sync_Item,
-            Valid);
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Sync_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Line_Sync_Length)
          then
             pragma Assert
               (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Sync));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Sync_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Sync_Message, 0);
             Device.Put_Sync_In (Sync_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -87,21 +76,16 @@ is
            = Ravenchart.Can.Standard
       then
          Codecs.Message_Rpdo_1.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Rpdo_1_Item,
-            Valid);
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Rpdo_1_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Line_Rpdo_1_Length)
          then
             pragma Assert
               (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Rpdo_1));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Rpdo_1_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Rpdo_1_Message, 0);
             Device.Put_Rpdo_1 (Rpdo_1_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -109,24 +93,18 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Type_Sdo.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Sdo_Request_Item,
-            Valid);
+         Codecs.Type_Sdo.Unpack (Ravenchart.Can.Any_Frames.Payload (Frame),
+            Sdo_Request_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Line_Sdo_Request_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_Sdo_Request));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Sdo_Request_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Sdo_Request_Message, 0);
             Device.Put_Sdo_Request (Sdo_Request_Item);
          end if;
       end if;

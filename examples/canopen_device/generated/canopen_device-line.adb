@@ -37,15 +37,11 @@ is
       pragma Assert
         (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Tpdo_1));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Tpdo_1_Message,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Tpdo_1_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Tpdo_1_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -73,15 +69,12 @@ is
       pragma Assert
         (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Sdo_Response));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Sdo_Response_Message,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Sdo_Response_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Sdo_Response_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -109,15 +102,12 @@ is
       pragma Assert
         (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Heartbeat));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Heartbeat_Message,
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Heartbeat_Message,
          0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Heartbeat_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));

@@ -52,7 +52,7 @@ is
    pragma Compile_Time_Error
      (Controller.Given_Priority
       /= Timing_Certificate.Line_Driver_Rx_Nmt_Priority,
-      "line " & "has another priority of its driver than its certificate");
+      "line has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Line_Bit_Rate
       and then Controller.Given_Setting.Data_Rate = 0);
@@ -78,8 +78,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Tpdo_1'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Tpdo_1'Result,
           Codecs.Frame_Tpdo_1)
        and then Ravenchart.Can.Any_Frames.Payload (Frame_Of_Tpdo_1'Result)
          = Codecs.Message_Tpdo_1.Pack (Item);
@@ -93,8 +92,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Sdo_Response'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Sdo_Response'Result,
           Codecs.Frame_Sdo_Response)
        and then Ravenchart.Can.Any_Frames.Payload
            (Frame_Of_Sdo_Response'Result)
@@ -110,8 +108,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Heartbeat'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Heartbeat'Result,
           Codecs.Frame_Heartbeat)
        and then Ravenchart.Can.Any_Frames.Payload
            (Frame_Of_Heartbeat'Result)

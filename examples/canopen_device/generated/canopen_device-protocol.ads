@@ -17,13 +17,8 @@ is
 
    --  [protocol.table] the activities, in the order in which they run
    type Row is
-     (Device_Ports,
-      Device_Nmt,
-      Device_Inbox,
-      Device_Serve,
-      Device_Respond,
-      Device_Produce_Heartbeat,
-      Device_Report);
+     (Device_Ports, Device_Nmt, Device_Inbox, Device_Serve, Device_Respond,
+      Device_Produce_Heartbeat, Device_Report);
 
    procedure Execute (Item : Row);
 
@@ -72,16 +67,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Protocol_Priority,
-      "protocol " & "has another priority than its certificate");
+      "protocol has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Protocol_T,
-      "protocol " & "has another period than its certificate");
+      "protocol has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Protocol_D,
-      "protocol " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "protocol " & "has another offset than its certificate");
+      "protocol has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "protocol has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Device_Ports).Divisor
       = Timing_Certificate.Device_Ports_Divisor

@@ -44,15 +44,11 @@ is
       Found : Reception.Processor.Statistics;
    begin
       Reception.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Reception_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Reception_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Reception.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Reception_Processor
-            + 1
+           (Elements.Reception_Processor + 1
             + Ravenchart.Element_Id (Reception.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -63,15 +59,11 @@ is
       Found : Protocol.Processor.Statistics;
    begin
       Protocol.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Protocol_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Protocol_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Protocol.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Protocol_Processor
-            + 1
+           (Elements.Protocol_Processor + 1
             + Ravenchart.Element_Id (Protocol.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -82,15 +74,11 @@ is
       Found : Control.Processor.Statistics;
    begin
       Control.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Control_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Control_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Control.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Control_Processor
-            + 1
+           (Elements.Control_Processor + 1
             + Ravenchart.Element_Id (Control.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -120,8 +108,7 @@ is
       Line.Controller.Read_Counters (Line_Counters);
       Ravenchart.Hosts.Put_Lost ("line.lost_out", Line_Counters.Lost_Out);
       Ravenchart.Hosts.Put_Lost ("line.lost_in", Line_Counters.Lost_In);
-      Ravenchart.Hosts.Put_Lost
-        ("line.rejected_lines",
+      Ravenchart.Hosts.Put_Lost ("line.rejected_lines",
          Line_Counters.Rejected_Lines);
       Host_Probe.Probe.Read (Late);
       Ravenchart.Hosts.Put_Host_Latency (Late);

@@ -2,7 +2,10 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+
 with System;
+with Ravenchart.Response_Times;
 
 package Canopen_Device.Timing_Certificate
 with SPARK_Mode, Pure
@@ -16,13 +19,16 @@ is
    Model_Digest : constant String :=
      "49f9db734c82e469138fdeac3f7b5f9e76c0faf3d85759460f66d2aa53aaa7da";
 
+   use Ravenchart.Response_Times;
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period. A
-   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W, and equals it: where it is
-   --  more, W is too short; where it is less, a term is missing.
+   --  from the event, W the time claimed from the start of a busy period.
+   --  X_Up (W) is what X and all that goes before it ask for within W,
+   --  X_Rest (W) what X and those listed behind it at its level do. Needs
+   --  is the demand that arises within W, and equals it: where it is more,
+   --  W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_R : constant := 545_000;
@@ -49,17 +55,16 @@ is
    Board_Critical_Section : constant := 5_000;
 
    --  [reception] released by arrivals, no closer than T; it may wait for T
-   --  to be over as well. B: protocol may be inside device.nmt_in.mailbox.
+   --  to be over as well. B: protocol in device.nmt_in.mailbox.
    Reception_Priority : constant := System.Default_Priority + 3;
    Line_Receive_Budget : constant := 40_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
-   Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant := Line_Receive_Budget + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
-   --  [protocol] released every T. B: control may be inside device.objects.
+   --  [protocol] released every T. B: control in device.objects.
    Protocol_Priority : constant := System.Default_Priority + 2;
    Device_Ports_Budget : constant := 150_000;
    Device_Nmt_Budget : constant := 100_000;
@@ -72,261 +77,224 @@ is
    Protocol_D : constant := 5_000_000;
    Device_Ports_Divisor : constant := 1;
    Device_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Device_Ports_Divisor /= 1,
-      "device.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Device_Ports_Phase + 1) > Device_Ports_Divisor,
-      "device.ports " & "has a phase beyond its divisor");
-
    Device_Nmt_Divisor : constant := 1;
    Device_Nmt_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Device_Nmt_Divisor /= 1,
-      "device.Nmt " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Device_Nmt_Phase + 1) > Device_Nmt_Divisor,
-      "device.Nmt " & "has a phase beyond its divisor");
-
    Device_Inbox_Divisor : constant := 1;
    Device_Inbox_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Device_Inbox_Divisor /= 1,
-      "device.Inbox " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Device_Inbox_Phase + 1) > Device_Inbox_Divisor,
-      "device.Inbox " & "has a phase beyond its divisor");
-
    Device_Serve_Divisor : constant := 1;
    Device_Serve_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Device_Serve_Divisor /= 1,
-      "device.serve " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Device_Serve_Phase + 1) > Device_Serve_Divisor,
-      "device.serve " & "has a phase beyond its divisor");
-
    Device_Respond_Divisor : constant := 1;
    Device_Respond_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Device_Respond_Divisor /= 1,
-      "device.respond " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Device_Respond_Phase + 1) > Device_Respond_Divisor,
-      "device.respond " & "has a phase beyond its divisor");
-
    Device_Produce_Heartbeat_Divisor : constant := 1;
    Device_Produce_Heartbeat_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Device_Produce_Heartbeat_Divisor /= 1,
-      "device.produce_heartbeat "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Device_Produce_Heartbeat_Phase + 1)
-      > Device_Produce_Heartbeat_Divisor,
-      "device.produce_heartbeat " & "has a phase beyond its divisor");
-
    Device_Report_Divisor : constant := 1;
    Device_Report_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Device_Report_Divisor /= 1,
-      "device.report " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Device_Report_Phase + 1) > Device_Report_Divisor,
-      "device.report " & "has a phase beyond its divisor");
-
+     (Device_Ports_Divisor /= 1
+      or else Device_Ports_Phase /= 0
+      or else Device_Nmt_Divisor /= 1
+      or else Device_Nmt_Phase /= 0
+      or else Device_Inbox_Divisor /= 1
+      or else Device_Inbox_Phase /= 0
+      or else Device_Serve_Divisor /= 1
+      or else Device_Serve_Phase /= 0
+      or else Device_Respond_Divisor /= 1
+      or else Device_Respond_Phase /= 0
+      or else Device_Produce_Heartbeat_Divisor /= 1
+      or else Device_Produce_Heartbeat_Phase /= 0
+      or else Device_Report_Divisor /= 1
+      or else Device_Report_Phase /= 0,
+      "protocol must keep divisors and phases of its rows");
    Protocol_J : constant := 0;
-   Protocol_A : constant := Protocol_J + (Protocol_T - 1);
    Protocol_C : constant :=
-     Device_Ports_Budget
-     + Device_Nmt_Budget
-     + Device_Inbox_Budget
-     + Device_Serve_Budget
-     + Device_Respond_Budget
-     + Device_Produce_Heartbeat_Budget
-     + Device_Report_Budget
+     Device_Ports_Budget + Device_Nmt_Budget + Device_Inbox_Budget
+     + Device_Serve_Budget + Device_Respond_Budget
+     + Device_Produce_Heartbeat_Budget + Device_Report_Budget
      + 2 * Board_Context_Switch;
    Protocol_B : constant := Board_Critical_Section;
 
-   --  [control] released every T. B: main may be inside health.
+   --  [control] released every T. B: main in health.
    Control_Priority : constant := System.Default_Priority + 1;
    Device_Regulate_Budget : constant := 100_000;
    Control_T : constant := 50_000_000;
    Control_D : constant := 50_000_000;
    Device_Regulate_Divisor : constant := 1;
    Device_Regulate_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Device_Regulate_Divisor /= 1,
-      "device.regulate " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Device_Regulate_Phase + 1) > Device_Regulate_Divisor,
-      "device.regulate " & "has a phase beyond its divisor");
-
+     (Device_Regulate_Divisor /= 1 or else Device_Regulate_Phase /= 0,
+      "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
-   Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
      Device_Regulate_Budget + 2 * Board_Context_Switch;
    Control_B : constant := Board_Critical_Section;
 
-   --  [line.driver_rx.nmt] the driver's work, released by line.nmt, which
-   --  is J late. B: protocol may be inside line.transmit.
+   --  [line.driver_rx.nmt] the driver, released by line.nmt. B: protocol in
+   --  line.transmit.
    Line_Driver_Rx_Nmt_Priority : constant := System.Default_Priority + 4;
    Line_Driver_Rx_Nmt_Budget : constant := 40_000;
    Line_Driver_Rx_Nmt_T : constant := 10_000_000;
    Line_Driver_Rx_Nmt_D : constant := 10_000_000;
    Line_Driver_Rx_Nmt_J : constant := Line_Nmt_R;
-   Line_Driver_Rx_Nmt_A : constant :=
-     Line_Driver_Rx_Nmt_J + (Line_Driver_Rx_Nmt_T - 1);
    Line_Driver_Rx_Nmt_C : constant :=
      Line_Driver_Rx_Nmt_Budget + 2 * Board_Context_Switch;
    Line_Driver_Rx_Nmt_B : constant := Board_Critical_Section;
 
-   --  [line.driver_rx.sync] the driver's work, released by line.sync, which
-   --  is J late. B: protocol may be inside line.transmit.
+   --  [line.driver_rx.sync] the driver, released by line.sync. B: protocol
+   --  in line.transmit.
    Line_Driver_Rx_Sync_Priority : constant := System.Default_Priority + 4;
    Line_Driver_Rx_Sync_Budget : constant := 40_000;
    Line_Driver_Rx_Sync_T : constant := 10_000_000;
    Line_Driver_Rx_Sync_D : constant := 10_000_000;
    Line_Driver_Rx_Sync_J : constant := Line_Sync_R;
-   Line_Driver_Rx_Sync_A : constant :=
-     Line_Driver_Rx_Sync_J + (Line_Driver_Rx_Sync_T - 1);
    Line_Driver_Rx_Sync_C : constant :=
      Line_Driver_Rx_Sync_Budget + 2 * Board_Context_Switch;
    Line_Driver_Rx_Sync_B : constant := Board_Critical_Section;
 
-   --  [line.driver_tx.tpdo_1] the driver's work, released by protocol,
-   --  which is J late. B: protocol may be inside line.transmit.
+   --  [line.driver_tx.tpdo_1] the driver, released by protocol. B: protocol
+   --  in line.transmit.
    Line_Driver_Tx_Tpdo_1_Priority : constant := System.Default_Priority + 4;
    Line_Driver_Tx_Tpdo_1_Budget : constant := 40_000;
    Line_Driver_Tx_Tpdo_1_T : constant := 5_000_000;
    Line_Driver_Tx_Tpdo_1_D : constant := 5_000_000;
    Line_Driver_Tx_Tpdo_1_J : constant := Protocol_R;
-   Line_Driver_Tx_Tpdo_1_A : constant :=
-     Line_Driver_Tx_Tpdo_1_J + (Line_Driver_Tx_Tpdo_1_T - 1);
    Line_Driver_Tx_Tpdo_1_C : constant :=
      Line_Driver_Tx_Tpdo_1_Budget + 2 * Board_Context_Switch;
    Line_Driver_Tx_Tpdo_1_B : constant := Board_Critical_Section;
 
-   --  [line.driver_rx.rpdo_1] the driver's work, released by line.rpdo_1,
-   --  which is J late. B: protocol may be inside line.transmit.
+   --  [line.driver_rx.rpdo_1] the driver, released by line.rpdo_1. B:
+   --  protocol in line.transmit.
    Line_Driver_Rx_Rpdo_1_Priority : constant := System.Default_Priority + 4;
    Line_Driver_Rx_Rpdo_1_Budget : constant := 40_000;
    Line_Driver_Rx_Rpdo_1_T : constant := 10_000_000;
    Line_Driver_Rx_Rpdo_1_D : constant := 10_000_000;
    Line_Driver_Rx_Rpdo_1_J : constant := Line_Rpdo_1_R;
-   Line_Driver_Rx_Rpdo_1_A : constant :=
-     Line_Driver_Rx_Rpdo_1_J + (Line_Driver_Rx_Rpdo_1_T - 1);
    Line_Driver_Rx_Rpdo_1_C : constant :=
      Line_Driver_Rx_Rpdo_1_Budget + 2 * Board_Context_Switch;
    Line_Driver_Rx_Rpdo_1_B : constant := Board_Critical_Section;
 
-   --  [line.driver_tx.sdo_response] the driver's work, released by
-   --  protocol, which is J late. B: protocol may be inside line.transmit.
+   --  [line.driver_tx.sdo_response] the driver, released by protocol. B:
+   --  protocol in line.transmit.
    Line_Driver_Tx_Sdo_Response_Priority : constant :=
      System.Default_Priority + 4;
    Line_Driver_Tx_Sdo_Response_Budget : constant := 40_000;
    Line_Driver_Tx_Sdo_Response_T : constant := 5_000_000;
    Line_Driver_Tx_Sdo_Response_D : constant := 5_000_000;
    Line_Driver_Tx_Sdo_Response_J : constant := Protocol_R;
-   Line_Driver_Tx_Sdo_Response_A : constant :=
-     Line_Driver_Tx_Sdo_Response_J + (Line_Driver_Tx_Sdo_Response_T - 1);
    Line_Driver_Tx_Sdo_Response_C : constant :=
      Line_Driver_Tx_Sdo_Response_Budget + 2 * Board_Context_Switch;
    Line_Driver_Tx_Sdo_Response_B : constant := Board_Critical_Section;
 
-   --  [line.driver_rx.sdo_request] the driver's work, released by
-   --  line.sdo_request, which is J late. B: protocol may be inside
-   --  line.transmit.
+   --  [line.driver_rx.sdo_request] the driver, released by
+   --  line.sdo_request. B: protocol in line.transmit.
    Line_Driver_Rx_Sdo_Request_Priority : constant :=
      System.Default_Priority + 4;
    Line_Driver_Rx_Sdo_Request_Budget : constant := 40_000;
    Line_Driver_Rx_Sdo_Request_T : constant := 5_000_000;
    Line_Driver_Rx_Sdo_Request_D : constant := 5_000_000;
    Line_Driver_Rx_Sdo_Request_J : constant := Line_Sdo_Request_R;
-   Line_Driver_Rx_Sdo_Request_A : constant :=
-     Line_Driver_Rx_Sdo_Request_J + (Line_Driver_Rx_Sdo_Request_T - 1);
    Line_Driver_Rx_Sdo_Request_C : constant :=
      Line_Driver_Rx_Sdo_Request_Budget + 2 * Board_Context_Switch;
    Line_Driver_Rx_Sdo_Request_B : constant := Board_Critical_Section;
 
-   --  [line.driver_tx.heartbeat] the driver's work, released by protocol,
-   --  which is J late. B: protocol may be inside line.transmit.
+   --  [line.driver_tx.heartbeat] the driver, released by protocol. B:
+   --  protocol in line.transmit.
    Line_Driver_Tx_Heartbeat_Priority : constant :=
      System.Default_Priority + 4;
    Line_Driver_Tx_Heartbeat_Budget : constant := 40_000;
    Line_Driver_Tx_Heartbeat_T : constant := 5_000_000;
    Line_Driver_Tx_Heartbeat_D : constant := 5_000_000;
    Line_Driver_Tx_Heartbeat_J : constant := Protocol_R;
-   Line_Driver_Tx_Heartbeat_A : constant :=
-     Line_Driver_Tx_Heartbeat_J + (Line_Driver_Tx_Heartbeat_T - 1);
    Line_Driver_Tx_Heartbeat_C : constant :=
      Line_Driver_Tx_Heartbeat_Budget + 2 * Board_Context_Switch;
    Line_Driver_Tx_Heartbeat_B : constant := Board_Critical_Section;
 
-   --  [board.probe] released every T. B: main may be inside
-   --  board.probe.board.
+   --  [board.probe] released every T. B: main in board.probe.board.
    Board_Probe_Priority : constant := System.Default_Priority + 5;
    Board_Probe_Budget : constant := 20_000;
    Board_Probe_T : constant := 1_000_000;
    Board_Probe_D : constant := 1_000_000;
    Board_Probe_J : constant := 0;
-   Board_Probe_A : constant := Board_Probe_J + (Board_Probe_T - 1);
    Board_Probe_C : constant :=
      Board_Probe_Budget + 2 * Board_Context_Switch;
    Board_Probe_B : constant := Board_Critical_Section;
 
-   pragma Compile_Time_Error
-     ((Line_Driver_Rx_Nmt_Priority + 1) > Board_Probe_Priority,
-      "board.probe " & "must have a higher priority than line.driver_rx.nmt");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Nmt_Priority /= Line_Driver_Rx_Sync_Priority,
-      "line.driver_rx.nmt "
-      & "must have the priority of line.driver_rx.sync");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Sync_Priority /= Line_Driver_Tx_Tpdo_1_Priority,
-      "line.driver_rx.sync "
-      & "must have the priority of line.driver_tx.tpdo_1");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Tpdo_1_Priority /= Line_Driver_Rx_Rpdo_1_Priority,
-      "line.driver_tx.tpdo_1 "
-      & "must have the priority of line.driver_rx.rpdo_1");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Rpdo_1_Priority /= Line_Driver_Tx_Sdo_Response_Priority,
-      "line.driver_rx.rpdo_1 "
-      & "must have the priority of line.driver_tx.sdo_response");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Sdo_Response_Priority
-      /= Line_Driver_Rx_Sdo_Request_Priority,
-      "line.driver_tx.sdo_response "
-      & "must have the priority of line.driver_rx.sdo_request");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Sdo_Request_Priority
-      /= Line_Driver_Tx_Heartbeat_Priority,
-      "line.driver_rx.sdo_request "
-      & "must have the priority of line.driver_tx.heartbeat");
-   pragma Compile_Time_Error
-     ((Reception_Priority + 1) > Line_Driver_Tx_Heartbeat_Priority,
-      "line.driver_tx.heartbeat "
-      & "must have a higher priority than reception");
-   pragma Compile_Time_Error
-     ((Protocol_Priority + 1) > Reception_Priority,
-      "reception " & "must have a higher priority than protocol");
-   pragma Compile_Time_Error
-     ((Control_Priority + 1) > Protocol_Priority,
-      "protocol " & "must have a higher priority than control");
+   function Board_Probe_Up (W : Window) return Time is
+     (Demand (W, Board_Probe_J, Board_Probe_T, Board_Probe_C)) with Static;
+   function Line_Driver_Rx_Nmt_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Nmt_J, Line_Driver_Rx_Nmt_T,
+         Line_Driver_Rx_Nmt_C, Board_Probe_Up (W))) with Static;
+   function Line_Driver_Rx_Sync_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Sync_J, Line_Driver_Rx_Sync_T,
+         Line_Driver_Rx_Sync_C, Line_Driver_Rx_Nmt_Up (W))) with Static;
+   function Line_Driver_Tx_Tpdo_1_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Tpdo_1_J, Line_Driver_Tx_Tpdo_1_T,
+         Line_Driver_Tx_Tpdo_1_C, Line_Driver_Rx_Sync_Up (W))) with Static;
+   function Line_Driver_Rx_Rpdo_1_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Rpdo_1_J, Line_Driver_Rx_Rpdo_1_T,
+         Line_Driver_Rx_Rpdo_1_C, Line_Driver_Tx_Tpdo_1_Up (W))) with Static;
+   function Line_Driver_Tx_Sdo_Response_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Sdo_Response_J,
+         Line_Driver_Tx_Sdo_Response_T, Line_Driver_Tx_Sdo_Response_C,
+         Line_Driver_Rx_Rpdo_1_Up (W))) with Static;
+   function Line_Driver_Rx_Sdo_Request_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Sdo_Request_J, Line_Driver_Rx_Sdo_Request_T,
+         Line_Driver_Rx_Sdo_Request_C, Line_Driver_Tx_Sdo_Response_Up (W)))
+   with Static;
+   function Line_Driver_Tx_Heartbeat_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Heartbeat_J, Line_Driver_Tx_Heartbeat_T,
+         Line_Driver_Tx_Heartbeat_C, Line_Driver_Rx_Sdo_Request_Up (W)))
+   with Static;
+   function Reception_Up (W : Window) return Time is
+     (Demand (W, Reception_J, Reception_T, Reception_C,
+         Line_Driver_Tx_Heartbeat_Up (W))) with Static;
+   function Protocol_Up (W : Window) return Time is
+     (Demand (W, Protocol_J, Protocol_T, Protocol_C, Reception_Up (W)))
+   with Static;
+   function Line_Driver_Tx_Heartbeat_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Heartbeat_J, Line_Driver_Tx_Heartbeat_T,
+         Line_Driver_Tx_Heartbeat_C)) with Static;
+   function Line_Driver_Rx_Sdo_Request_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Sdo_Request_J, Line_Driver_Rx_Sdo_Request_T,
+         Line_Driver_Rx_Sdo_Request_C, Line_Driver_Tx_Heartbeat_Rest (W)))
+   with Static;
+   function Line_Driver_Tx_Sdo_Response_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Sdo_Response_J,
+         Line_Driver_Tx_Sdo_Response_T, Line_Driver_Tx_Sdo_Response_C,
+         Line_Driver_Rx_Sdo_Request_Rest (W))) with Static;
+   function Line_Driver_Rx_Rpdo_1_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Rpdo_1_J, Line_Driver_Rx_Rpdo_1_T,
+         Line_Driver_Rx_Rpdo_1_C, Line_Driver_Tx_Sdo_Response_Rest (W)))
+   with Static;
+   function Line_Driver_Tx_Tpdo_1_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Tpdo_1_J, Line_Driver_Tx_Tpdo_1_T,
+         Line_Driver_Tx_Tpdo_1_C, Line_Driver_Rx_Rpdo_1_Rest (W)))
+   with Static;
+   function Line_Driver_Rx_Sync_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Sync_J, Line_Driver_Rx_Sync_T,
+         Line_Driver_Rx_Sync_C, Line_Driver_Tx_Tpdo_1_Rest (W))) with Static;
 
-   --  [line] bits in a second, and one bit in nanoseconds, rounded up. Of a
-   --  message, Stuffed: bits that stuffing can lengthen by a quarter; Bits:
-   --  the longest frame, with 10 bits that are not stuffed and 3 to the
-   --  next frame.
+   pragma Compile_Time_Error
+     (Board_Probe_Priority <= Line_Driver_Rx_Nmt_Priority
+      or else Line_Driver_Rx_Nmt_Priority /= Line_Driver_Rx_Sync_Priority
+      or else Line_Driver_Rx_Sync_Priority /= Line_Driver_Tx_Tpdo_1_Priority
+      or else Line_Driver_Tx_Tpdo_1_Priority
+        /= Line_Driver_Rx_Rpdo_1_Priority
+      or else Line_Driver_Rx_Rpdo_1_Priority
+        /= Line_Driver_Tx_Sdo_Response_Priority
+      or else Line_Driver_Tx_Sdo_Response_Priority
+        /= Line_Driver_Rx_Sdo_Request_Priority
+      or else Line_Driver_Rx_Sdo_Request_Priority
+        /= Line_Driver_Tx_Heartbeat_Priority
+      or else Line_Driver_Tx_Heartbeat_Priority <= Reception_Priority
+      or else Reception_Priority <= Protocol_Priority
+      or else Protocol_Priority <= Control_Priority,
+      "board must keep the order of its priorities");
+
+   --  [line] bits in a second, and one bit in nanoseconds, rounded up. A
+   --  message waits for the longest frame that goes behind it and has
+   --  begun, and for those that go before it. Of a message, Stuffed: bits
+   --  that stuffing can lengthen by a quarter; Bits: the longest frame,
+   --  with 10 bits that are not stuffed and 3 to the next frame.
    Line_Bit_Rate : constant := 500_000;
    Line_Bit : constant :=
      (1_000_000_000 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
@@ -338,11 +306,10 @@ is
    Line_Nmt_D : constant := 10_000_000;
    Line_Nmt_Stuffed : constant := 34 + 8 * Line_Nmt_Length;
    Line_Nmt_Bits : constant :=
-     Line_Nmt_Stuffed + 13 + ((Line_Nmt_Stuffed - 1) / 4);
+     Line_Nmt_Stuffed + 13 + (Line_Nmt_Stuffed - 1) / 4;
    Line_Nmt_C : constant :=
-     ((Line_Nmt_Bits * 10**9) + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     (Line_Nmt_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
    Line_Nmt_J : constant := 0;
-   Line_Nmt_A : constant := Line_Nmt_J + (Line_Nmt_T - 1);
 
    --  [line.sync] 11-bit identifier Id, Length bytes from somebody outside
    Line_Sync_Id : constant := 16#80#;
@@ -351,11 +318,10 @@ is
    Line_Sync_D : constant := 10_000_000;
    Line_Sync_Stuffed : constant := 34 + 8 * Line_Sync_Length;
    Line_Sync_Bits : constant :=
-     Line_Sync_Stuffed + 13 + ((Line_Sync_Stuffed - 1) / 4);
+     Line_Sync_Stuffed + 13 + (Line_Sync_Stuffed - 1) / 4;
    Line_Sync_C : constant :=
-     ((Line_Sync_Bits * 10**9) + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     (Line_Sync_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
    Line_Sync_J : constant := 0;
-   Line_Sync_A : constant := Line_Sync_J + (Line_Sync_T - 1);
 
    --  [line.tpdo_1] 11-bit identifier Id, Length bytes from device.tpdo_1
    Line_Tpdo_1_Id : constant := 16#185#;
@@ -364,11 +330,10 @@ is
    Line_Tpdo_1_D : constant := 5_000_000;
    Line_Tpdo_1_Stuffed : constant := 34 + 8 * Line_Tpdo_1_Length;
    Line_Tpdo_1_Bits : constant :=
-     Line_Tpdo_1_Stuffed + 13 + ((Line_Tpdo_1_Stuffed - 1) / 4);
+     Line_Tpdo_1_Stuffed + 13 + (Line_Tpdo_1_Stuffed - 1) / 4;
    Line_Tpdo_1_C : constant :=
-     ((Line_Tpdo_1_Bits * 10**9) + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     (Line_Tpdo_1_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
    Line_Tpdo_1_J : constant := Line_Driver_Tx_Tpdo_1_R;
-   Line_Tpdo_1_A : constant := Line_Tpdo_1_J + (Line_Tpdo_1_T - 1);
 
    --  [line.rpdo_1] 11-bit identifier Id, Length bytes from somebody
    --  outside
@@ -378,11 +343,10 @@ is
    Line_Rpdo_1_D : constant := 10_000_000;
    Line_Rpdo_1_Stuffed : constant := 34 + 8 * Line_Rpdo_1_Length;
    Line_Rpdo_1_Bits : constant :=
-     Line_Rpdo_1_Stuffed + 13 + ((Line_Rpdo_1_Stuffed - 1) / 4);
+     Line_Rpdo_1_Stuffed + 13 + (Line_Rpdo_1_Stuffed - 1) / 4;
    Line_Rpdo_1_C : constant :=
-     ((Line_Rpdo_1_Bits * 10**9) + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     (Line_Rpdo_1_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
    Line_Rpdo_1_J : constant := 0;
-   Line_Rpdo_1_A : constant := Line_Rpdo_1_J + (Line_Rpdo_1_T - 1);
 
    --  [line.sdo_response] 11-bit identifier Id, Length bytes from
    --  device.sdo_response
@@ -393,13 +357,10 @@ is
    Line_Sdo_Response_Stuffed : constant :=
      34 + 8 * Line_Sdo_Response_Length;
    Line_Sdo_Response_Bits : constant :=
-     Line_Sdo_Response_Stuffed + 13 + ((Line_Sdo_Response_Stuffed - 1) / 4);
+     Line_Sdo_Response_Stuffed + 13 + (Line_Sdo_Response_Stuffed - 1) / 4;
    Line_Sdo_Response_C : constant :=
-     ((Line_Sdo_Response_Bits * 10**9) + (Line_Bit_Rate - 1))
-     / Line_Bit_Rate;
+     (Line_Sdo_Response_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
    Line_Sdo_Response_J : constant := Line_Driver_Tx_Sdo_Response_R;
-   Line_Sdo_Response_A : constant :=
-     Line_Sdo_Response_J + (Line_Sdo_Response_T - 1);
 
    --  [line.sdo_request] 11-bit identifier Id, Length bytes from somebody
    --  outside
@@ -409,12 +370,10 @@ is
    Line_Sdo_Request_D : constant := 5_000_000;
    Line_Sdo_Request_Stuffed : constant := 34 + 8 * Line_Sdo_Request_Length;
    Line_Sdo_Request_Bits : constant :=
-     Line_Sdo_Request_Stuffed + 13 + ((Line_Sdo_Request_Stuffed - 1) / 4);
+     Line_Sdo_Request_Stuffed + 13 + (Line_Sdo_Request_Stuffed - 1) / 4;
    Line_Sdo_Request_C : constant :=
-     ((Line_Sdo_Request_Bits * 10**9) + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     (Line_Sdo_Request_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
    Line_Sdo_Request_J : constant := 0;
-   Line_Sdo_Request_A : constant :=
-     Line_Sdo_Request_J + (Line_Sdo_Request_T - 1);
 
    --  [line.heartbeat] 11-bit identifier Id, Length bytes from
    --  device.heartbeat
@@ -424,973 +383,383 @@ is
    Line_Heartbeat_D : constant := 5_000_000;
    Line_Heartbeat_Stuffed : constant := 34 + 8 * Line_Heartbeat_Length;
    Line_Heartbeat_Bits : constant :=
-     Line_Heartbeat_Stuffed + 13 + ((Line_Heartbeat_Stuffed - 1) / 4);
+     Line_Heartbeat_Stuffed + 13 + (Line_Heartbeat_Stuffed - 1) / 4;
    Line_Heartbeat_C : constant :=
-     ((Line_Heartbeat_Bits * 10**9) + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     (Line_Heartbeat_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
    Line_Heartbeat_J : constant := Line_Driver_Tx_Heartbeat_R;
-   Line_Heartbeat_A : constant := Line_Heartbeat_J + (Line_Heartbeat_T - 1);
 
-   pragma Compile_Time_Error
-     (((2**19 * Line_Nmt_Id) + 1) > (2**19 * Line_Sync_Id),
-      "line.nmt " & "must win the arbitration against line.sync");
-   pragma Compile_Time_Error
-     (((2**19 * Line_Sync_Id) + 1) > (2**19 * Line_Tpdo_1_Id),
-      "line.sync " & "must win the arbitration against line.tpdo_1");
-   pragma Compile_Time_Error
-     (((2**19 * Line_Tpdo_1_Id) + 1) > (2**19 * Line_Rpdo_1_Id),
-      "line.tpdo_1 " & "must win the arbitration against line.rpdo_1");
-   pragma Compile_Time_Error
-     (((2**19 * Line_Rpdo_1_Id) + 1) > (2**19 * Line_Sdo_Response_Id),
-      "line.rpdo_1 " & "must win the arbitration against line.sdo_response");
-   pragma Compile_Time_Error
-     (((2**19 * Line_Sdo_Response_Id) + 1) > (2**19 * Line_Sdo_Request_Id),
-      "line.sdo_response "
-      & "must win the arbitration against line.sdo_request");
-   pragma Compile_Time_Error
-     (((2**19 * Line_Sdo_Request_Id) + 1) > (2**19 * Line_Heartbeat_Id),
-      "line.sdo_request "
-      & "must win the arbitration against line.heartbeat");
-
-   --  [reception] what can delay it: jobs of the same or higher priority
+   --  [reception] what delays it
    Reception_W : constant := Reception_R - Reception_J;
    Reception_Needs : constant :=
-     Reception_C
-     + Reception_B
-     + (((Reception_W + Line_Driver_Rx_Nmt_A) / Line_Driver_Rx_Nmt_T)
-        * Line_Driver_Rx_Nmt_C)
-     + (((Reception_W + Line_Driver_Rx_Sync_A) / Line_Driver_Rx_Sync_T)
-        * Line_Driver_Rx_Sync_C)
-     + (((Reception_W + Line_Driver_Tx_Tpdo_1_A) / Line_Driver_Tx_Tpdo_1_T)
-        * Line_Driver_Tx_Tpdo_1_C)
-     + (((Reception_W + Line_Driver_Rx_Rpdo_1_A) / Line_Driver_Rx_Rpdo_1_T)
-        * Line_Driver_Rx_Rpdo_1_C)
-     + (((Reception_W + Line_Driver_Tx_Sdo_Response_A)
-         / Line_Driver_Tx_Sdo_Response_T)
-        * Line_Driver_Tx_Sdo_Response_C)
-     + (((Reception_W + Line_Driver_Rx_Sdo_Request_A)
-         / Line_Driver_Rx_Sdo_Request_T)
-        * Line_Driver_Rx_Sdo_Request_C)
-     + (((Reception_W + Line_Driver_Tx_Heartbeat_A)
-         / Line_Driver_Tx_Heartbeat_T)
-        * Line_Driver_Tx_Heartbeat_C)
-     + (((Reception_W + Board_Probe_A) / Board_Probe_T) * Board_Probe_C);
+     Reception_C + Reception_B + Line_Driver_Tx_Heartbeat_Up (Reception_W);
+   pragma Compile_Time_Error (Reception_W /= Reception_Needs,
+      "reception claims a wrong response time");
+   pragma Compile_Time_Error
+     (Reception_R > Time'Min (Reception_D, Reception_T),
+      "reception can miss its deadline or overlap");
+   pragma Assert
+     (Reception_Needs <= Reception_W and then Reception_R <= Reception_D);
 
-   pragma Compile_Time_Error
-     (0 > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_Needs > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_W > Reception_Needs,
-      "reception " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Reception_J + Reception_W) > Reception_T,
-      "reception " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Reception_R > Reception_D,
-      "reception " & "can miss its deadline");
-   pragma Assert (Reception_Needs <= Reception_W);
-   pragma Assert (Reception_R <= Reception_D);
-
-   --  [protocol] what can delay it: jobs of the same or higher priority
+   --  [protocol] what delays it
    Protocol_W : constant := Protocol_R - Protocol_J;
    Protocol_Needs : constant :=
-     Protocol_C
-     + Protocol_B
-     + (((Protocol_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Protocol_W + Line_Driver_Rx_Nmt_A) / Line_Driver_Rx_Nmt_T)
-        * Line_Driver_Rx_Nmt_C)
-     + (((Protocol_W + Line_Driver_Rx_Sync_A) / Line_Driver_Rx_Sync_T)
-        * Line_Driver_Rx_Sync_C)
-     + (((Protocol_W + Line_Driver_Tx_Tpdo_1_A) / Line_Driver_Tx_Tpdo_1_T)
-        * Line_Driver_Tx_Tpdo_1_C)
-     + (((Protocol_W + Line_Driver_Rx_Rpdo_1_A) / Line_Driver_Rx_Rpdo_1_T)
-        * Line_Driver_Rx_Rpdo_1_C)
-     + (((Protocol_W + Line_Driver_Tx_Sdo_Response_A)
-         / Line_Driver_Tx_Sdo_Response_T)
-        * Line_Driver_Tx_Sdo_Response_C)
-     + (((Protocol_W + Line_Driver_Rx_Sdo_Request_A)
-         / Line_Driver_Rx_Sdo_Request_T)
-        * Line_Driver_Rx_Sdo_Request_C)
-     + (((Protocol_W + Line_Driver_Tx_Heartbeat_A)
-         / Line_Driver_Tx_Heartbeat_T)
-        * Line_Driver_Tx_Heartbeat_C)
-     + (((Protocol_W + Board_Probe_A) / Board_Probe_T) * Board_Probe_C);
+     Protocol_C + Protocol_B + Reception_Up (Protocol_W);
+   pragma Compile_Time_Error (Protocol_W /= Protocol_Needs,
+      "protocol claims a wrong response time");
+   pragma Compile_Time_Error
+     (Protocol_R > Time'Min (Protocol_D, Protocol_T),
+      "protocol can miss its deadline or overlap");
+   pragma Assert
+     (Protocol_Needs <= Protocol_W and then Protocol_R <= Protocol_D);
 
-   pragma Compile_Time_Error
-     (0 > Protocol_W,
-      "protocol " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Protocol_Needs > Protocol_W,
-      "protocol " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Protocol_W > Protocol_Needs,
-      "protocol " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Protocol_J + Protocol_W) > Protocol_T,
-      "protocol " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Protocol_R > Protocol_D,
-      "protocol " & "can miss its deadline");
-   pragma Assert (Protocol_Needs <= Protocol_W);
-   pragma Assert (Protocol_R <= Protocol_D);
-
-   --  [control] what can delay it: jobs of the same or higher priority
+   --  [control] what delays it
    Control_W : constant := Control_R - Control_J;
    Control_Needs : constant :=
-     Control_C
-     + Control_B
-     + (((Control_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Control_W + Protocol_A) / Protocol_T) * Protocol_C)
-     + (((Control_W + Line_Driver_Rx_Nmt_A) / Line_Driver_Rx_Nmt_T)
-        * Line_Driver_Rx_Nmt_C)
-     + (((Control_W + Line_Driver_Rx_Sync_A) / Line_Driver_Rx_Sync_T)
-        * Line_Driver_Rx_Sync_C)
-     + (((Control_W + Line_Driver_Tx_Tpdo_1_A) / Line_Driver_Tx_Tpdo_1_T)
-        * Line_Driver_Tx_Tpdo_1_C)
-     + (((Control_W + Line_Driver_Rx_Rpdo_1_A) / Line_Driver_Rx_Rpdo_1_T)
-        * Line_Driver_Rx_Rpdo_1_C)
-     + (((Control_W + Line_Driver_Tx_Sdo_Response_A)
-         / Line_Driver_Tx_Sdo_Response_T)
-        * Line_Driver_Tx_Sdo_Response_C)
-     + (((Control_W + Line_Driver_Rx_Sdo_Request_A)
-         / Line_Driver_Rx_Sdo_Request_T)
-        * Line_Driver_Rx_Sdo_Request_C)
-     + (((Control_W + Line_Driver_Tx_Heartbeat_A)
-         / Line_Driver_Tx_Heartbeat_T)
-        * Line_Driver_Tx_Heartbeat_C)
-     + (((Control_W + Board_Probe_A) / Board_Probe_T) * Board_Probe_C);
+     Control_C + Control_B + Protocol_Up (Control_W);
+   pragma Compile_Time_Error (Control_W /= Control_Needs,
+      "control claims a wrong response time");
+   pragma Compile_Time_Error (Control_R > Time'Min (Control_D, Control_T),
+      "control can miss its deadline or overlap");
+   pragma Assert
+     (Control_Needs <= Control_W and then Control_R <= Control_D);
 
-   pragma Compile_Time_Error
-     (0 > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_Needs > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_W > Control_Needs,
-      "control " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Control_J + Control_W) > Control_T,
-      "control " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Control_R > Control_D,
-      "control " & "can miss its deadline");
-   pragma Assert (Control_Needs <= Control_W);
-   pragma Assert (Control_R <= Control_D);
-
-   --  [line.driver_rx.nmt] what can delay it: jobs of the same or higher
-   --  priority
+   --  [line.driver_rx.nmt] what delays it
    Line_Driver_Rx_Nmt_W : constant :=
      Line_Driver_Rx_Nmt_R - Line_Driver_Rx_Nmt_J;
    Line_Driver_Rx_Nmt_Needs : constant :=
-     Line_Driver_Rx_Nmt_C
-     + Line_Driver_Rx_Nmt_B
-     + (((Line_Driver_Rx_Nmt_W + Line_Driver_Rx_Sync_A)
-         / Line_Driver_Rx_Sync_T)
-        * Line_Driver_Rx_Sync_C)
-     + (((Line_Driver_Rx_Nmt_W + Line_Driver_Tx_Tpdo_1_A)
-         / Line_Driver_Tx_Tpdo_1_T)
-        * Line_Driver_Tx_Tpdo_1_C)
-     + (((Line_Driver_Rx_Nmt_W + Line_Driver_Rx_Rpdo_1_A)
-         / Line_Driver_Rx_Rpdo_1_T)
-        * Line_Driver_Rx_Rpdo_1_C)
-     + (((Line_Driver_Rx_Nmt_W + Line_Driver_Tx_Sdo_Response_A)
-         / Line_Driver_Tx_Sdo_Response_T)
-        * Line_Driver_Tx_Sdo_Response_C)
-     + (((Line_Driver_Rx_Nmt_W + Line_Driver_Rx_Sdo_Request_A)
-         / Line_Driver_Rx_Sdo_Request_T)
-        * Line_Driver_Rx_Sdo_Request_C)
-     + (((Line_Driver_Rx_Nmt_W + Line_Driver_Tx_Heartbeat_A)
-         / Line_Driver_Tx_Heartbeat_T)
-        * Line_Driver_Tx_Heartbeat_C)
-     + (((Line_Driver_Rx_Nmt_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
+     Line_Driver_Rx_Nmt_C + Line_Driver_Rx_Nmt_B
+     + Board_Probe_Up (Line_Driver_Rx_Nmt_W)
+     + Line_Driver_Rx_Sync_Rest (Line_Driver_Rx_Nmt_W);
+   pragma Compile_Time_Error
+     (Line_Driver_Rx_Nmt_W /= Line_Driver_Rx_Nmt_Needs,
+      "line.driver_rx.nmt claims a wrong response time");
+   pragma Compile_Time_Error
+     (Line_Driver_Rx_Nmt_R
+      > Time'Min (Line_Driver_Rx_Nmt_D, Line_Driver_Rx_Nmt_T),
+      "line.driver_rx.nmt can miss its deadline or overlap");
+   pragma Assert
+     (Line_Driver_Rx_Nmt_Needs <= Line_Driver_Rx_Nmt_W
+      and then Line_Driver_Rx_Nmt_R <= Line_Driver_Rx_Nmt_D);
 
-   pragma Compile_Time_Error
-     (0 > Line_Driver_Rx_Nmt_W,
-      "line.driver_rx.nmt "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Nmt_Needs > Line_Driver_Rx_Nmt_W,
-      "line.driver_rx.nmt "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Nmt_W > Line_Driver_Rx_Nmt_Needs,
-      "line.driver_rx.nmt " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Rx_Nmt_J + Line_Driver_Rx_Nmt_W) > Line_Driver_Rx_Nmt_T,
-      "line.driver_rx.nmt " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Nmt_R > Line_Driver_Rx_Nmt_D,
-      "line.driver_rx.nmt " & "can miss its deadline");
-   pragma Assert (Line_Driver_Rx_Nmt_Needs <= Line_Driver_Rx_Nmt_W);
-   pragma Assert (Line_Driver_Rx_Nmt_R <= Line_Driver_Rx_Nmt_D);
-
-   --  [line.driver_rx.sync] what can delay it: jobs of the same or higher
-   --  priority
+   --  [line.driver_rx.sync] what delays it
    Line_Driver_Rx_Sync_W : constant :=
      Line_Driver_Rx_Sync_R - Line_Driver_Rx_Sync_J;
    Line_Driver_Rx_Sync_Needs : constant :=
-     Line_Driver_Rx_Sync_C
-     + Line_Driver_Rx_Sync_B
-     + (((Line_Driver_Rx_Sync_W + Line_Driver_Rx_Nmt_A)
-         / Line_Driver_Rx_Nmt_T)
-        * Line_Driver_Rx_Nmt_C)
-     + (((Line_Driver_Rx_Sync_W + Line_Driver_Tx_Tpdo_1_A)
-         / Line_Driver_Tx_Tpdo_1_T)
-        * Line_Driver_Tx_Tpdo_1_C)
-     + (((Line_Driver_Rx_Sync_W + Line_Driver_Rx_Rpdo_1_A)
-         / Line_Driver_Rx_Rpdo_1_T)
-        * Line_Driver_Rx_Rpdo_1_C)
-     + (((Line_Driver_Rx_Sync_W + Line_Driver_Tx_Sdo_Response_A)
-         / Line_Driver_Tx_Sdo_Response_T)
-        * Line_Driver_Tx_Sdo_Response_C)
-     + (((Line_Driver_Rx_Sync_W + Line_Driver_Rx_Sdo_Request_A)
-         / Line_Driver_Rx_Sdo_Request_T)
-        * Line_Driver_Rx_Sdo_Request_C)
-     + (((Line_Driver_Rx_Sync_W + Line_Driver_Tx_Heartbeat_A)
-         / Line_Driver_Tx_Heartbeat_T)
-        * Line_Driver_Tx_Heartbeat_C)
-     + (((Line_Driver_Rx_Sync_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
+     Line_Driver_Rx_Sync_C + Line_Driver_Rx_Sync_B
+     + Line_Driver_Rx_Nmt_Up (Line_Driver_Rx_Sync_W)
+     + Line_Driver_Tx_Tpdo_1_Rest (Line_Driver_Rx_Sync_W);
+   pragma Compile_Time_Error
+     (Line_Driver_Rx_Sync_W /= Line_Driver_Rx_Sync_Needs,
+      "line.driver_rx.sync claims a wrong response time");
+   pragma Compile_Time_Error
+     (Line_Driver_Rx_Sync_R
+      > Time'Min (Line_Driver_Rx_Sync_D, Line_Driver_Rx_Sync_T),
+      "line.driver_rx.sync can miss its deadline or overlap");
+   pragma Assert
+     (Line_Driver_Rx_Sync_Needs <= Line_Driver_Rx_Sync_W
+      and then Line_Driver_Rx_Sync_R <= Line_Driver_Rx_Sync_D);
 
-   pragma Compile_Time_Error
-     (0 > Line_Driver_Rx_Sync_W,
-      "line.driver_rx.sync "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Sync_Needs > Line_Driver_Rx_Sync_W,
-      "line.driver_rx.sync "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Sync_W > Line_Driver_Rx_Sync_Needs,
-      "line.driver_rx.sync " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Rx_Sync_J + Line_Driver_Rx_Sync_W)
-      > Line_Driver_Rx_Sync_T,
-      "line.driver_rx.sync " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Sync_R > Line_Driver_Rx_Sync_D,
-      "line.driver_rx.sync " & "can miss its deadline");
-   pragma Assert (Line_Driver_Rx_Sync_Needs <= Line_Driver_Rx_Sync_W);
-   pragma Assert (Line_Driver_Rx_Sync_R <= Line_Driver_Rx_Sync_D);
-
-   --  [line.driver_tx.tpdo_1] what can delay it: jobs of the same or higher
-   --  priority
+   --  [line.driver_tx.tpdo_1] what delays it
    Line_Driver_Tx_Tpdo_1_W : constant :=
      Line_Driver_Tx_Tpdo_1_R - Line_Driver_Tx_Tpdo_1_J;
    Line_Driver_Tx_Tpdo_1_Needs : constant :=
-     Line_Driver_Tx_Tpdo_1_C
-     + Line_Driver_Tx_Tpdo_1_B
-     + (((Line_Driver_Tx_Tpdo_1_W + Line_Driver_Rx_Nmt_A)
-         / Line_Driver_Rx_Nmt_T)
-        * Line_Driver_Rx_Nmt_C)
-     + (((Line_Driver_Tx_Tpdo_1_W + Line_Driver_Rx_Sync_A)
-         / Line_Driver_Rx_Sync_T)
-        * Line_Driver_Rx_Sync_C)
-     + (((Line_Driver_Tx_Tpdo_1_W + Line_Driver_Rx_Rpdo_1_A)
-         / Line_Driver_Rx_Rpdo_1_T)
-        * Line_Driver_Rx_Rpdo_1_C)
-     + (((Line_Driver_Tx_Tpdo_1_W + Line_Driver_Tx_Sdo_Response_A)
-         / Line_Driver_Tx_Sdo_Response_T)
-        * Line_Driver_Tx_Sdo_Response_C)
-     + (((Line_Driver_Tx_Tpdo_1_W + Line_Driver_Rx_Sdo_Request_A)
-         / Line_Driver_Rx_Sdo_Request_T)
-        * Line_Driver_Rx_Sdo_Request_C)
-     + (((Line_Driver_Tx_Tpdo_1_W + Line_Driver_Tx_Heartbeat_A)
-         / Line_Driver_Tx_Heartbeat_T)
-        * Line_Driver_Tx_Heartbeat_C)
-     + (((Line_Driver_Tx_Tpdo_1_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
+     Line_Driver_Tx_Tpdo_1_C + Line_Driver_Tx_Tpdo_1_B
+     + Line_Driver_Rx_Sync_Up (Line_Driver_Tx_Tpdo_1_W)
+     + Line_Driver_Rx_Rpdo_1_Rest (Line_Driver_Tx_Tpdo_1_W);
+   pragma Compile_Time_Error
+     (Line_Driver_Tx_Tpdo_1_W /= Line_Driver_Tx_Tpdo_1_Needs,
+      "line.driver_tx.tpdo_1 claims a wrong response time");
+   pragma Compile_Time_Error
+     (Line_Driver_Tx_Tpdo_1_R
+      > Time'Min (Line_Driver_Tx_Tpdo_1_D, Line_Driver_Tx_Tpdo_1_T),
+      "line.driver_tx.tpdo_1 can miss its deadline or overlap");
+   pragma Assert
+     (Line_Driver_Tx_Tpdo_1_Needs <= Line_Driver_Tx_Tpdo_1_W
+      and then Line_Driver_Tx_Tpdo_1_R <= Line_Driver_Tx_Tpdo_1_D);
 
-   pragma Compile_Time_Error
-     (0 > Line_Driver_Tx_Tpdo_1_W,
-      "line.driver_tx.tpdo_1 "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Tpdo_1_Needs > Line_Driver_Tx_Tpdo_1_W,
-      "line.driver_tx.tpdo_1 "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Tpdo_1_W > Line_Driver_Tx_Tpdo_1_Needs,
-      "line.driver_tx.tpdo_1 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Tx_Tpdo_1_J + Line_Driver_Tx_Tpdo_1_W)
-      > Line_Driver_Tx_Tpdo_1_T,
-      "line.driver_tx.tpdo_1 " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Tpdo_1_R > Line_Driver_Tx_Tpdo_1_D,
-      "line.driver_tx.tpdo_1 " & "can miss its deadline");
-   pragma Assert (Line_Driver_Tx_Tpdo_1_Needs <= Line_Driver_Tx_Tpdo_1_W);
-   pragma Assert (Line_Driver_Tx_Tpdo_1_R <= Line_Driver_Tx_Tpdo_1_D);
-
-   --  [line.driver_rx.rpdo_1] what can delay it: jobs of the same or higher
-   --  priority
+   --  [line.driver_rx.rpdo_1] what delays it
    Line_Driver_Rx_Rpdo_1_W : constant :=
      Line_Driver_Rx_Rpdo_1_R - Line_Driver_Rx_Rpdo_1_J;
    Line_Driver_Rx_Rpdo_1_Needs : constant :=
-     Line_Driver_Rx_Rpdo_1_C
-     + Line_Driver_Rx_Rpdo_1_B
-     + (((Line_Driver_Rx_Rpdo_1_W + Line_Driver_Rx_Nmt_A)
-         / Line_Driver_Rx_Nmt_T)
-        * Line_Driver_Rx_Nmt_C)
-     + (((Line_Driver_Rx_Rpdo_1_W + Line_Driver_Rx_Sync_A)
-         / Line_Driver_Rx_Sync_T)
-        * Line_Driver_Rx_Sync_C)
-     + (((Line_Driver_Rx_Rpdo_1_W + Line_Driver_Tx_Tpdo_1_A)
-         / Line_Driver_Tx_Tpdo_1_T)
-        * Line_Driver_Tx_Tpdo_1_C)
-     + (((Line_Driver_Rx_Rpdo_1_W + Line_Driver_Tx_Sdo_Response_A)
-         / Line_Driver_Tx_Sdo_Response_T)
-        * Line_Driver_Tx_Sdo_Response_C)
-     + (((Line_Driver_Rx_Rpdo_1_W + Line_Driver_Rx_Sdo_Request_A)
-         / Line_Driver_Rx_Sdo_Request_T)
-        * Line_Driver_Rx_Sdo_Request_C)
-     + (((Line_Driver_Rx_Rpdo_1_W + Line_Driver_Tx_Heartbeat_A)
-         / Line_Driver_Tx_Heartbeat_T)
-        * Line_Driver_Tx_Heartbeat_C)
-     + (((Line_Driver_Rx_Rpdo_1_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
+     Line_Driver_Rx_Rpdo_1_C + Line_Driver_Rx_Rpdo_1_B
+     + Line_Driver_Tx_Tpdo_1_Up (Line_Driver_Rx_Rpdo_1_W)
+     + Line_Driver_Tx_Sdo_Response_Rest (Line_Driver_Rx_Rpdo_1_W);
+   pragma Compile_Time_Error
+     (Line_Driver_Rx_Rpdo_1_W /= Line_Driver_Rx_Rpdo_1_Needs,
+      "line.driver_rx.rpdo_1 claims a wrong response time");
+   pragma Compile_Time_Error
+     (Line_Driver_Rx_Rpdo_1_R
+      > Time'Min (Line_Driver_Rx_Rpdo_1_D, Line_Driver_Rx_Rpdo_1_T),
+      "line.driver_rx.rpdo_1 can miss its deadline or overlap");
+   pragma Assert
+     (Line_Driver_Rx_Rpdo_1_Needs <= Line_Driver_Rx_Rpdo_1_W
+      and then Line_Driver_Rx_Rpdo_1_R <= Line_Driver_Rx_Rpdo_1_D);
 
-   pragma Compile_Time_Error
-     (0 > Line_Driver_Rx_Rpdo_1_W,
-      "line.driver_rx.rpdo_1 "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Rpdo_1_Needs > Line_Driver_Rx_Rpdo_1_W,
-      "line.driver_rx.rpdo_1 "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Rpdo_1_W > Line_Driver_Rx_Rpdo_1_Needs,
-      "line.driver_rx.rpdo_1 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Rx_Rpdo_1_J + Line_Driver_Rx_Rpdo_1_W)
-      > Line_Driver_Rx_Rpdo_1_T,
-      "line.driver_rx.rpdo_1 " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Rpdo_1_R > Line_Driver_Rx_Rpdo_1_D,
-      "line.driver_rx.rpdo_1 " & "can miss its deadline");
-   pragma Assert (Line_Driver_Rx_Rpdo_1_Needs <= Line_Driver_Rx_Rpdo_1_W);
-   pragma Assert (Line_Driver_Rx_Rpdo_1_R <= Line_Driver_Rx_Rpdo_1_D);
-
-   --  [line.driver_tx.sdo_response] what can delay it: jobs of the same or
-   --  higher priority
+   --  [line.driver_tx.sdo_response] what delays it
    Line_Driver_Tx_Sdo_Response_W : constant :=
      Line_Driver_Tx_Sdo_Response_R - Line_Driver_Tx_Sdo_Response_J;
    Line_Driver_Tx_Sdo_Response_Needs : constant :=
-     Line_Driver_Tx_Sdo_Response_C
-     + Line_Driver_Tx_Sdo_Response_B
-     + (((Line_Driver_Tx_Sdo_Response_W + Line_Driver_Rx_Nmt_A)
-         / Line_Driver_Rx_Nmt_T)
-        * Line_Driver_Rx_Nmt_C)
-     + (((Line_Driver_Tx_Sdo_Response_W + Line_Driver_Rx_Sync_A)
-         / Line_Driver_Rx_Sync_T)
-        * Line_Driver_Rx_Sync_C)
-     + (((Line_Driver_Tx_Sdo_Response_W + Line_Driver_Tx_Tpdo_1_A)
-         / Line_Driver_Tx_Tpdo_1_T)
-        * Line_Driver_Tx_Tpdo_1_C)
-     + (((Line_Driver_Tx_Sdo_Response_W + Line_Driver_Rx_Rpdo_1_A)
-         / Line_Driver_Rx_Rpdo_1_T)
-        * Line_Driver_Rx_Rpdo_1_C)
-     + (((Line_Driver_Tx_Sdo_Response_W + Line_Driver_Rx_Sdo_Request_A)
-         / Line_Driver_Rx_Sdo_Request_T)
-        * Line_Driver_Rx_Sdo_Request_C)
-     + (((Line_Driver_Tx_Sdo_Response_W + Line_Driver_Tx_Heartbeat_A)
-         / Line_Driver_Tx_Heartbeat_T)
-        * Line_Driver_Tx_Heartbeat_C)
-     + (((Line_Driver_Tx_Sdo_Response_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
-
+     Line_Driver_Tx_Sdo_Response_C + Line_Driver_Tx_Sdo_Response_B
+     + Line_Driver_Rx_Rpdo_1_Up (Line_Driver_Tx_Sdo_Response_W)
+     + Line_Driver_Rx_Sdo_Request_Rest (Line_Driver_Tx_Sdo_Response_W);
    pragma Compile_Time_Error
-     (0 > Line_Driver_Tx_Sdo_Response_W,
-      "line.driver_tx.sdo_response "
-      & "can take longer than its claimed response time");
+     (Line_Driver_Tx_Sdo_Response_W /= Line_Driver_Tx_Sdo_Response_Needs,
+      "line.driver_tx.sdo_response claims a wrong response time");
    pragma Compile_Time_Error
-     (Line_Driver_Tx_Sdo_Response_Needs > Line_Driver_Tx_Sdo_Response_W,
-      "line.driver_tx.sdo_response "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Sdo_Response_W > Line_Driver_Tx_Sdo_Response_Needs,
-      "line.driver_tx.sdo_response "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Tx_Sdo_Response_J + Line_Driver_Tx_Sdo_Response_W)
-      > Line_Driver_Tx_Sdo_Response_T,
-      "line.driver_tx.sdo_response "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Sdo_Response_R > Line_Driver_Tx_Sdo_Response_D,
-      "line.driver_tx.sdo_response " & "can miss its deadline");
+     (Line_Driver_Tx_Sdo_Response_R
+      > Time'Min (Line_Driver_Tx_Sdo_Response_D,
+           Line_Driver_Tx_Sdo_Response_T),
+      "line.driver_tx.sdo_response can miss its deadline or overlap");
    pragma Assert
-     (Line_Driver_Tx_Sdo_Response_Needs <= Line_Driver_Tx_Sdo_Response_W);
-   pragma Assert
-     (Line_Driver_Tx_Sdo_Response_R <= Line_Driver_Tx_Sdo_Response_D);
+     (Line_Driver_Tx_Sdo_Response_Needs <= Line_Driver_Tx_Sdo_Response_W
+      and then Line_Driver_Tx_Sdo_Response_R
+        <= Line_Driver_Tx_Sdo_Response_D);
 
-   --  [line.driver_rx.sdo_request] what can delay it: jobs of the same or
-   --  higher priority
+   --  [line.driver_rx.sdo_request] what delays it
    Line_Driver_Rx_Sdo_Request_W : constant :=
      Line_Driver_Rx_Sdo_Request_R - Line_Driver_Rx_Sdo_Request_J;
    Line_Driver_Rx_Sdo_Request_Needs : constant :=
-     Line_Driver_Rx_Sdo_Request_C
-     + Line_Driver_Rx_Sdo_Request_B
-     + (((Line_Driver_Rx_Sdo_Request_W + Line_Driver_Rx_Nmt_A)
-         / Line_Driver_Rx_Nmt_T)
-        * Line_Driver_Rx_Nmt_C)
-     + (((Line_Driver_Rx_Sdo_Request_W + Line_Driver_Rx_Sync_A)
-         / Line_Driver_Rx_Sync_T)
-        * Line_Driver_Rx_Sync_C)
-     + (((Line_Driver_Rx_Sdo_Request_W + Line_Driver_Tx_Tpdo_1_A)
-         / Line_Driver_Tx_Tpdo_1_T)
-        * Line_Driver_Tx_Tpdo_1_C)
-     + (((Line_Driver_Rx_Sdo_Request_W + Line_Driver_Rx_Rpdo_1_A)
-         / Line_Driver_Rx_Rpdo_1_T)
-        * Line_Driver_Rx_Rpdo_1_C)
-     + (((Line_Driver_Rx_Sdo_Request_W + Line_Driver_Tx_Sdo_Response_A)
-         / Line_Driver_Tx_Sdo_Response_T)
-        * Line_Driver_Tx_Sdo_Response_C)
-     + (((Line_Driver_Rx_Sdo_Request_W + Line_Driver_Tx_Heartbeat_A)
-         / Line_Driver_Tx_Heartbeat_T)
-        * Line_Driver_Tx_Heartbeat_C)
-     + (((Line_Driver_Rx_Sdo_Request_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
-
+     Line_Driver_Rx_Sdo_Request_C + Line_Driver_Rx_Sdo_Request_B
+     + Line_Driver_Tx_Sdo_Response_Up (Line_Driver_Rx_Sdo_Request_W)
+     + Line_Driver_Tx_Heartbeat_Rest (Line_Driver_Rx_Sdo_Request_W);
    pragma Compile_Time_Error
-     (0 > Line_Driver_Rx_Sdo_Request_W,
-      "line.driver_rx.sdo_request "
-      & "can take longer than its claimed response time");
+     (Line_Driver_Rx_Sdo_Request_W /= Line_Driver_Rx_Sdo_Request_Needs,
+      "line.driver_rx.sdo_request claims a wrong response time");
    pragma Compile_Time_Error
-     (Line_Driver_Rx_Sdo_Request_Needs > Line_Driver_Rx_Sdo_Request_W,
-      "line.driver_rx.sdo_request "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Sdo_Request_W > Line_Driver_Rx_Sdo_Request_Needs,
-      "line.driver_rx.sdo_request " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Rx_Sdo_Request_J + Line_Driver_Rx_Sdo_Request_W)
-      > Line_Driver_Rx_Sdo_Request_T,
-      "line.driver_rx.sdo_request "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Sdo_Request_R > Line_Driver_Rx_Sdo_Request_D,
-      "line.driver_rx.sdo_request " & "can miss its deadline");
+     (Line_Driver_Rx_Sdo_Request_R
+      > Time'Min (Line_Driver_Rx_Sdo_Request_D,
+           Line_Driver_Rx_Sdo_Request_T),
+      "line.driver_rx.sdo_request can miss its deadline or overlap");
    pragma Assert
-     (Line_Driver_Rx_Sdo_Request_Needs <= Line_Driver_Rx_Sdo_Request_W);
-   pragma Assert
-     (Line_Driver_Rx_Sdo_Request_R <= Line_Driver_Rx_Sdo_Request_D);
+     (Line_Driver_Rx_Sdo_Request_Needs <= Line_Driver_Rx_Sdo_Request_W
+      and then Line_Driver_Rx_Sdo_Request_R <= Line_Driver_Rx_Sdo_Request_D);
 
-   --  [line.driver_tx.heartbeat] what can delay it: jobs of the same or
-   --  higher priority
+   --  [line.driver_tx.heartbeat] what delays it
    Line_Driver_Tx_Heartbeat_W : constant :=
      Line_Driver_Tx_Heartbeat_R - Line_Driver_Tx_Heartbeat_J;
    Line_Driver_Tx_Heartbeat_Needs : constant :=
-     Line_Driver_Tx_Heartbeat_C
-     + Line_Driver_Tx_Heartbeat_B
-     + (((Line_Driver_Tx_Heartbeat_W + Line_Driver_Rx_Nmt_A)
-         / Line_Driver_Rx_Nmt_T)
-        * Line_Driver_Rx_Nmt_C)
-     + (((Line_Driver_Tx_Heartbeat_W + Line_Driver_Rx_Sync_A)
-         / Line_Driver_Rx_Sync_T)
-        * Line_Driver_Rx_Sync_C)
-     + (((Line_Driver_Tx_Heartbeat_W + Line_Driver_Tx_Tpdo_1_A)
-         / Line_Driver_Tx_Tpdo_1_T)
-        * Line_Driver_Tx_Tpdo_1_C)
-     + (((Line_Driver_Tx_Heartbeat_W + Line_Driver_Rx_Rpdo_1_A)
-         / Line_Driver_Rx_Rpdo_1_T)
-        * Line_Driver_Rx_Rpdo_1_C)
-     + (((Line_Driver_Tx_Heartbeat_W + Line_Driver_Tx_Sdo_Response_A)
-         / Line_Driver_Tx_Sdo_Response_T)
-        * Line_Driver_Tx_Sdo_Response_C)
-     + (((Line_Driver_Tx_Heartbeat_W + Line_Driver_Rx_Sdo_Request_A)
-         / Line_Driver_Rx_Sdo_Request_T)
-        * Line_Driver_Rx_Sdo_Request_C)
-     + (((Line_Driver_Tx_Heartbeat_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
-
+     Line_Driver_Tx_Heartbeat_C + Line_Driver_Tx_Heartbeat_B
+     + Line_Driver_Rx_Sdo_Request_Up (Line_Driver_Tx_Heartbeat_W);
    pragma Compile_Time_Error
-     (0 > Line_Driver_Tx_Heartbeat_W,
-      "line.driver_tx.heartbeat "
-      & "can take longer than its claimed response time");
+     (Line_Driver_Tx_Heartbeat_W /= Line_Driver_Tx_Heartbeat_Needs,
+      "line.driver_tx.heartbeat claims a wrong response time");
    pragma Compile_Time_Error
-     (Line_Driver_Tx_Heartbeat_Needs > Line_Driver_Tx_Heartbeat_W,
-      "line.driver_tx.heartbeat "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Heartbeat_W > Line_Driver_Tx_Heartbeat_Needs,
-      "line.driver_tx.heartbeat " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Tx_Heartbeat_J + Line_Driver_Tx_Heartbeat_W)
-      > Line_Driver_Tx_Heartbeat_T,
-      "line.driver_tx.heartbeat "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Heartbeat_R > Line_Driver_Tx_Heartbeat_D,
-      "line.driver_tx.heartbeat " & "can miss its deadline");
+     (Line_Driver_Tx_Heartbeat_R
+      > Time'Min (Line_Driver_Tx_Heartbeat_D, Line_Driver_Tx_Heartbeat_T),
+      "line.driver_tx.heartbeat can miss its deadline or overlap");
    pragma Assert
-     (Line_Driver_Tx_Heartbeat_Needs <= Line_Driver_Tx_Heartbeat_W);
-   pragma Assert (Line_Driver_Tx_Heartbeat_R <= Line_Driver_Tx_Heartbeat_D);
+     (Line_Driver_Tx_Heartbeat_Needs <= Line_Driver_Tx_Heartbeat_W
+      and then Line_Driver_Tx_Heartbeat_R <= Line_Driver_Tx_Heartbeat_D);
 
-   --  [board.probe] what can delay it: jobs of the same or higher priority
+   --  [board.probe] what delays it
    Board_Probe_W : constant := Board_Probe_R - Board_Probe_J;
    Board_Probe_Needs : constant := Board_Probe_C + Board_Probe_B;
+   pragma Compile_Time_Error (Board_Probe_W /= Board_Probe_Needs,
+      "board.probe claims a wrong response time");
+   pragma Compile_Time_Error
+     (Board_Probe_R > Time'Min (Board_Probe_D, Board_Probe_T),
+      "board.probe can miss its deadline or overlap");
+   pragma Assert
+     (Board_Probe_Needs <= Board_Probe_W
+      and then Board_Probe_R <= Board_Probe_D);
+
+   function Line_Nmt_Up (W : Window) return Time is
+     (Demand (W, Line_Nmt_J, Line_Nmt_T, Line_Nmt_C)) with Static;
+   function Line_Sync_Up (W : Window) return Time is
+     (Demand (W, Line_Sync_J, Line_Sync_T, Line_Sync_C, Line_Nmt_Up (W)))
+   with Static;
+   function Line_Tpdo_1_Up (W : Window) return Time is
+     (Demand (W, Line_Tpdo_1_R - Line_Tpdo_1_C, Line_Tpdo_1_T,
+         Line_Tpdo_1_C, Line_Sync_Up (W))) with Static;
+   function Line_Rpdo_1_Up (W : Window) return Time is
+     (Demand (W, Line_Rpdo_1_J, Line_Rpdo_1_T, Line_Rpdo_1_C,
+         Line_Tpdo_1_Up (W))) with Static;
+   function Line_Sdo_Response_Up (W : Window) return Time is
+     (Demand (W, Line_Sdo_Response_R - Line_Sdo_Response_C,
+         Line_Sdo_Response_T, Line_Sdo_Response_C, Line_Rpdo_1_Up (W)))
+   with Static;
+   function Line_Sdo_Request_Up (W : Window) return Time is
+     (Demand (W, Line_Sdo_Request_J, Line_Sdo_Request_T, Line_Sdo_Request_C,
+         Line_Sdo_Response_Up (W))) with Static;
+   function Line_Heartbeat_Up (W : Window) return Time is
+     (Demand (W, Line_Heartbeat_R - Line_Heartbeat_C, Line_Heartbeat_T,
+         Line_Heartbeat_C, Line_Sdo_Request_Up (W))) with Static;
+   function Line_Nmt_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Nmt_J, Line_Nmt_T, Line_Nmt_C)) with Static;
+   function Line_Sync_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Sync_J, Line_Sync_T, Line_Sync_C,
+         Line_Nmt_Up_Board (W))) with Static;
+   function Line_Rpdo_1_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Rpdo_1_J, Line_Rpdo_1_T, Line_Rpdo_1_C,
+         Line_Sync_Up_Board (W))) with Static;
+   function Line_Sdo_Request_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Sdo_Request_J, Line_Sdo_Request_T, Line_Sdo_Request_C,
+         Line_Rpdo_1_Up_Board (W))) with Static;
+   function Line_Tpdo_1_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Tpdo_1_J, Line_Tpdo_1_T, Line_Tpdo_1_C,
+         Line_Sdo_Request_Up_Board (W))) with Static;
+   function Line_Sdo_Response_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Sdo_Response_J, Line_Sdo_Response_T,
+         Line_Sdo_Response_C, Line_Tpdo_1_Up_Board (W))) with Static;
+   function Line_Heartbeat_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Heartbeat_J, Line_Heartbeat_T, Line_Heartbeat_C,
+         Line_Sdo_Response_Up_Board (W))) with Static;
+   function Line_Heartbeat_Rest_Board (W : Window) return Time is
+     (Demand (W, Line_Heartbeat_J, Line_Heartbeat_T, Line_Heartbeat_C))
+   with Static;
+   function Line_Sdo_Response_Rest_Board (W : Window) return Time is
+     (Demand (W, Line_Sdo_Response_J, Line_Sdo_Response_T,
+         Line_Sdo_Response_C, Line_Heartbeat_Rest_Board (W))) with Static;
 
    pragma Compile_Time_Error
-     (0 > Board_Probe_W,
-      "board.probe " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Board_Probe_Needs > Board_Probe_W,
-      "board.probe " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Board_Probe_W > Board_Probe_Needs,
-      "board.probe " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Board_Probe_J + Board_Probe_W) > Board_Probe_T,
-      "board.probe " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Board_Probe_R > Board_Probe_D,
-      "board.probe " & "can miss its deadline");
-   pragma Assert (Board_Probe_Needs <= Board_Probe_W);
-   pragma Assert (Board_Probe_R <= Board_Probe_D);
+     (Line_Nmt_Id >= Line_Sync_Id
+      or else Line_Sync_Id >= Line_Tpdo_1_Id
+      or else Line_Tpdo_1_Id >= Line_Rpdo_1_Id
+      or else Line_Rpdo_1_Id >= Line_Sdo_Response_Id
+      or else Line_Sdo_Response_Id >= Line_Sdo_Request_Id
+      or else Line_Sdo_Request_Id >= Line_Heartbeat_Id,
+      "line must keep the order of its identifiers");
 
-   --  [line.nmt] what can delay it: frames that go before it, and one of
-   --  those that go behind it, the longest of which counts once
+   --  [line.nmt] what delays it
    Line_Nmt_Busy : constant := 420_000;
    Line_Nmt_Busy_Needs : constant :=
-     Line_Sdo_Response_C
-     + (((Line_Nmt_Busy + Line_Nmt_A) / Line_Nmt_T) * Line_Nmt_C);
-
+     Line_Sdo_Response_C + Line_Nmt_Up (Line_Nmt_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Nmt_Busy,
-      "line.nmt " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Nmt_Busy_Needs > Line_Nmt_Busy,
-      "line.nmt " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Nmt_Busy > Line_Nmt_Busy_Needs,
-      "line.nmt " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Nmt_Busy + Line_Nmt_J) > Line_Nmt_T,
-      "line.nmt " & "can come again before it is sent");
-
-   Line_Nmt_W : constant := 270_000;
+     (Line_Nmt_Busy < 1 or else Line_Nmt_Busy /= Line_Nmt_Busy_Needs,
+      "line.nmt claims a wrong busy period");
+   pragma Compile_Time_Error (Line_Nmt_Busy + Line_Nmt_J > Line_Nmt_T,
+      "line.nmt can come again before it is sent");
+   Line_Nmt_W : constant := Line_Nmt_R - Line_Nmt_J - Line_Nmt_C;
    Line_Nmt_Needs : constant := Line_Sdo_Response_C;
-
-   pragma Compile_Time_Error
-     (0 > Line_Nmt_W,
-      "line.nmt " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Nmt_Needs > Line_Nmt_W,
-      "line.nmt " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Nmt_W > Line_Nmt_Needs,
-      "line.nmt " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Nmt_J + Line_Nmt_W + Line_Nmt_C) > Line_Nmt_R,
-      "line.nmt " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Nmt_R > (Line_Nmt_J + Line_Nmt_W + Line_Nmt_C),
-      "line.nmt " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Nmt_R > Line_Nmt_D,
-      "line.nmt " & "can miss its deadline");
+   pragma Compile_Time_Error (Line_Nmt_W /= Line_Nmt_Needs,
+      "line.nmt claims a wrong response time");
+   pragma Compile_Time_Error (Line_Nmt_R > Line_Nmt_D,
+      "line.nmt can miss its deadline");
    pragma Assert (Line_Nmt_R <= Line_Nmt_D);
 
-   --  [line.sync] what can delay it: frames that go before it, and one of
-   --  those that go behind it, the longest of which counts once
+   --  [line.sync] what delays it
    Line_Sync_Busy : constant := 550_000;
    Line_Sync_Busy_Needs : constant :=
-     Line_Sdo_Response_C
-     + (((Line_Sync_Busy + Line_Nmt_A) / Line_Nmt_T) * Line_Nmt_C)
-     + (((Line_Sync_Busy + Line_Sync_A) / Line_Sync_T) * Line_Sync_C);
-
+     Line_Sdo_Response_C + Line_Sync_Up (Line_Sync_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Sync_Busy,
-      "line.sync " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Sync_Busy_Needs > Line_Sync_Busy,
-      "line.sync " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Sync_Busy > Line_Sync_Busy_Needs,
-      "line.sync " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Sync_Busy + Line_Sync_J) > Line_Sync_T,
-      "line.sync " & "can come again before it is sent");
-
-   Line_Sync_W : constant := 420_000;
+     (Line_Sync_Busy < 1 or else Line_Sync_Busy /= Line_Sync_Busy_Needs,
+      "line.sync claims a wrong busy period");
+   pragma Compile_Time_Error (Line_Sync_Busy + Line_Sync_J > Line_Sync_T,
+      "line.sync can come again before it is sent");
+   Line_Sync_W : constant := Line_Sync_R - Line_Sync_J - Line_Sync_C;
    Line_Sync_Needs : constant :=
-     Line_Sdo_Response_C
-     + (((Line_Sync_W + Line_Bit + Line_Nmt_A) / Line_Nmt_T) * Line_Nmt_C);
-
-   pragma Compile_Time_Error
-     (0 > Line_Sync_W,
-      "line.sync " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Sync_Needs > Line_Sync_W,
-      "line.sync " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Sync_W > Line_Sync_Needs,
-      "line.sync " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Sync_J + Line_Sync_W + Line_Sync_C) > Line_Sync_R,
-      "line.sync " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Sync_R > (Line_Sync_J + Line_Sync_W + Line_Sync_C),
-      "line.sync " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Sync_R > Line_Sync_D,
-      "line.sync " & "can miss its deadline");
+     Line_Sdo_Response_C + Line_Nmt_Up (Line_Sync_W + Line_Bit);
+   pragma Compile_Time_Error (Line_Sync_W /= Line_Sync_Needs,
+      "line.sync claims a wrong response time");
+   pragma Compile_Time_Error (Line_Sync_R > Line_Sync_D,
+      "line.sync can miss its deadline");
    pragma Assert (Line_Sync_R <= Line_Sync_D);
 
-   --  [line.tpdo_1] what can delay it: frames that go before it
+   --  [line.tpdo_1] what delays it
    Line_Tpdo_1_Busy : constant := 1_270_000;
    Line_Tpdo_1_Busy_Needs : constant :=
-     0
-     + (((Line_Tpdo_1_Busy + Line_Nmt_A) / Line_Nmt_T) * Line_Nmt_C)
-     + (((Line_Tpdo_1_Busy + Line_Sync_A) / Line_Sync_T) * Line_Sync_C)
-     + (((Line_Tpdo_1_Busy + Line_Tpdo_1_A) / Line_Tpdo_1_T) * Line_Tpdo_1_C)
-     + (((Line_Tpdo_1_Busy + Line_Rpdo_1_A) / Line_Rpdo_1_T) * Line_Rpdo_1_C)
-     + (((Line_Tpdo_1_Busy + Line_Sdo_Response_A) / Line_Sdo_Response_T)
-        * Line_Sdo_Response_C)
-     + (((Line_Tpdo_1_Busy + Line_Sdo_Request_A) / Line_Sdo_Request_T)
-        * Line_Sdo_Request_C)
-     + (((Line_Tpdo_1_Busy + Line_Heartbeat_A) / Line_Heartbeat_T)
-        * Line_Heartbeat_C);
-
+     Line_Heartbeat_Up_Board (Line_Tpdo_1_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Tpdo_1_Busy,
-      "line.tpdo_1 " & "can keep others waiting for longer than claimed");
+     (Line_Tpdo_1_Busy < 1
+      or else Line_Tpdo_1_Busy /= Line_Tpdo_1_Busy_Needs,
+      "line.tpdo_1 claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Tpdo_1_Busy_Needs > Line_Tpdo_1_Busy,
-      "line.tpdo_1 " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Tpdo_1_Busy > Line_Tpdo_1_Busy_Needs,
-      "line.tpdo_1 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Tpdo_1_Busy + Line_Tpdo_1_J) > Line_Tpdo_1_T,
-      "line.tpdo_1 " & "can come again before it is sent");
-
-   Line_Tpdo_1_W : constant := 1_100_000;
+     (Line_Tpdo_1_Busy + Line_Tpdo_1_J > Line_Tpdo_1_T,
+      "line.tpdo_1 can come again before it is sent");
+   Line_Tpdo_1_W : constant :=
+     Line_Tpdo_1_R - Line_Tpdo_1_J - Line_Tpdo_1_C;
    Line_Tpdo_1_Needs : constant :=
-     0
-     + (((Line_Tpdo_1_W + Line_Bit + Line_Nmt_A) / Line_Nmt_T) * Line_Nmt_C)
-     + (((Line_Tpdo_1_W + Line_Bit + Line_Sync_A) / Line_Sync_T)
-        * Line_Sync_C)
-     + (((Line_Tpdo_1_W + Line_Bit + Line_Rpdo_1_A) / Line_Rpdo_1_T)
-        * Line_Rpdo_1_C)
-     + (((Line_Tpdo_1_W + Line_Bit + Line_Sdo_Response_A)
-         / Line_Sdo_Response_T)
-        * Line_Sdo_Response_C)
-     + (((Line_Tpdo_1_W + Line_Bit + Line_Sdo_Request_A)
-         / Line_Sdo_Request_T)
-        * Line_Sdo_Request_C)
-     + (((Line_Tpdo_1_W + Line_Bit + Line_Heartbeat_A) / Line_Heartbeat_T)
-        * Line_Heartbeat_C);
-
-   pragma Compile_Time_Error
-     (0 > Line_Tpdo_1_W,
-      "line.tpdo_1 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Tpdo_1_Needs > Line_Tpdo_1_W,
-      "line.tpdo_1 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Tpdo_1_W > Line_Tpdo_1_Needs,
-      "line.tpdo_1 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Tpdo_1_J + Line_Tpdo_1_W + Line_Tpdo_1_C) > Line_Tpdo_1_R,
-      "line.tpdo_1 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Tpdo_1_R > (Line_Tpdo_1_J + Line_Tpdo_1_W + Line_Tpdo_1_C),
-      "line.tpdo_1 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Tpdo_1_R > Line_Tpdo_1_D,
-      "line.tpdo_1 " & "can miss its deadline");
+     Line_Sdo_Request_Up_Board (Line_Tpdo_1_W + Line_Bit)
+     + Line_Sdo_Response_Rest_Board (Line_Tpdo_1_W + Line_Bit);
+   pragma Compile_Time_Error (Line_Tpdo_1_W /= Line_Tpdo_1_Needs,
+      "line.tpdo_1 claims a wrong response time");
+   pragma Compile_Time_Error (Line_Tpdo_1_R > Line_Tpdo_1_D,
+      "line.tpdo_1 can miss its deadline");
    pragma Assert (Line_Tpdo_1_R <= Line_Tpdo_1_D);
 
-   --  [line.rpdo_1] what can delay it: frames that go before it, and one of
-   --  those that go behind it, the longest of which counts once
+   --  [line.rpdo_1] what delays it
    Line_Rpdo_1_Busy : constant := 870_000;
    Line_Rpdo_1_Busy_Needs : constant :=
-     Line_Sdo_Response_C
-     + (((Line_Rpdo_1_Busy + Line_Nmt_A) / Line_Nmt_T) * Line_Nmt_C)
-     + (((Line_Rpdo_1_Busy + Line_Sync_A) / Line_Sync_T) * Line_Sync_C)
-     + (((Line_Rpdo_1_Busy
-          + (Line_Tpdo_1_R - Line_Tpdo_1_C)
-          + (Line_Tpdo_1_T - 1))
-         / Line_Tpdo_1_T)
-        * Line_Tpdo_1_C)
-     + (((Line_Rpdo_1_Busy + Line_Rpdo_1_A) / Line_Rpdo_1_T) * Line_Rpdo_1_C);
-
+     Line_Sdo_Response_C + Line_Rpdo_1_Up (Line_Rpdo_1_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Rpdo_1_Busy,
-      "line.rpdo_1 " & "can keep others waiting for longer than claimed");
+     (Line_Rpdo_1_Busy < 1
+      or else Line_Rpdo_1_Busy /= Line_Rpdo_1_Busy_Needs,
+      "line.rpdo_1 claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Rpdo_1_Busy_Needs > Line_Rpdo_1_Busy,
-      "line.rpdo_1 " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Rpdo_1_Busy > Line_Rpdo_1_Busy_Needs,
-      "line.rpdo_1 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Rpdo_1_Busy + Line_Rpdo_1_J) > Line_Rpdo_1_T,
-      "line.rpdo_1 " & "can come again before it is sent");
-
-   Line_Rpdo_1_W : constant := 720_000;
+     (Line_Rpdo_1_Busy + Line_Rpdo_1_J > Line_Rpdo_1_T,
+      "line.rpdo_1 can come again before it is sent");
+   Line_Rpdo_1_W : constant :=
+     Line_Rpdo_1_R - Line_Rpdo_1_J - Line_Rpdo_1_C;
    Line_Rpdo_1_Needs : constant :=
-     Line_Sdo_Response_C
-     + (((Line_Rpdo_1_W + Line_Bit + Line_Nmt_A) / Line_Nmt_T) * Line_Nmt_C)
-     + (((Line_Rpdo_1_W + Line_Bit + Line_Sync_A) / Line_Sync_T)
-        * Line_Sync_C)
-     + (((Line_Rpdo_1_W
-          + Line_Bit
-          + (Line_Tpdo_1_R - Line_Tpdo_1_C)
-          + (Line_Tpdo_1_T - 1))
-         / Line_Tpdo_1_T)
-        * Line_Tpdo_1_C);
-
-   pragma Compile_Time_Error
-     (0 > Line_Rpdo_1_W,
-      "line.rpdo_1 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Rpdo_1_Needs > Line_Rpdo_1_W,
-      "line.rpdo_1 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Rpdo_1_W > Line_Rpdo_1_Needs,
-      "line.rpdo_1 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Rpdo_1_J + Line_Rpdo_1_W + Line_Rpdo_1_C) > Line_Rpdo_1_R,
-      "line.rpdo_1 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Rpdo_1_R > (Line_Rpdo_1_J + Line_Rpdo_1_W + Line_Rpdo_1_C),
-      "line.rpdo_1 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Rpdo_1_R > Line_Rpdo_1_D,
-      "line.rpdo_1 " & "can miss its deadline");
+     Line_Sdo_Response_C + Line_Tpdo_1_Up (Line_Rpdo_1_W + Line_Bit);
+   pragma Compile_Time_Error (Line_Rpdo_1_W /= Line_Rpdo_1_Needs,
+      "line.rpdo_1 claims a wrong response time");
+   pragma Compile_Time_Error (Line_Rpdo_1_R > Line_Rpdo_1_D,
+      "line.rpdo_1 can miss its deadline");
    pragma Assert (Line_Rpdo_1_R <= Line_Rpdo_1_D);
 
-   --  [line.sdo_response] what can delay it: frames that go before it
+   --  [line.sdo_response] what delays it
    Line_Sdo_Response_Busy : constant := 1_270_000;
    Line_Sdo_Response_Busy_Needs : constant :=
-     0
-     + (((Line_Sdo_Response_Busy + Line_Nmt_A) / Line_Nmt_T) * Line_Nmt_C)
-     + (((Line_Sdo_Response_Busy + Line_Sync_A) / Line_Sync_T) * Line_Sync_C)
-     + (((Line_Sdo_Response_Busy + Line_Tpdo_1_A) / Line_Tpdo_1_T)
-        * Line_Tpdo_1_C)
-     + (((Line_Sdo_Response_Busy + Line_Rpdo_1_A) / Line_Rpdo_1_T)
-        * Line_Rpdo_1_C)
-     + (((Line_Sdo_Response_Busy + Line_Sdo_Response_A)
-         / Line_Sdo_Response_T)
-        * Line_Sdo_Response_C)
-     + (((Line_Sdo_Response_Busy + Line_Sdo_Request_A) / Line_Sdo_Request_T)
-        * Line_Sdo_Request_C)
-     + (((Line_Sdo_Response_Busy + Line_Heartbeat_A) / Line_Heartbeat_T)
-        * Line_Heartbeat_C);
-
+     Line_Heartbeat_Up_Board (Line_Sdo_Response_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Sdo_Response_Busy,
-      "line.sdo_response "
-      & "can keep others waiting for longer than claimed");
+     (Line_Sdo_Response_Busy < 1
+      or else Line_Sdo_Response_Busy /= Line_Sdo_Response_Busy_Needs,
+      "line.sdo_response claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Sdo_Response_Busy_Needs > Line_Sdo_Response_Busy,
-      "line.sdo_response "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Sdo_Response_Busy > Line_Sdo_Response_Busy_Needs,
-      "line.sdo_response " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Sdo_Response_Busy + Line_Sdo_Response_J) > Line_Sdo_Response_T,
-      "line.sdo_response " & "can come again before it is sent");
-
-   Line_Sdo_Response_W : constant := 1_000_000;
+     (Line_Sdo_Response_Busy + Line_Sdo_Response_J > Line_Sdo_Response_T,
+      "line.sdo_response can come again before it is sent");
+   Line_Sdo_Response_W : constant :=
+     Line_Sdo_Response_R - Line_Sdo_Response_J - Line_Sdo_Response_C;
    Line_Sdo_Response_Needs : constant :=
-     0
-     + (((Line_Sdo_Response_W + Line_Bit + Line_Nmt_A) / Line_Nmt_T)
-        * Line_Nmt_C)
-     + (((Line_Sdo_Response_W + Line_Bit + Line_Sync_A) / Line_Sync_T)
-        * Line_Sync_C)
-     + (((Line_Sdo_Response_W + Line_Bit + Line_Tpdo_1_A) / Line_Tpdo_1_T)
-        * Line_Tpdo_1_C)
-     + (((Line_Sdo_Response_W + Line_Bit + Line_Rpdo_1_A) / Line_Rpdo_1_T)
-        * Line_Rpdo_1_C)
-     + (((Line_Sdo_Response_W + Line_Bit + Line_Sdo_Request_A)
-         / Line_Sdo_Request_T)
-        * Line_Sdo_Request_C)
-     + (((Line_Sdo_Response_W + Line_Bit + Line_Heartbeat_A)
-         / Line_Heartbeat_T)
-        * Line_Heartbeat_C);
-
+     Line_Tpdo_1_Up_Board (Line_Sdo_Response_W + Line_Bit)
+     + Line_Heartbeat_Rest_Board (Line_Sdo_Response_W + Line_Bit);
    pragma Compile_Time_Error
-     (0 > Line_Sdo_Response_W,
-      "line.sdo_response "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Sdo_Response_Needs > Line_Sdo_Response_W,
-      "line.sdo_response "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Sdo_Response_W > Line_Sdo_Response_Needs,
-      "line.sdo_response " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Sdo_Response_J + Line_Sdo_Response_W + Line_Sdo_Response_C)
-      > Line_Sdo_Response_R,
-      "line.sdo_response "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Sdo_Response_R
-      > (Line_Sdo_Response_J + Line_Sdo_Response_W + Line_Sdo_Response_C),
-      "line.sdo_response " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Sdo_Response_R > Line_Sdo_Response_D,
-      "line.sdo_response " & "can miss its deadline");
+     (Line_Sdo_Response_W /= Line_Sdo_Response_Needs,
+      "line.sdo_response claims a wrong response time");
+   pragma Compile_Time_Error (Line_Sdo_Response_R > Line_Sdo_Response_D,
+      "line.sdo_response can miss its deadline");
    pragma Assert (Line_Sdo_Response_R <= Line_Sdo_Response_D);
 
-   --  [line.sdo_request] what can delay it: frames that go before it, and
-   --  one of those that go behind it, the longest of which counts once
+   --  [line.sdo_request] what delays it
    Line_Sdo_Request_Busy : constant := 1_270_000;
    Line_Sdo_Request_Busy_Needs : constant :=
-     Line_Heartbeat_C
-     + (((Line_Sdo_Request_Busy + Line_Nmt_A) / Line_Nmt_T) * Line_Nmt_C)
-     + (((Line_Sdo_Request_Busy + Line_Sync_A) / Line_Sync_T) * Line_Sync_C)
-     + (((Line_Sdo_Request_Busy
-          + (Line_Tpdo_1_R - Line_Tpdo_1_C)
-          + (Line_Tpdo_1_T - 1))
-         / Line_Tpdo_1_T)
-        * Line_Tpdo_1_C)
-     + (((Line_Sdo_Request_Busy + Line_Rpdo_1_A) / Line_Rpdo_1_T)
-        * Line_Rpdo_1_C)
-     + (((Line_Sdo_Request_Busy
-          + (Line_Sdo_Response_R - Line_Sdo_Response_C)
-          + (Line_Sdo_Response_T - 1))
-         / Line_Sdo_Response_T)
-        * Line_Sdo_Response_C)
-     + (((Line_Sdo_Request_Busy + Line_Sdo_Request_A) / Line_Sdo_Request_T)
-        * Line_Sdo_Request_C);
-
+     Line_Heartbeat_C + Line_Sdo_Request_Up (Line_Sdo_Request_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Sdo_Request_Busy,
-      "line.sdo_request "
-      & "can keep others waiting for longer than claimed");
+     (Line_Sdo_Request_Busy < 1
+      or else Line_Sdo_Request_Busy /= Line_Sdo_Request_Busy_Needs,
+      "line.sdo_request claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Sdo_Request_Busy_Needs > Line_Sdo_Request_Busy,
-      "line.sdo_request "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Sdo_Request_Busy > Line_Sdo_Request_Busy_Needs,
-      "line.sdo_request " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Sdo_Request_Busy + Line_Sdo_Request_J) > Line_Sdo_Request_T,
-      "line.sdo_request " & "can come again before it is sent");
-
-   Line_Sdo_Request_W : constant := 1_000_000;
+     (Line_Sdo_Request_Busy + Line_Sdo_Request_J > Line_Sdo_Request_T,
+      "line.sdo_request can come again before it is sent");
+   Line_Sdo_Request_W : constant :=
+     Line_Sdo_Request_R - Line_Sdo_Request_J - Line_Sdo_Request_C;
    Line_Sdo_Request_Needs : constant :=
-     Line_Heartbeat_C
-     + (((Line_Sdo_Request_W + Line_Bit + Line_Nmt_A) / Line_Nmt_T)
-        * Line_Nmt_C)
-     + (((Line_Sdo_Request_W + Line_Bit + Line_Sync_A) / Line_Sync_T)
-        * Line_Sync_C)
-     + (((Line_Sdo_Request_W
-          + Line_Bit
-          + (Line_Tpdo_1_R - Line_Tpdo_1_C)
-          + (Line_Tpdo_1_T - 1))
-         / Line_Tpdo_1_T)
-        * Line_Tpdo_1_C)
-     + (((Line_Sdo_Request_W + Line_Bit + Line_Rpdo_1_A) / Line_Rpdo_1_T)
-        * Line_Rpdo_1_C)
-     + (((Line_Sdo_Request_W
-          + Line_Bit
-          + (Line_Sdo_Response_R - Line_Sdo_Response_C)
-          + (Line_Sdo_Response_T - 1))
-         / Line_Sdo_Response_T)
-        * Line_Sdo_Response_C);
-
-   pragma Compile_Time_Error
-     (0 > Line_Sdo_Request_W,
-      "line.sdo_request " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Sdo_Request_Needs > Line_Sdo_Request_W,
-      "line.sdo_request " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Sdo_Request_W > Line_Sdo_Request_Needs,
-      "line.sdo_request " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Sdo_Request_J + Line_Sdo_Request_W + Line_Sdo_Request_C)
-      > Line_Sdo_Request_R,
-      "line.sdo_request " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Sdo_Request_R
-      > (Line_Sdo_Request_J + Line_Sdo_Request_W + Line_Sdo_Request_C),
-      "line.sdo_request " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Sdo_Request_R > Line_Sdo_Request_D,
-      "line.sdo_request " & "can miss its deadline");
+     Line_Heartbeat_C + Line_Sdo_Response_Up (Line_Sdo_Request_W + Line_Bit);
+   pragma Compile_Time_Error (Line_Sdo_Request_W /= Line_Sdo_Request_Needs,
+      "line.sdo_request claims a wrong response time");
+   pragma Compile_Time_Error (Line_Sdo_Request_R > Line_Sdo_Request_D,
+      "line.sdo_request can miss its deadline");
    pragma Assert (Line_Sdo_Request_R <= Line_Sdo_Request_D);
 
-   --  [line.heartbeat] what can delay it: frames that go before it
+   --  [line.heartbeat] what delays it
    Line_Heartbeat_Busy : constant := 1_270_000;
    Line_Heartbeat_Busy_Needs : constant :=
-     0
-     + (((Line_Heartbeat_Busy + Line_Nmt_A) / Line_Nmt_T) * Line_Nmt_C)
-     + (((Line_Heartbeat_Busy + Line_Sync_A) / Line_Sync_T) * Line_Sync_C)
-     + (((Line_Heartbeat_Busy + Line_Tpdo_1_A) / Line_Tpdo_1_T)
-        * Line_Tpdo_1_C)
-     + (((Line_Heartbeat_Busy + Line_Rpdo_1_A) / Line_Rpdo_1_T)
-        * Line_Rpdo_1_C)
-     + (((Line_Heartbeat_Busy + Line_Sdo_Response_A) / Line_Sdo_Response_T)
-        * Line_Sdo_Response_C)
-     + (((Line_Heartbeat_Busy + Line_Sdo_Request_A) / Line_Sdo_Request_T)
-        * Line_Sdo_Request_C)
-     + (((Line_Heartbeat_Busy + Line_Heartbeat_A) / Line_Heartbeat_T)
-        * Line_Heartbeat_C);
-
+     Line_Heartbeat_Up_Board (Line_Heartbeat_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Heartbeat_Busy,
-      "line.heartbeat " & "can keep others waiting for longer than claimed");
+     (Line_Heartbeat_Busy < 1
+      or else Line_Heartbeat_Busy /= Line_Heartbeat_Busy_Needs,
+      "line.heartbeat claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Heartbeat_Busy_Needs > Line_Heartbeat_Busy,
-      "line.heartbeat " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Heartbeat_Busy > Line_Heartbeat_Busy_Needs,
-      "line.heartbeat " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Heartbeat_Busy + Line_Heartbeat_J) > Line_Heartbeat_T,
-      "line.heartbeat " & "can come again before it is sent");
-
-   Line_Heartbeat_W : constant := 1_140_000;
+     (Line_Heartbeat_Busy + Line_Heartbeat_J > Line_Heartbeat_T,
+      "line.heartbeat can come again before it is sent");
+   Line_Heartbeat_W : constant :=
+     Line_Heartbeat_R - Line_Heartbeat_J - Line_Heartbeat_C;
    Line_Heartbeat_Needs : constant :=
-     0
-     + (((Line_Heartbeat_W + Line_Bit + Line_Nmt_A) / Line_Nmt_T)
-        * Line_Nmt_C)
-     + (((Line_Heartbeat_W + Line_Bit + Line_Sync_A) / Line_Sync_T)
-        * Line_Sync_C)
-     + (((Line_Heartbeat_W + Line_Bit + Line_Tpdo_1_A) / Line_Tpdo_1_T)
-        * Line_Tpdo_1_C)
-     + (((Line_Heartbeat_W + Line_Bit + Line_Rpdo_1_A) / Line_Rpdo_1_T)
-        * Line_Rpdo_1_C)
-     + (((Line_Heartbeat_W + Line_Bit + Line_Sdo_Response_A)
-         / Line_Sdo_Response_T)
-        * Line_Sdo_Response_C)
-     + (((Line_Heartbeat_W + Line_Bit + Line_Sdo_Request_A)
-         / Line_Sdo_Request_T)
-        * Line_Sdo_Request_C);
-
-   pragma Compile_Time_Error
-     (0 > Line_Heartbeat_W,
-      "line.heartbeat " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Heartbeat_Needs > Line_Heartbeat_W,
-      "line.heartbeat " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Heartbeat_W > Line_Heartbeat_Needs,
-      "line.heartbeat " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Heartbeat_J + Line_Heartbeat_W + Line_Heartbeat_C)
-      > Line_Heartbeat_R,
-      "line.heartbeat " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Heartbeat_R
-      > (Line_Heartbeat_J + Line_Heartbeat_W + Line_Heartbeat_C),
-      "line.heartbeat " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Heartbeat_R > Line_Heartbeat_D,
-      "line.heartbeat " & "can miss its deadline");
+     Line_Sdo_Response_Up_Board (Line_Heartbeat_W + Line_Bit);
+   pragma Compile_Time_Error (Line_Heartbeat_W /= Line_Heartbeat_Needs,
+      "line.heartbeat claims a wrong response time");
+   pragma Compile_Time_Error (Line_Heartbeat_R > Line_Heartbeat_D,
+      "line.heartbeat can miss its deadline");
    pragma Assert (Line_Heartbeat_R <= Line_Heartbeat_D);
 end Canopen_Device.Timing_Certificate;

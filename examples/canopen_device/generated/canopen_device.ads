@@ -21,11 +21,7 @@ is
    subtype Addressee is Ravenchart.Number range 0 .. 127;
 
    type Nmt_Service is
-     (Start,
-      Stop,
-      Enter_Pre_Operational,
-      Reset_Node,
-      Reset_Communication);
+     (Start, Stop, Enter_Pre_Operational, Reset_Node, Reset_Communication);
 
    type Nmt_State is (Boot_Up, Stopped, Operational, Pre_Operational);
 

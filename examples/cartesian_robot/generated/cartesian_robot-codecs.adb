@@ -127,14 +127,12 @@ is
         Pre => Raw <= 16#3#,
         Post =>
           (Raw <= 3)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Kind)
              in 0 .. 3)
           and then (if Raw <= 3
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Kind)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Kind)
                    = Cartesian_Robot.Order_Kind'Pos
                        (Value_Of_Type_Order_Kind (Raw)))
       is
@@ -143,8 +141,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Kind)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Kind;
@@ -166,24 +163,21 @@ is
         Pre => Raw <= 16#7FFFF#,
         Post =>
           (Raw <= 520_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_X)
              in 0 .. 520_000)
           and then (if Raw <= 520_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_X)
-                   = (Ravenchart.Number (Value_Of_Type_Position (Raw))
-                      - Signal_X.Offset))
+                     (Interfaces.Unsigned_64 (Raw), Signal_X)
+                   = Ravenchart.Number (Value_Of_Type_Position (Raw))
+                     - Signal_X.Offset)
       is
       begin
          pragma Assert
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_X)
             = Ravenchart.Number (Raw));
       end Lemma_Value_X;
@@ -205,24 +199,21 @@ is
         Pre => Raw <= 16#7FFFF#,
         Post =>
           (Raw <= 520_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Y)
              in 0 .. 520_000)
           and then (if Raw <= 520_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Y)
-                   = (Ravenchart.Number (Value_Of_Type_Position (Raw))
-                      - Signal_Y.Offset))
+                     (Interfaces.Unsigned_64 (Raw), Signal_Y)
+                   = Ravenchart.Number (Value_Of_Type_Position (Raw))
+                     - Signal_Y.Offset)
       is
       begin
          pragma Assert
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Y)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Y;
@@ -244,24 +235,21 @@ is
         Pre => Raw <= 16#7FFFF#,
         Post =>
           (Raw <= 520_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Z)
              in 0 .. 520_000)
           and then (if Raw <= 520_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Z)
-                   = (Ravenchart.Number (Value_Of_Type_Position (Raw))
-                      - Signal_Z.Offset))
+                     (Interfaces.Unsigned_64 (Raw), Signal_Z)
+                   = Ravenchart.Number (Value_Of_Type_Position (Raw))
+                     - Signal_Z.Offset)
       is
       begin
          pragma Assert
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Z)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Z;
@@ -373,14 +361,12 @@ is
         Pre => Raw <= 16#7#,
         Post =>
           (Raw <= 5)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Condition)
              in 0 .. 5)
           and then (if Raw <= 5
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Condition)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Condition)
                    = Cartesian_Robot.Robot_Condition'Pos
                        (Value_Of_Type_Robot_Condition (Raw)))
       is
@@ -389,8 +375,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Condition)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Condition;
@@ -412,24 +397,21 @@ is
         Pre => Raw <= 16#7FFFF#,
         Post =>
           (Raw <= 520_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_X)
              in 0 .. 520_000)
           and then (if Raw <= 520_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_X)
-                   = (Ravenchart.Number (Value_Of_Type_Position (Raw))
-                      - Signal_X.Offset))
+                     (Interfaces.Unsigned_64 (Raw), Signal_X)
+                   = Ravenchart.Number (Value_Of_Type_Position (Raw))
+                     - Signal_X.Offset)
       is
       begin
          pragma Assert
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_X)
             = Ravenchart.Number (Raw));
       end Lemma_Value_X;
@@ -451,24 +433,21 @@ is
         Pre => Raw <= 16#7FFFF#,
         Post =>
           (Raw <= 520_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Y)
              in 0 .. 520_000)
           and then (if Raw <= 520_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Y)
-                   = (Ravenchart.Number (Value_Of_Type_Position (Raw))
-                      - Signal_Y.Offset))
+                     (Interfaces.Unsigned_64 (Raw), Signal_Y)
+                   = Ravenchart.Number (Value_Of_Type_Position (Raw))
+                     - Signal_Y.Offset)
       is
       begin
          pragma Assert
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Y)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Y;
@@ -568,14 +547,12 @@ is
         Pre => Raw <= 16#1#,
         Post =>
           (Raw <= 1)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Mode)
              in 0 .. 1)
           and then (if Raw <= 1
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Mode)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Mode)
                    = Cartesian_Robot.Drive_Mode'Pos
                        (Value_Of_Type_Drive_Mode (Raw)))
       is
@@ -584,8 +561,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Mode)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Mode;
@@ -607,24 +583,21 @@ is
         Pre => Raw <= 16#FFFFF#,
         Post =>
           (Raw <= 800_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Speed)
              in 0 .. 800_000)
           and then (if Raw <= 800_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Speed)
-                   = (Ravenchart.Number (Value_Of_Type_Speed (Raw))
-                      - Signal_Speed.Offset))
+                     (Interfaces.Unsigned_64 (Raw), Signal_Speed)
+                   = Ravenchart.Number (Value_Of_Type_Speed (Raw))
+                     - Signal_Speed.Offset)
       is
       begin
          pragma Assert
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Speed)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Speed;
@@ -707,24 +680,21 @@ is
         Pre => Raw <= 16#1FFFFF#,
         Post =>
           (Raw <= 2_000_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Count)
              in 0 .. 2_000_000)
           and then (if Raw <= 2_000_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Count)
-                   = (Ravenchart.Number (Value_Of_Type_Encoder_Count (Raw))
-                      - Signal_Count.Offset))
+                     (Interfaces.Unsigned_64 (Raw), Signal_Count)
+                   = Ravenchart.Number (Value_Of_Type_Encoder_Count (Raw))
+                     - Signal_Count.Offset)
       is
       begin
          pragma Assert
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Count)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Count;
@@ -746,24 +716,21 @@ is
         Pre => Raw <= 16#FFFFF#,
         Post =>
           (Raw <= 800_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Speed)
              in 0 .. 800_000)
           and then (if Raw <= 800_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Speed)
-                   = (Ravenchart.Number (Value_Of_Type_Speed (Raw))
-                      - Signal_Speed.Offset))
+                     (Interfaces.Unsigned_64 (Raw), Signal_Speed)
+                   = Ravenchart.Number (Value_Of_Type_Speed (Raw))
+                     - Signal_Speed.Offset)
       is
       begin
          pragma Assert
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Speed)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Speed;
@@ -785,14 +752,12 @@ is
         Pre => Raw <= 16#3#,
         Post =>
           (Raw <= 2)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Limit)
              in 0 .. 2)
           and then (if Raw <= 2
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Limit)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Limit)
                    = Cartesian_Robot.Switch'Pos (Value_Of_Type_Switch (Raw)))
       is
       begin
@@ -800,8 +765,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Limit)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Limit;
@@ -823,14 +787,12 @@ is
         Pre => Raw <= 16#1#,
         Post =>
           (Raw <= 1)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Condition)
              in 0 .. 1)
           and then (if Raw <= 1
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Condition)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Condition)
                    = Cartesian_Robot.Drive_Condition'Pos
                        (Value_Of_Type_Drive_Condition (Raw)))
       is
@@ -839,8 +801,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Condition)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Condition;
@@ -854,8 +815,7 @@ is
         (Interfaces.Unsigned_64 (Local_Count)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Speed), 21)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Limit), 41)
-         or Interfaces.Shift_Left
-             (Interfaces.Unsigned_64 (Local_Condition),
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Condition),
               43))
       with
         Pre =>

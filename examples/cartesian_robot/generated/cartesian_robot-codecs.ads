@@ -134,11 +134,11 @@ is
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Kind)
           = Cartesian_Robot.Order_Kind'Pos (Item.Kind)
           and then Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_X)
-            = (Ravenchart.Number (Item.X) - Signal_X.Offset)
+            = Ravenchart.Number (Item.X) - Signal_X.Offset
           and then Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Y)
-            = (Ravenchart.Number (Item.Y) - Signal_Y.Offset)
+            = Ravenchart.Number (Item.Y) - Signal_Y.Offset
           and then Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Z)
-            = (Ravenchart.Number (Item.Z) - Signal_Z.Offset)
+            = Ravenchart.Number (Item.Z) - Signal_Z.Offset
           and then (Pack'Result and 16#F800000000000000#) = 0;
       --  The frame's raw values are the table's, and bits of no signal are 0.
 
@@ -160,18 +160,15 @@ is
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Kind)
                    = Cartesian_Robot.Order_Kind'Pos (Item.Kind)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_X)
-                     = (Ravenchart.Number (Item.X) - Signal_X.Offset)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                     = Ravenchart.Number (Item.X) - Signal_X.Offset
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Y)
-                     = (Ravenchart.Number (Item.Y) - Signal_Y.Offset)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                     = Ravenchart.Number (Item.Y) - Signal_Y.Offset
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Z)
-                     = (Ravenchart.Number (Item.Z) - Signal_Z.Offset)
+                     = Ravenchart.Number (Item.Z) - Signal_Z.Offset
              else Item = Cartesian_Robot.Default_Robot_Order);
       --  Valid when all bits stand for values.
 
@@ -237,9 +234,9 @@ is
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Condition)
           = Cartesian_Robot.Robot_Condition'Pos (Item.Condition)
           and then Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_X)
-            = (Ravenchart.Number (Item.X) - Signal_X.Offset)
+            = Ravenchart.Number (Item.X) - Signal_X.Offset
           and then Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Y)
-            = (Ravenchart.Number (Item.Y) - Signal_Y.Offset)
+            = Ravenchart.Number (Item.Y) - Signal_Y.Offset
           and then (Pack'Result and 16#FFFFFE0000000000#) = 0;
       --  The frame's raw values are the table's, and bits of no signal are 0.
 
@@ -258,18 +255,15 @@ is
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Y)
                in 0 .. 520_000)
           and then (if Valid
-                then Ravenchart.Can.Layouts.Number_In
-                     (Word,
+                then Ravenchart.Can.Layouts.Number_In (Word,
                       Signal_Condition)
                    = Cartesian_Robot.Robot_Condition'Pos (Item.Condition)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_X)
-                     = (Ravenchart.Number (Item.X) - Signal_X.Offset)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                     = Ravenchart.Number (Item.X) - Signal_X.Offset
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Y)
-                     = (Ravenchart.Number (Item.Y) - Signal_Y.Offset)
+                     = Ravenchart.Number (Item.Y) - Signal_Y.Offset
              else Item = Cartesian_Robot.Default_Robot_Report);
       --  Valid when all bits stand for values.
 
@@ -319,10 +313,9 @@ is
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Mode)
           = Cartesian_Robot.Drive_Mode'Pos (Item.Mode)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Speed)
-            = (Ravenchart.Number (Item.Speed) - Signal_Speed.Offset)
+            = Ravenchart.Number (Item.Speed) - Signal_Speed.Offset
           and then (Pack'Result and 16#FFFFFFFFFFE00000#) = 0;
       --  The frame's raw values are the table's, and bits of no signal are 0.
 
@@ -340,10 +333,9 @@ is
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Mode)
                    = Cartesian_Robot.Drive_Mode'Pos (Item.Mode)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Speed)
-                     = (Ravenchart.Number (Item.Speed) - Signal_Speed.Offset)
+                     = Ravenchart.Number (Item.Speed) - Signal_Speed.Offset
              else Item = Cartesian_Robot.Default_Drive_Set_Point);
       --  Valid when all bits stand for values.
 
@@ -420,17 +412,14 @@ is
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Count)
-          = (Ravenchart.Number (Item.Count) - Signal_Count.Offset)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          = Ravenchart.Number (Item.Count) - Signal_Count.Offset
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Speed)
-            = (Ravenchart.Number (Item.Speed) - Signal_Speed.Offset)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+            = Ravenchart.Number (Item.Speed) - Signal_Speed.Offset
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Limit)
             = Cartesian_Robot.Switch'Pos (Item.Limit)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Condition)
             = Cartesian_Robot.Drive_Condition'Pos (Item.Condition)
           and then (Pack'Result and 16#FFFFF00000000000#) = 0;
@@ -450,23 +439,19 @@ is
                in 0 .. 800_000
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Limit)
                in 0 .. 2
-             and then Ravenchart.Can.Layouts.Number_In
-                 (Word,
+             and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Condition)
                in 0 .. 1)
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Count)
-                   = (Ravenchart.Number (Item.Count) - Signal_Count.Offset)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   = Ravenchart.Number (Item.Count) - Signal_Count.Offset
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Speed)
-                     = (Ravenchart.Number (Item.Speed) - Signal_Speed.Offset)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                     = Ravenchart.Number (Item.Speed) - Signal_Speed.Offset
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Limit)
                      = Cartesian_Robot.Switch'Pos (Item.Limit)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Condition)
                      = Cartesian_Robot.Drive_Condition'Pos (Item.Condition)
              else Item = Cartesian_Robot.Default_Drive_Feedback);

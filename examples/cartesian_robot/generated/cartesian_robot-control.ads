@@ -12,15 +12,9 @@ with SPARK_Mode
 is
    --  [control.table] the activities, in the order in which they run
    type Row is
-     (Joint_X_Ports,
-      Joint_X_Monitoring,
-      Joint_X_Position_Control,
-      Joint_Y_Ports,
-      Joint_Y_Monitoring,
-      Joint_Y_Position_Control,
-      Joint_Z_Ports,
-      Joint_Z_Monitoring,
-      Joint_Z_Position_Control);
+     (Joint_X_Ports, Joint_X_Monitoring, Joint_X_Position_Control,
+      Joint_Y_Ports, Joint_Y_Monitoring, Joint_Y_Position_Control,
+      Joint_Z_Ports, Joint_Z_Monitoring, Joint_Z_Position_Control);
 
    procedure Execute (Item : Row);
 
@@ -75,16 +69,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Control_Priority,
-      "control " & "has another priority than its certificate");
+      "control has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Control_T,
-      "control " & "has another period than its certificate");
+      "control has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Control_D,
-      "control " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "control " & "has another offset than its certificate");
+      "control has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "control has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Joint_X_Ports).Divisor
       = Timing_Certificate.Joint_X_Ports_Divisor

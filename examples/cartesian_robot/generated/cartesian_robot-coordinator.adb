@@ -100,15 +100,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Command_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Coordinator_Command,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+         Elements.Coordinator_Command, 0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Coordinator_Command,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -117,47 +114,35 @@ is
 
    procedure Put_Report_X (Item : Cartesian_Robot.Joint_Report) is
       Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings
-        (GNATprove,
-         Off,
+      pragma Warnings (GNATprove, Off,
          """Status"" is set by ""Put"" but not used*",
          Reason => "a new sample replaces the old one");
    begin
       Report_X_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Coordinator_Report_X,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+         Elements.Coordinator_Report_X, 0);
    end Put_Report_X;
 
    procedure Put_Report_Y (Item : Cartesian_Robot.Joint_Report) is
       Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings
-        (GNATprove,
-         Off,
+      pragma Warnings (GNATprove, Off,
          """Status"" is set by ""Put"" but not used*",
          Reason => "a new sample replaces the old one");
    begin
       Report_Y_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Coordinator_Report_Y,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+         Elements.Coordinator_Report_Y, 0);
    end Put_Report_Y;
 
    procedure Put_Report_Z (Item : Cartesian_Robot.Joint_Report) is
       Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings
-        (GNATprove,
-         Off,
+      pragma Warnings (GNATprove, Off,
          """Status"" is set by ""Put"" but not used*",
          Reason => "a new sample replaces the old one");
    begin
       Report_Z_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Coordinator_Report_Z,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+         Elements.Coordinator_Report_Z, 0);
    end Put_Report_Z;
 
    procedure Offer (Item : Robot_Coordinator.Event) is
@@ -170,82 +155,65 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Coordinator_Mission,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Coordinator_Commanded,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Coordinator_Commanded, 0);
          when Robot_Coordinator.Joint_Lost =>
             Mission_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Coordinator_Mission,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Coordinator_Joint_Lost,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Coordinator_Joint_Lost, 0);
          when Robot_Coordinator.Shutdown =>
             Mission_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Coordinator_Mission,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Coordinator_Shutdown,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Coordinator_Shutdown, 0);
       end case;
    end Offer;
 
    procedure Send_Order_X (Item : Cartesian_Robot.Joint_Order) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Coordinator_Order_X,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Coordinator_Order_X, 0);
       Joint_X.Put_Order (Item);
    end Send_Order_X;
 
    procedure Send_Order_Y (Item : Cartesian_Robot.Joint_Order) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Coordinator_Order_Y,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Coordinator_Order_Y, 0);
       Joint_Y.Put_Order (Item);
    end Send_Order_Y;
 
    procedure Send_Order_Z (Item : Cartesian_Robot.Joint_Order) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Coordinator_Order_Z,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Coordinator_Order_Z, 0);
       Joint_Z.Put_Order (Item);
    end Send_Order_Z;
 
    procedure Send_Status (Item : Cartesian_Robot.Robot_Report) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Coordinator_Status,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Coordinator_Status, 0);
       Robot_Bus.Send_Robot_Status (Item);
    end Send_Status;
 
@@ -273,16 +241,13 @@ is
          when Robot_Coordinator.Command_Port.Nothing =>
             null;
          when Robot_Coordinator.Command_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Coordinator_Command,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Coordinator_Command, 0);
             Offer (Robot_Coordinator.Commanded);
          when Robot_Coordinator.Command_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Coordinator_Command,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -299,15 +264,12 @@ is
          when Robot_Coordinator.Report_X_Port.Nothing =>
             null;
          when Robot_Coordinator.Report_X_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Coordinator_Report_X,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Coordinator_Report_X, 0);
          when Robot_Coordinator.Report_X_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Coordinator_Report_X,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -325,15 +287,12 @@ is
          when Robot_Coordinator.Report_Y_Port.Nothing =>
             null;
          when Robot_Coordinator.Report_Y_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Coordinator_Report_Y,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Coordinator_Report_Y, 0);
          when Robot_Coordinator.Report_Y_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Coordinator_Report_Y,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -351,15 +310,12 @@ is
          when Robot_Coordinator.Report_Z_Port.Nothing =>
             null;
          when Robot_Coordinator.Report_Z_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Coordinator_Report_Z,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Coordinator_Report_Z, 0);
          when Robot_Coordinator.Report_Z_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Coordinator_Report_Z,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -388,15 +344,13 @@ is
       Robot_Coordinator.Mission.Step (Mission_Region, Now, Ins, Box, Fired);
       if Fired /= Robot_Coordinator.Mission.None then
          if Fired in Robot_Coordinator.Mission.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Coordinator_Mission,
                Robot_Coordinator.Mission.Selection'Pos (Fired)
                - Robot_Coordinator.Mission.Selection'Pos
                    (Robot_Coordinator.Mission.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
+         Trace.Buffer.Note (Ravenchart.Traces.State,
             Elements.Coordinator_Mission,
             Robot_Coordinator.Mission_States.Leaf'Pos (Mission_Region.Leaf));
          if Box.Order_X_Sent then

@@ -18,8 +18,8 @@ is
 
    pragma Compile_Time_Error
      (Probe.Given_Period /= Timing_Certificate.Controller_Probe_T,
-      "controller.probe " & "has another period than its certificate");
+      "controller.probe has another period than its certificate");
    pragma Compile_Time_Error
      (Probe.Given_Priority /= Timing_Certificate.Controller_Probe_Priority,
-      "controller.probe " & "has another priority than its certificate");
+      "controller.probe has another priority than its certificate");
 end Cartesian_Robot.Host_Probe;

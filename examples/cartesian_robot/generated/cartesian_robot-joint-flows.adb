@@ -34,8 +34,7 @@ is
             else
                Report :=
                  Cartesian_Robot.Joint_Report'(Condition =>
-                    (if Homed
-                        then Cartesian_Robot.Standing
+                    (if Homed then Cartesian_Robot.Standing
                      else Cartesian_Robot.Not_Homed),
                   Position => Measured.Position);
                Send_Report := True;

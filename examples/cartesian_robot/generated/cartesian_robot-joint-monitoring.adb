@@ -6,9 +6,7 @@ package body Cartesian_Robot.Joint.Monitoring
 with SPARK_Mode
 is
    function Select_Transition
-     (Leaf : Monitoring_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs)
+     (Leaf : Monitoring_States.Leaf; Now  : Occurrence; Ins  : Inputs)
      return Selection is
      (case Leaf is
         when Monitoring_States.Watching =>
@@ -44,9 +42,7 @@ is
         (Node'Val (Monitoring_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -73,29 +69,21 @@ is
    end Poll;
 
    procedure Fire
-     (Self : in out Region;
-      Box : in out Outbox;
-      Chosen : Firing)
+     (Self : in out Region; Box : in out Outbox; Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen)
        and then Self.Timers (1)
-         = Timer_After
-             (1,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (1))
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
       procedure Exit_Alarmed
@@ -137,13 +125,7 @@ is
             Event_Lists.Append (Box.Raised, Joint.Strayed);
             pragma Assert (Active = Chart.Nowhere);
             Enter_Alarmed;
-         when Limit_Hit =>
-            Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
-            Event_Lists.Append (Box.Raised, Joint.Limit_Hit);
-            pragma Assert (Active = Chart.Nowhere);
-            Enter_Alarmed;
-         when End_Reached =>
+         when Limit_Hit | End_Reached =>
             Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Limit_Hit);

@@ -18,12 +18,7 @@ is
    --  [Joint.Monitoring.transitions] in order of precedence, innermost
    --  source first
    type Selection is
-     (Initial_Entry,
-      Strayed,
-      Limit_Hit,
-      End_Reached,
-      Drive_Failed,
-      Calm,
+     (Initial_Entry, Strayed, Limit_Hit, End_Reached, Drive_Failed, Calm,
       None);
 
    subtype Firing is Selection range Initial_Entry .. Calm;
@@ -82,8 +77,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Monitoring_States.Leaf)
+     (T : Transition; Leaf : Monitoring_States.Leaf)
      return Boolean is
      (case T is
         when Strayed => Leaf = Monitoring_States.Watching,
@@ -127,8 +121,7 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Everything or else D = Beginning,
               D /= Beginning and then Before = Monitoring_States.Alarmed,
               After = Monitoring_States.Alarmed,
@@ -187,18 +180,12 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)
-               = Timer_After
-                   (1,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (1)));
+               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (1)));
    --  One run-to-completion step.
 end Cartesian_Robot.Joint.Monitoring;

@@ -24,50 +24,36 @@ is
             elsif Now = On_Ordered
                and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
                then Halt
-            elsif Now = On_Feedback_Lost
-               then Lost
-            elsif Now = On_Drive_Failed
-               then Failed
-            elsif Now = On_Strayed
-               then Strayed
-            elsif Now = On_Limit_Hit
-               then Limit
+            elsif Now = On_Feedback_Lost then Lost
+            elsif Now = On_Drive_Failed then Failed
+            elsif Now = On_Strayed then Strayed
+            elsif Now = On_Limit_Hit then Limit
             else None),
         when Motion_States.Seeking =>
            (if Now = Conditions
                and then Ins.Feedback.Value.Limit = Cartesian_Robot.Low_End
                then End_Found
-            elsif Now = Expiry_Of_No_End
-               then No_End
+            elsif Now = Expiry_Of_No_End then No_End
             elsif Now = On_Ordered
                and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
                then Halt
-            elsif Now = On_Feedback_Lost
-               then Lost
-            elsif Now = On_Drive_Failed
-               then Failed
-            elsif Now = On_Strayed
-               then Strayed
-            elsif Now = On_Limit_Hit
-               then Limit
+            elsif Now = On_Feedback_Lost then Lost
+            elsif Now = On_Drive_Failed then Failed
+            elsif Now = On_Strayed then Strayed
+            elsif Now = On_Limit_Hit then Limit
             else None),
         when Motion_States.Backing_Off =>
            (if Now = Conditions
                and then Ins.Feedback.Value.Limit = Cartesian_Robot.Clear
                then End_Left
-            elsif Now = Expiry_Of_No_End
-               then No_End
+            elsif Now = Expiry_Of_No_End then No_End
             elsif Now = On_Ordered
                and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
                then Halt
-            elsif Now = On_Feedback_Lost
-               then Lost
-            elsif Now = On_Drive_Failed
-               then Failed
-            elsif Now = On_Strayed
-               then Strayed
-            elsif Now = On_Limit_Hit
-               then Limit
+            elsif Now = On_Feedback_Lost then Lost
+            elsif Now = On_Drive_Failed then Failed
+            elsif Now = On_Strayed then Strayed
+            elsif Now = On_Limit_Hit then Limit
             else None),
         when Motion_States.Accelerating =>
            (if Now = Conditions
@@ -84,14 +70,10 @@ is
             elsif Now = On_Ordered
                and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
                then Halt
-            elsif Now = On_Feedback_Lost
-               then Lost
-            elsif Now = On_Drive_Failed
-               then Failed
-            elsif Now = On_Strayed
-               then Strayed
-            elsif Now = On_Limit_Hit
-               then Limit
+            elsif Now = On_Feedback_Lost then Lost
+            elsif Now = On_Drive_Failed then Failed
+            elsif Now = On_Strayed then Strayed
+            elsif Now = On_Limit_Hit then Limit
             else None),
         when Motion_States.Cruising =>
            (if Now = Conditions
@@ -105,14 +87,10 @@ is
             elsif Now = On_Ordered
                and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
                then Halt
-            elsif Now = On_Feedback_Lost
-               then Lost
-            elsif Now = On_Drive_Failed
-               then Failed
-            elsif Now = On_Strayed
-               then Strayed
-            elsif Now = On_Limit_Hit
-               then Limit
+            elsif Now = On_Feedback_Lost then Lost
+            elsif Now = On_Drive_Failed then Failed
+            elsif Now = On_Strayed then Strayed
+            elsif Now = On_Limit_Hit then Limit
             else None),
         when Motion_States.Braking =>
            (if Now = Conditions
@@ -123,14 +101,10 @@ is
             elsif Now = On_Ordered
                and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
                then Halt
-            elsif Now = On_Feedback_Lost
-               then Lost
-            elsif Now = On_Drive_Failed
-               then Failed
-            elsif Now = On_Strayed
-               then Strayed
-            elsif Now = On_Limit_Hit
-               then Limit
+            elsif Now = On_Feedback_Lost then Lost
+            elsif Now = On_Drive_Failed then Failed
+            elsif Now = On_Strayed then Strayed
+            elsif Now = On_Limit_Hit then Limit
             else None),
         when Motion_States.Limit =>
            (if Now = On_Ordered
@@ -151,28 +125,14 @@ is
    with Ghost
    is
       type Node is
-        (Nowhere,
-         Idle,
-         Seeking,
-         Backing_Off,
-         Accelerating,
-         Cruising,
-         Braking,
-         Limit,
-         Drive,
-         Operational,
-         Homing,
-         Moving,
-         Fault,
-         Disorder);
+        (Nowhere, Idle, Seeking, Backing_Off, Accelerating, Cruising,
+         Braking, Limit, Drive, Operational, Homing, Moving, Fault, Disorder);
 
       function Innermost (Leaf : Motion_States.Leaf) return Node is
         (Node'Val (Motion_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -201,24 +161,18 @@ is
    procedure Fire (Self : in out Region; Ins : Inputs; Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen)
        and then Self.Timers (1)
-         = Timer_After
-             (1,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (1))
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
       procedure Exit_Homing
@@ -256,18 +210,14 @@ is
             when Motion_States.Homing =>
                Active :=
                  (if Self.Leaf in Motion_States.Homing
-                     then Chart.Moved
-                          (Active,
-                           Chart.Innermost (Self.Leaf),
+                     then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                            Chart.Homing)
                   else Chart.Disorder);
                Exit_Homing;
             when Motion_States.Moving =>
                Active :=
                  (if Self.Leaf in Motion_States.Moving
-                     then Chart.Moved
-                          (Active,
-                           Chart.Innermost (Self.Leaf),
+                     then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                            Chart.Moving)
                   else Chart.Disorder);
                Active :=
@@ -396,9 +346,7 @@ is
          when No_End =>
             Active :=
               (if Self.Leaf in Motion_States.Homing
-                  then Chart.Moved
-                       (Active,
-                        Chart.Innermost (Self.Leaf),
+                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                         Chart.Homing)
                else Chart.Disorder);
             Exit_Homing;
@@ -416,9 +364,7 @@ is
          when Arrived =>
             Active :=
               (if Self.Leaf in Motion_States.Moving
-                  then Chart.Moved
-                       (Active,
-                        Chart.Innermost (Self.Leaf),
+                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                         Chart.Moving)
                else Chart.Disorder);
             Active := Chart.Moved (Active, Chart.Moving, Chart.Operational);
@@ -428,21 +374,7 @@ is
             Active :=
               Chart.Moved (Active, Chart.Operational, Chart.Operational);
             Enter_Idle;
-         when Lost =>
-            Leave_Operational;
-            Active :=
-              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
-            Enter_Fault;
-            Active := Chart.Moved (Active, Chart.Fault, Chart.Drive);
-            Self.Leaf := Motion_States.Drive;
-         when Failed =>
-            Leave_Operational;
-            Active :=
-              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
-            Enter_Fault;
-            Active := Chart.Moved (Active, Chart.Fault, Chart.Drive);
-            Self.Leaf := Motion_States.Drive;
-         when Strayed =>
+         when Lost | Failed | Strayed =>
             Leave_Operational;
             Active :=
               Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
@@ -459,9 +391,7 @@ is
          when Reset =>
             Active :=
               (if Self.Leaf in Motion_States.Fault
-                  then Chart.Moved
-                       (Active,
-                        Chart.Innermost (Self.Leaf),
+                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                         Chart.Fault)
                else Chart.Disorder);
             Active := Chart.Moved (Active, Chart.Fault, Chart.Operational);

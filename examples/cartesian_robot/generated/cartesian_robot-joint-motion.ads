@@ -14,35 +14,15 @@ is
 
    --  [Joint.Motion] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_Ordered,
-      On_Feedback_Lost,
-      On_Drive_Failed,
-      On_Strayed,
-      On_Limit_Hit,
-      Expiry_Of_No_End,
-      Conditions);
+     (Start_Of_Region, On_Ordered, On_Feedback_Lost, On_Drive_Failed,
+      On_Strayed, On_Limit_Hit, Expiry_Of_No_End, Conditions);
 
    --  [Joint.Motion.transitions] in order of precedence, innermost source
    --  first
    type Selection is
-     (Initial_Entry,
-      End_Found,
-      End_Left,
-      At_Speed,
-      No_Cruise,
-      Brake,
-      Start_Homing,
-      No_End,
-      Start_Move,
-      Arrived,
-      Halt,
-      Lost,
-      Failed,
-      Strayed,
-      Limit,
-      Reset,
-      None);
+     (Initial_Entry, End_Found, End_Left, At_Speed, No_Cruise, Brake,
+      Start_Homing, No_End, Start_Move, Arrived, Halt, Lost, Failed,
+      Strayed, Limit, Reset, None);
 
    subtype Firing is Selection range Initial_Entry .. Reset;
    subtype Transition is Selection range End_Found .. Reset;
@@ -137,8 +117,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Motion_States.Leaf)
+     (T : Transition; Leaf : Motion_States.Leaf)
      return Boolean is
      (case T is
         when End_Found => Leaf = Motion_States.Seeking,
@@ -181,13 +160,8 @@ is
    --  The innermost region that holds all that a transition leaves and
    --  enters.
    type Domain is
-     (Nothing,
-      Inside_Operational,
-      Inside_Homing,
-      Inside_Moving,
-      Inside_Fault,
-      Everything,
-      Beginning);
+     (Nothing, Inside_Operational, Inside_Homing, Inside_Moving,
+      Inside_Fault, Everything, Beginning);
 
    function Domain_Of (T : Firing) return Domain is
      (case T is
@@ -219,8 +193,7 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_Operational
               or else D = Everything
               or else D = Beginning,
@@ -289,18 +262,12 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now, Self.Data'Old, Ins))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)
-               = Timer_After
-                   (1,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (1)));
+               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (1)));
    --  One run-to-completion step.
 end Cartesian_Robot.Joint.Motion;

@@ -12,20 +12,12 @@ is
    type Event is (Ordered, Feedback_Lost, Strayed, Limit_Hit, Drive_Failed);
 
    package Event_Lists is new Ravenchart.Event_Lists
-     (Event => Joint.Event,
-      Null_Event => Joint.Ordered,
-      Capacity => 16);
+     (Event => Joint.Event, Null_Event => Joint.Ordered, Capacity => 16);
 
    --  [Joint.Motion.states]
    package Motion_States is
       type Leaf is
-        (Idle,
-         Seeking,
-         Backing_Off,
-         Accelerating,
-         Cruising,
-         Braking,
-         Limit,
+        (Idle, Seeking, Backing_Off, Accelerating, Cruising, Braking, Limit,
          Drive);
 
       subtype Operational is Leaf range Idle .. Braking;

@@ -110,16 +110,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Order_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Joint_Z_Order,
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Joint_Z_Order,
          0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.Joint_Z_Order,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Joint_Z_Order,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
       end if;
@@ -127,17 +123,13 @@ is
 
    procedure Put_Feedback (Item : Cartesian_Robot.Drive_Feedback) is
       Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings
-        (GNATprove,
-         Off,
+      pragma Warnings (GNATprove, Off,
          """Status"" is set by ""Put"" but not used*",
          Reason => "a new sample replaces the old one");
    begin
       Feedback_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Joint_Z_Feedback,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+         Elements.Joint_Z_Feedback, 0);
    end Put_Feedback;
 
    procedure Offer (Item : Joint.Event) is
@@ -150,76 +142,61 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Joint_Z_Motion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Joint_Z_Ordered,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Joint_Z_Ordered, 0);
          when Joint.Feedback_Lost =>
             Motion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Joint_Z_Motion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Joint_Z_Feedback_Lost,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Joint_Z_Feedback_Lost, 0);
          when Joint.Strayed =>
             Motion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Joint_Z_Motion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Joint_Z_Strayed,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Joint_Z_Strayed, 0);
          when Joint.Limit_Hit =>
             Motion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Joint_Z_Motion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Joint_Z_Limit_Hit,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Joint_Z_Limit_Hit, 0);
          when Joint.Drive_Failed =>
             Motion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Joint_Z_Motion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Joint_Z_Drive_Failed,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Joint_Z_Drive_Failed, 0);
       end case;
    end Offer;
 
@@ -231,10 +208,7 @@ is
 
    procedure Send_Report (Item : Cartesian_Robot.Joint_Report) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Joint_Z_Report,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Joint_Z_Report, 0);
       Coordinator.Put_Report_Z (Item);
    end Send_Report;
 
@@ -275,16 +249,13 @@ is
          when Joint.Order_Port.Nothing =>
             null;
          when Joint.Order_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Joint_Z_Order,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Joint_Z_Order, 0);
             Offer (Joint.Ordered);
          when Joint.Order_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Joint_Z_Order,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -301,15 +272,12 @@ is
          when Joint.Feedback_Port.Nothing =>
             null;
          when Joint.Feedback_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Joint_Z_Feedback,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Joint_Z_Feedback, 0);
          when Joint.Feedback_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Joint_Z_Feedback,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -328,15 +296,13 @@ is
       Joint.Monitoring.Step (Monitoring_Region, Now, Ins, Box, Fired);
       if Fired /= Joint.Monitoring.None then
          if Fired in Joint.Monitoring.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Joint_Z_Monitoring,
                Joint.Monitoring.Selection'Pos (Fired)
                - Joint.Monitoring.Selection'Pos
                    (Joint.Monitoring.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
+         Trace.Buffer.Note (Ravenchart.Traces.State,
             Elements.Joint_Z_Monitoring,
             Joint.Monitoring_States.Leaf'Pos (Monitoring_Region.Leaf));
          for I in 1 .. Joint.Event_Lists.Count (Box.Raised) loop
@@ -401,14 +367,12 @@ is
       Joint.Motion.Step (Motion_Region, Now, Ins, Fired);
       if Fired /= Joint.Motion.None then
          if Fired in Joint.Motion.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Joint_Z_Motion,
                Joint.Motion.Selection'Pos (Fired)
                - Joint.Motion.Selection'Pos (Joint.Motion.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
+         Trace.Buffer.Note (Ravenchart.Traces.State,
             Elements.Joint_Z_Motion,
             Joint.Motion_States.Leaf'Pos (Motion_Region.Leaf));
       end if;

@@ -28,37 +28,29 @@ is
          when Reception_Watch =>
             Reception.Processor.Observe_Progress (Seen);
             Is_Silent :=
-              Ravenchart.Liveness.Is_Stuck
-                (Timing_Certificate.Reception_L,
-                 Seen,
-                 Elapsed);
+              Ravenchart.Liveness.Is_Stuck (Timing_Certificate.Reception_L,
+                 Seen, Elapsed);
          when Trajectory_Watch =>
             Trajectory.Processor.Observe_Progress (Seen);
             Is_Silent :=
               Ravenchart.Liveness.Is_Silent
                 ((Offset => 0,
                   Period => Timing_Certificate.Trajectory_T,
-                  Limit => Timing_Certificate.Trajectory_L),
-                 Seen,
-                 Elapsed);
+                  Limit => Timing_Certificate.Trajectory_L), Seen, Elapsed);
          when Control_Watch =>
             Control.Processor.Observe_Progress (Seen);
             Is_Silent :=
               Ravenchart.Liveness.Is_Silent
                 ((Offset => 0,
                   Period => Timing_Certificate.Control_T,
-                  Limit => Timing_Certificate.Control_L),
-                 Seen,
-                 Elapsed);
+                  Limit => Timing_Certificate.Control_L), Seen, Elapsed);
          when Supervision_Watch =>
             Supervision.Processor.Observe_Progress (Seen);
             Is_Silent :=
               Ravenchart.Liveness.Is_Silent
                 ((Offset => 0,
                   Period => Timing_Certificate.Supervision_T,
-                  Limit => Timing_Certificate.Supervision_L),
-                 Seen,
-                 Elapsed);
+                  Limit => Timing_Certificate.Supervision_L), Seen, Elapsed);
       end case;
    end Look;
 
@@ -67,29 +59,25 @@ is
       Health_Counts.Counters.Record_Fault (Ravenchart.Health.Silence);
       case Item is
          when Reception_Watch =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Reception_Processor,
                Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
             Coordinator.Offer (Robot_Coordinator.Shutdown);
             Ravenchart.Failures.Note_Silence ("reception");
          when Trajectory_Watch =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Trajectory_Processor,
                Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
             Coordinator.Offer (Robot_Coordinator.Shutdown);
             Ravenchart.Failures.Note_Silence ("trajectory");
          when Control_Watch =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Control_Processor,
                Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
             Coordinator.Offer (Robot_Coordinator.Shutdown);
             Ravenchart.Failures.Note_Silence ("control");
          when Supervision_Watch =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Supervision_Processor,
                Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
             Ravenchart.Failures.Note_Silence ("supervision");

@@ -12,10 +12,7 @@ with SPARK_Mode
 is
    --  [controller] the processors, the most urgent first
    type Watched is
-     (Reception_Watch,
-      Trajectory_Watch,
-      Control_Watch,
-      Supervision_Watch);
+     (Reception_Watch, Trajectory_Watch, Control_Watch, Supervision_Watch);
 
    procedure Look
      (Item      : Watched;
@@ -44,9 +41,9 @@ is
 
    pragma Compile_Time_Error
      (Supervisor.Given_Period /= Timing_Certificate.Controller_Supervisor_T,
-      "controller.supervisor " & "has another period than its certificate");
+      "controller.supervisor has another period than its certificate");
    pragma Compile_Time_Error
      (Supervisor.Given_Priority
       /= Timing_Certificate.Controller_Supervisor_Priority,
-      "controller.supervisor " & "has another priority than its certificate");
+      "controller.supervisor has another priority than its certificate");
 end Cartesian_Robot.Liveness_Supervision;

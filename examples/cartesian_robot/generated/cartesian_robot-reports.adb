@@ -41,15 +41,11 @@ is
       Found : Reception.Processor.Statistics;
    begin
       Reception.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Reception_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Reception_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Reception.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Reception_Processor
-            + 1
+           (Elements.Reception_Processor + 1
             + Ravenchart.Element_Id (Reception.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -60,15 +56,11 @@ is
       Found : Trajectory.Processor.Statistics;
    begin
       Trajectory.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Trajectory_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Trajectory_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Trajectory.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Trajectory_Processor
-            + 1
+           (Elements.Trajectory_Processor + 1
             + Ravenchart.Element_Id (Trajectory.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -79,15 +71,11 @@ is
       Found : Control.Processor.Statistics;
    begin
       Control.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Control_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Control_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Control.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Control_Processor
-            + 1
+           (Elements.Control_Processor + 1
             + Ravenchart.Element_Id (Control.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -98,15 +86,11 @@ is
       Found : Supervision.Processor.Statistics;
    begin
       Supervision.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Supervision_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Supervision_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Supervision.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Supervision_Processor
-            + 1
+           (Elements.Supervision_Processor + 1
             + Ravenchart.Element_Id (Supervision.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -137,14 +121,11 @@ is
       Lost := Trace.Buffer.Lost;
       Ravenchart.Hosts.Put_Lost ("trace", Lost);
       Robot_Bus.Controller.Read_Counters (Robot_Bus_Counters);
-      Ravenchart.Hosts.Put_Lost
-        ("robot_bus.lost_out",
+      Ravenchart.Hosts.Put_Lost ("robot_bus.lost_out",
          Robot_Bus_Counters.Lost_Out);
-      Ravenchart.Hosts.Put_Lost
-        ("robot_bus.lost_in",
+      Ravenchart.Hosts.Put_Lost ("robot_bus.lost_in",
          Robot_Bus_Counters.Lost_In);
-      Ravenchart.Hosts.Put_Lost
-        ("robot_bus.rejected_lines",
+      Ravenchart.Hosts.Put_Lost ("robot_bus.rejected_lines",
          Robot_Bus_Counters.Rejected_Lines);
       Host_Probe.Probe.Read (Late);
       Ravenchart.Hosts.Put_Host_Latency (Late);

@@ -39,23 +39,18 @@ is
            = Ravenchart.Can.Standard
       then
          Codecs.Type_Robot_Order.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Robot_Command_Item,
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Robot_Command_Item,
             Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Robot_Bus_Robot_Command_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_Robot_Command));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Robot_Command_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Robot_Command_Message, 0);
             Coordinator.Put_Command (Robot_Command_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -64,23 +59,18 @@ is
            = Ravenchart.Can.Standard
       then
          Codecs.Type_Drive_Feedback.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            X_Feedback_Item,
+           (Ravenchart.Can.Any_Frames.Payload (Frame), X_Feedback_Item,
             Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Robot_Bus_X_Feedback_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_X_Feedback));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.X_Feedback_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.X_Feedback_Message, 0);
             Joint_X.Put_Feedback (X_Feedback_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -89,23 +79,18 @@ is
            = Ravenchart.Can.Standard
       then
          Codecs.Type_Drive_Feedback.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Y_Feedback_Item,
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Y_Feedback_Item,
             Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Robot_Bus_Y_Feedback_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_Y_Feedback));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Y_Feedback_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Y_Feedback_Message, 0);
             Joint_Y.Put_Feedback (Y_Feedback_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -114,23 +99,18 @@ is
            = Ravenchart.Can.Standard
       then
          Codecs.Type_Drive_Feedback.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Z_Feedback_Item,
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Z_Feedback_Item,
             Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Robot_Bus_Z_Feedback_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_Z_Feedback));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Z_Feedback_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Z_Feedback_Message, 0);
             Joint_Z.Put_Feedback (Z_Feedback_Item);
          end if;
       end if;

@@ -32,15 +32,12 @@ is
       pragma Assert
         (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Robot_Status));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Robot_Status_Message,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Robot_Status_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Robot_Status_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -68,15 +65,12 @@ is
       pragma Assert
         (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_X_Set_Point));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.X_Set_Point_Message,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.X_Set_Point_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.X_Set_Point_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -104,15 +98,12 @@ is
       pragma Assert
         (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Y_Set_Point));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Y_Set_Point_Message,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Y_Set_Point_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Y_Set_Point_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -140,15 +131,12 @@ is
       pragma Assert
         (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Z_Set_Point));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Z_Set_Point_Message,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Z_Set_Point_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Z_Set_Point_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));

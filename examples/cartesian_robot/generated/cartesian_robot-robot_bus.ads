@@ -48,8 +48,7 @@ is
    pragma Compile_Time_Error
      (Controller.Given_Priority
       /= Timing_Certificate.Robot_Bus_Driver_Rx_Robot_Command_Priority,
-      "robot_bus "
-      & "has another priority of its driver than its certificate");
+      "robot_bus has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate
       = Timing_Certificate.Robot_Bus_Bit_Rate
@@ -58,8 +57,7 @@ is
    --  [robot_bus] all that is received passes, and its frame holds its
    --  signals
    pragma Assert
-     (Accepts
-        (Codecs.Frame_Robot_Command.Id,
+     (Accepts (Codecs.Frame_Robot_Command.Id,
          Codecs.Frame_Robot_Command.Format)
       and then Codecs.Type_Robot_Order.Fits_In (Codecs.Frame_Robot_Command));
    pragma Assert
@@ -79,8 +77,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Robot_Status'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Robot_Status'Result,
           Codecs.Frame_Robot_Status)
        and then Ravenchart.Can.Any_Frames.Payload
            (Frame_Of_Robot_Status'Result)
@@ -96,8 +93,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_X_Set_Point'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_X_Set_Point'Result,
           Codecs.Frame_X_Set_Point)
        and then Ravenchart.Can.Any_Frames.Payload
            (Frame_Of_X_Set_Point'Result)
@@ -113,8 +109,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Y_Set_Point'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Y_Set_Point'Result,
           Codecs.Frame_Y_Set_Point)
        and then Ravenchart.Can.Any_Frames.Payload
            (Frame_Of_Y_Set_Point'Result)
@@ -130,8 +125,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Z_Set_Point'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Z_Set_Point'Result,
           Codecs.Frame_Z_Set_Point)
        and then Ravenchart.Can.Any_Frames.Payload
            (Frame_Of_Z_Set_Point'Result)

@@ -6,9 +6,7 @@ package body Cartesian_Robot.Robot_Coordinator.Mission
 with SPARK_Mode
 is
    function Select_Transition
-     (Leaf : Mission_States.Leaf;
-      Now : Occurrence;
-      Ins : Inputs)
+     (Leaf : Mission_States.Leaf; Now : Occurrence; Ins : Inputs)
      return Selection is
      (case Leaf is
         when Mission_States.Waiting =>
@@ -23,10 +21,8 @@ is
                   or else Ins.Report_Z.Value.Condition
                     = Cartesian_Robot.Failed)
                then Joint_Failed
-            elsif Now = On_Joint_Lost
-               then Joint_Lost
-            elsif Now = On_Shutdown
-               then Shut_Down
+            elsif Now = On_Joint_Lost then Joint_Lost
+            elsif Now = On_Shutdown then Shut_Down
             else None),
         when Mission_States.Homing =>
            (if Now = Conditions
@@ -48,10 +44,8 @@ is
                   or else Ins.Report_Z.Value.Condition
                     = Cartesian_Robot.Failed)
                then Joint_Failed
-            elsif Now = On_Joint_Lost
-               then Joint_Lost
-            elsif Now = On_Shutdown
-               then Shut_Down
+            elsif Now = On_Joint_Lost then Joint_Lost
+            elsif Now = On_Shutdown then Shut_Down
             else None),
         when Mission_States.Ready =>
            (if Now = On_Commanded
@@ -68,14 +62,11 @@ is
                   or else Ins.Report_Z.Value.Condition
                     = Cartesian_Robot.Failed)
                then Joint_Failed
-            elsif Now = On_Joint_Lost
-               then Joint_Lost
-            elsif Now = On_Shutdown
-               then Shut_Down
+            elsif Now = On_Joint_Lost then Joint_Lost
+            elsif Now = On_Shutdown then Shut_Down
             else None),
         when Mission_States.Departing =>
-           (if Now = Expiry_Of_Under_Way
-               then Under_Way
+           (if Now = Expiry_Of_Under_Way then Under_Way
             elsif Now = On_Commanded
                and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
                then Halt
@@ -87,10 +78,8 @@ is
                   or else Ins.Report_Z.Value.Condition
                     = Cartesian_Robot.Failed)
                then Joint_Failed
-            elsif Now = On_Joint_Lost
-               then Joint_Lost
-            elsif Now = On_Shutdown
-               then Shut_Down
+            elsif Now = On_Joint_Lost then Joint_Lost
+            elsif Now = On_Shutdown then Shut_Down
             else None),
         when Mission_States.Under_Way =>
            (if Now = Conditions
@@ -112,14 +101,11 @@ is
                   or else Ins.Report_Z.Value.Condition
                     = Cartesian_Robot.Failed)
                then Joint_Failed
-            elsif Now = On_Joint_Lost
-               then Joint_Lost
-            elsif Now = On_Shutdown
-               then Shut_Down
+            elsif Now = On_Joint_Lost then Joint_Lost
+            elsif Now = On_Shutdown then Shut_Down
             else None),
         when Mission_States.Failed =>
-           (if Now = On_Shutdown
-               then Shut_Down_Failed
+           (if Now = On_Shutdown then Shut_Down_Failed
             elsif Now = On_Commanded
                and then Ins.Command.Value.Kind = Cartesian_Robot.Reset
                then Recover
@@ -133,10 +119,8 @@ is
                and then Ins.Report_Z.Value.Condition
                  /= Cartesian_Robot.Failed
                then Recovered
-            elsif Now = Expiry_Of_Not_Recovered
-               then Not_Recovered
-            elsif Now = On_Shutdown
-               then Shut_Down_Recovering
+            elsif Now = Expiry_Of_Not_Recovered then Not_Recovered
+            elsif Now = On_Shutdown then Shut_Down_Recovering
             else None),
         when Mission_States.Shut_Down => None)
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins);
@@ -145,27 +129,14 @@ is
    with Ghost
    is
       type Node is
-        (Nowhere,
-         Waiting,
-         Homing,
-         Ready,
-         Departing,
-         Under_Way,
-         Failed,
-         Recovering,
-         Shut_Down,
-         Active,
-         Travelling,
-         Stopped,
-         Disorder);
+        (Nowhere, Waiting, Homing, Ready, Departing, Under_Way, Failed,
+         Recovering, Shut_Down, Active, Travelling, Stopped, Disorder);
 
       function Innermost (Leaf : Mission_States.Leaf) return Node is
         (Node'Val (Mission_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -200,31 +171,21 @@ is
       Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen)
        and then Self.Timers (1)
-         = Timer_After
-             (1,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (1))
        and then Self.Timers (2)
-         = Timer_After
-             (2,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (2, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (2))
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
       procedure Exit_Departing
@@ -485,13 +446,7 @@ is
             Exit_Recovering;
             Active := Chart.Moved (Active, Chart.Stopped, Chart.Shut_Down);
             Self.Leaf := Mission_States.Shut_Down;
-         when Joint_Failed =>
-            Leave_Active;
-            Active := Chart.Moved (Active, Chart.Active, Chart.Nowhere);
-            Enter_Stopped;
-            Active := Chart.Moved (Active, Chart.Stopped, Chart.Failed);
-            Self.Leaf := Mission_States.Failed;
-         when Joint_Lost =>
+         when Joint_Failed | Joint_Lost =>
             Leave_Active;
             Active := Chart.Moved (Active, Chart.Active, Chart.Nowhere);
             Enter_Stopped;

@@ -13,35 +13,16 @@ is
 
    --  [Robot_Coordinator.Mission] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_Commanded,
-      On_Joint_Lost,
-      On_Shutdown,
-      Expiry_Of_Under_Way,
-      Expiry_Of_Not_Recovered,
-      Conditions);
+     (Start_Of_Region, On_Commanded, On_Joint_Lost, On_Shutdown,
+      Expiry_Of_Under_Way, Expiry_Of_Not_Recovered, Conditions);
 
    --  [Robot_Coordinator.Mission.transitions] in order of precedence,
    --  innermost source first
    type Selection is
-     (Initial_Entry,
-      Under_Way,
-      Arrived,
-      Home,
-      Home_Again,
-      Homed,
-      Move,
-      Halt,
-      Halt_Homing,
-      Shut_Down_Failed,
-      Recover,
-      Recovered,
-      Not_Recovered,
-      Shut_Down_Recovering,
-      Joint_Failed,
-      Joint_Lost,
-      Shut_Down,
-      None);
+     (Initial_Entry, Under_Way, Arrived, Home, Home_Again, Homed, Move,
+      Halt, Halt_Homing, Shut_Down_Failed, Recover, Recovered,
+      Not_Recovered, Shut_Down_Recovering, Joint_Failed, Joint_Lost,
+      Shut_Down, None);
 
    subtype Firing is Selection range Initial_Entry .. Shut_Down;
    subtype Transition is Selection range Under_Way .. Shut_Down;
@@ -146,8 +127,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Mission_States.Leaf)
+     (T : Transition; Leaf : Mission_States.Leaf)
      return Boolean is
      (case T is
         when Under_Way => Leaf = Mission_States.Departing,
@@ -192,11 +172,7 @@ is
    --  The innermost region that holds all that a transition leaves and
    --  enters.
    type Domain is
-     (Nothing,
-      Inside_Active,
-      Inside_Travelling,
-      Inside_Stopped,
-      Everything,
+     (Nothing, Inside_Active, Inside_Travelling, Inside_Stopped, Everything,
       Beginning);
 
    function Domain_Of (T : Firing) return Domain is
@@ -230,8 +206,7 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_Travelling
               or else D = Inside_Active
               or else D = Everything
@@ -240,8 +215,7 @@ is
               After = Mission_States.Departing,
               Ravenchart.Timers.Started (5)),
         when 2 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_Stopped
               or else D = Everything
               or else D = Beginning,
@@ -311,25 +285,15 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)
-               = Timer_After
-                   (1,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (1))
+               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (1))
              and then Self.Timers (2)
-               = Timer_After
-                   (2,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (2)));
+               = Timer_After (2, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (2)));
    --  One run-to-completion step.
 end Cartesian_Robot.Robot_Coordinator.Mission;

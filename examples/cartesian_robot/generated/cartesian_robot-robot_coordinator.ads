@@ -19,13 +19,7 @@ is
    --  [Robot_Coordinator.Mission.states]
    package Mission_States is
       type Leaf is
-        (Waiting,
-         Homing,
-         Ready,
-         Departing,
-         Under_Way,
-         Failed,
-         Recovering,
+        (Waiting, Homing, Ready, Departing, Under_Way, Failed, Recovering,
          Shut_Down);
 
       subtype Active is Leaf range Waiting .. Under_Way;

@@ -12,15 +12,9 @@ with SPARK_Mode
 is
    --  [supervision.table] the activities, in the order in which they run
    type Row is
-     (Coordinator_Ports,
-      Coordinator_Mission,
-      Joint_X_Motion,
-      Joint_Y_Motion,
-      Joint_Z_Motion,
-      Joint_X_Supervise,
-      Joint_Y_Supervise,
-      Joint_Z_Supervise,
-      Coordinator_Summarise);
+     (Coordinator_Ports, Coordinator_Mission, Joint_X_Motion,
+      Joint_Y_Motion, Joint_Z_Motion, Joint_X_Supervise, Joint_Y_Supervise,
+      Joint_Z_Supervise, Coordinator_Summarise);
 
    procedure Execute (Item : Row);
 
@@ -75,16 +69,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Supervision_Priority,
-      "supervision " & "has another priority than its certificate");
+      "supervision has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Supervision_T,
-      "supervision " & "has another period than its certificate");
+      "supervision has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Supervision_D,
-      "supervision " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "supervision " & "has another offset than its certificate");
+      "supervision has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "supervision has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Coordinator_Ports).Divisor
       = Timing_Certificate.Coordinator_Ports_Divisor

@@ -2,7 +2,10 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+
 with System;
+with Ravenchart.Response_Times;
 
 package Cartesian_Robot.Timing_Certificate
 with SPARK_Mode, Pure
@@ -11,13 +14,16 @@ is
    Model_Digest : constant String :=
      "49f4594776750eda129257c7c8fc3a4090499e3b71c70250928dbe3a0b8e9db8";
 
+   use Ravenchart.Response_Times;
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period. A
-   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W, and equals it: where it is
-   --  more, W is too short; where it is less, a term is missing.
+   --  from the event, W the time claimed from the start of a busy period.
+   --  X_Up (W) is what X and all that goes before it ask for within W,
+   --  X_Rest (W) what X and those listed behind it at its level do. Needs
+   --  is the demand that arises within W, and equals it: where it is more,
+   --  W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_R : constant := 555_000;
@@ -48,19 +54,17 @@ is
    Controller_Critical_Section : constant := 5_000;
 
    --  [reception] released by arrivals, no closer than T; it may wait for T
-   --  to be over as well. B: control may be inside
-   --  joint_x.feedback.mailbox.
+   --  to be over as well. B: control in joint_x.feedback.mailbox.
    Reception_Priority : constant := System.Default_Priority + 4;
    Robot_Bus_Receive_Budget : constant := 40_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
-   Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant :=
      Robot_Bus_Receive_Budget + 4 * Controller_Context_Switch;
    Reception_B : constant := Controller_Critical_Section;
 
-   --  [trajectory] released every T. B: control may be inside
+   --  [trajectory] released every T. B: control in
    --  joint_x.feedback.mailbox.
    Trajectory_Priority : constant := System.Default_Priority + 3;
    Joint_X_Trajectory_Step_Budget : constant := 100_000;
@@ -70,48 +74,25 @@ is
    Trajectory_D : constant := 5_000_000;
    Joint_X_Trajectory_Step_Divisor : constant := 1;
    Joint_X_Trajectory_Step_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_X_Trajectory_Step_Divisor /= 1,
-      "joint_x.trajectory_step "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_X_Trajectory_Step_Phase + 1) > Joint_X_Trajectory_Step_Divisor,
-      "joint_x.trajectory_step " & "has a phase beyond its divisor");
-
    Joint_Y_Trajectory_Step_Divisor : constant := 1;
    Joint_Y_Trajectory_Step_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_Y_Trajectory_Step_Divisor /= 1,
-      "joint_y.trajectory_step "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Y_Trajectory_Step_Phase + 1) > Joint_Y_Trajectory_Step_Divisor,
-      "joint_y.trajectory_step " & "has a phase beyond its divisor");
-
    Joint_Z_Trajectory_Step_Divisor : constant := 1;
    Joint_Z_Trajectory_Step_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Joint_Z_Trajectory_Step_Divisor /= 1,
-      "joint_z.trajectory_step "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Z_Trajectory_Step_Phase + 1) > Joint_Z_Trajectory_Step_Divisor,
-      "joint_z.trajectory_step " & "has a phase beyond its divisor");
-
+     (Joint_X_Trajectory_Step_Divisor /= 1
+      or else Joint_X_Trajectory_Step_Phase /= 0
+      or else Joint_Y_Trajectory_Step_Divisor /= 1
+      or else Joint_Y_Trajectory_Step_Phase /= 0
+      or else Joint_Z_Trajectory_Step_Divisor /= 1
+      or else Joint_Z_Trajectory_Step_Phase /= 0,
+      "trajectory must keep divisors and phases of its rows");
    Trajectory_J : constant := 0;
-   Trajectory_A : constant := Trajectory_J + (Trajectory_T - 1);
    Trajectory_C : constant :=
-     Joint_X_Trajectory_Step_Budget
-     + Joint_Y_Trajectory_Step_Budget
-     + Joint_Z_Trajectory_Step_Budget
-     + 2 * Controller_Context_Switch;
+     Joint_X_Trajectory_Step_Budget + Joint_Y_Trajectory_Step_Budget
+     + Joint_Z_Trajectory_Step_Budget + 2 * Controller_Context_Switch;
    Trajectory_B : constant := Controller_Critical_Section;
 
-   --  [control] released every T. B: supervision may be inside
-   --  joint_x.order.mailbox.
+   --  [control] released every T. B: supervision in joint_x.order.mailbox.
    Control_Priority : constant := System.Default_Priority + 2;
    Joint_X_Ports_Budget : constant := 100_000;
    Joint_X_Monitoring_Budget : constant := 100_000;
@@ -126,120 +107,52 @@ is
    Control_D : constant := 10_000_000;
    Joint_X_Ports_Divisor : constant := 1;
    Joint_X_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_X_Ports_Divisor /= 1,
-      "joint_x.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_X_Ports_Phase + 1) > Joint_X_Ports_Divisor,
-      "joint_x.ports " & "has a phase beyond its divisor");
-
    Joint_X_Monitoring_Divisor : constant := 1;
    Joint_X_Monitoring_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_X_Monitoring_Divisor /= 1,
-      "joint_x.Monitoring "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_X_Monitoring_Phase + 1) > Joint_X_Monitoring_Divisor,
-      "joint_x.Monitoring " & "has a phase beyond its divisor");
-
    Joint_X_Position_Control_Divisor : constant := 1;
    Joint_X_Position_Control_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_X_Position_Control_Divisor /= 1,
-      "joint_x.position_control "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_X_Position_Control_Phase + 1)
-      > Joint_X_Position_Control_Divisor,
-      "joint_x.position_control " & "has a phase beyond its divisor");
-
    Joint_Y_Ports_Divisor : constant := 1;
    Joint_Y_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_Y_Ports_Divisor /= 1,
-      "joint_y.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Y_Ports_Phase + 1) > Joint_Y_Ports_Divisor,
-      "joint_y.ports " & "has a phase beyond its divisor");
-
    Joint_Y_Monitoring_Divisor : constant := 1;
    Joint_Y_Monitoring_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_Y_Monitoring_Divisor /= 1,
-      "joint_y.Monitoring "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Y_Monitoring_Phase + 1) > Joint_Y_Monitoring_Divisor,
-      "joint_y.Monitoring " & "has a phase beyond its divisor");
-
    Joint_Y_Position_Control_Divisor : constant := 1;
    Joint_Y_Position_Control_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_Y_Position_Control_Divisor /= 1,
-      "joint_y.position_control "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Y_Position_Control_Phase + 1)
-      > Joint_Y_Position_Control_Divisor,
-      "joint_y.position_control " & "has a phase beyond its divisor");
-
    Joint_Z_Ports_Divisor : constant := 1;
    Joint_Z_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_Z_Ports_Divisor /= 1,
-      "joint_z.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Z_Ports_Phase + 1) > Joint_Z_Ports_Divisor,
-      "joint_z.ports " & "has a phase beyond its divisor");
-
    Joint_Z_Monitoring_Divisor : constant := 1;
    Joint_Z_Monitoring_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_Z_Monitoring_Divisor /= 1,
-      "joint_z.Monitoring "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Z_Monitoring_Phase + 1) > Joint_Z_Monitoring_Divisor,
-      "joint_z.Monitoring " & "has a phase beyond its divisor");
-
    Joint_Z_Position_Control_Divisor : constant := 1;
    Joint_Z_Position_Control_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Joint_Z_Position_Control_Divisor /= 1,
-      "joint_z.position_control "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Z_Position_Control_Phase + 1)
-      > Joint_Z_Position_Control_Divisor,
-      "joint_z.position_control " & "has a phase beyond its divisor");
-
+     (Joint_X_Ports_Divisor /= 1
+      or else Joint_X_Ports_Phase /= 0
+      or else Joint_X_Monitoring_Divisor /= 1
+      or else Joint_X_Monitoring_Phase /= 0
+      or else Joint_X_Position_Control_Divisor /= 1
+      or else Joint_X_Position_Control_Phase /= 0
+      or else Joint_Y_Ports_Divisor /= 1
+      or else Joint_Y_Ports_Phase /= 0
+      or else Joint_Y_Monitoring_Divisor /= 1
+      or else Joint_Y_Monitoring_Phase /= 0
+      or else Joint_Y_Position_Control_Divisor /= 1
+      or else Joint_Y_Position_Control_Phase /= 0
+      or else Joint_Z_Ports_Divisor /= 1
+      or else Joint_Z_Ports_Phase /= 0
+      or else Joint_Z_Monitoring_Divisor /= 1
+      or else Joint_Z_Monitoring_Phase /= 0
+      or else Joint_Z_Position_Control_Divisor /= 1
+      or else Joint_Z_Position_Control_Phase /= 0,
+      "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
-   Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
-     Joint_X_Ports_Budget
-     + Joint_X_Monitoring_Budget
-     + Joint_X_Position_Control_Budget
-     + Joint_Y_Ports_Budget
-     + Joint_Y_Monitoring_Budget
-     + Joint_Y_Position_Control_Budget
-     + Joint_Z_Ports_Budget
-     + Joint_Z_Monitoring_Budget
-     + Joint_Z_Position_Control_Budget
-     + 2 * Controller_Context_Switch;
+     Joint_X_Ports_Budget + Joint_X_Monitoring_Budget
+     + Joint_X_Position_Control_Budget + Joint_Y_Ports_Budget
+     + Joint_Y_Monitoring_Budget + Joint_Y_Position_Control_Budget
+     + Joint_Z_Ports_Budget + Joint_Z_Monitoring_Budget
+     + Joint_Z_Position_Control_Budget + 2 * Controller_Context_Switch;
    Control_B : constant := Controller_Critical_Section;
 
-   --  [supervision] released every T. B: main may be inside
-   --  coordinator.Mission.queue.
+   --  [supervision] released every T. B: main in coordinator.Mission.queue.
    Supervision_Priority : constant := System.Default_Priority + 1;
    Coordinator_Ports_Budget : constant := 100_000;
    Coordinator_Mission_Budget : constant := 200_000;
@@ -254,118 +167,53 @@ is
    Supervision_D : constant := 20_000_000;
    Coordinator_Ports_Divisor : constant := 1;
    Coordinator_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Coordinator_Ports_Divisor /= 1,
-      "coordinator.ports "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Coordinator_Ports_Phase + 1) > Coordinator_Ports_Divisor,
-      "coordinator.ports " & "has a phase beyond its divisor");
-
    Coordinator_Mission_Divisor : constant := 1;
    Coordinator_Mission_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Coordinator_Mission_Divisor /= 1,
-      "coordinator.Mission "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Coordinator_Mission_Phase + 1) > Coordinator_Mission_Divisor,
-      "coordinator.Mission " & "has a phase beyond its divisor");
-
    Joint_X_Motion_Divisor : constant := 1;
    Joint_X_Motion_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_X_Motion_Divisor /= 1,
-      "joint_x.Motion " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_X_Motion_Phase + 1) > Joint_X_Motion_Divisor,
-      "joint_x.Motion " & "has a phase beyond its divisor");
-
    Joint_Y_Motion_Divisor : constant := 1;
    Joint_Y_Motion_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_Y_Motion_Divisor /= 1,
-      "joint_y.Motion " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Y_Motion_Phase + 1) > Joint_Y_Motion_Divisor,
-      "joint_y.Motion " & "has a phase beyond its divisor");
-
    Joint_Z_Motion_Divisor : constant := 1;
    Joint_Z_Motion_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_Z_Motion_Divisor /= 1,
-      "joint_z.Motion " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Z_Motion_Phase + 1) > Joint_Z_Motion_Divisor,
-      "joint_z.Motion " & "has a phase beyond its divisor");
-
    Joint_X_Supervise_Divisor : constant := 1;
    Joint_X_Supervise_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_X_Supervise_Divisor /= 1,
-      "joint_x.supervise "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_X_Supervise_Phase + 1) > Joint_X_Supervise_Divisor,
-      "joint_x.supervise " & "has a phase beyond its divisor");
-
    Joint_Y_Supervise_Divisor : constant := 1;
    Joint_Y_Supervise_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_Y_Supervise_Divisor /= 1,
-      "joint_y.supervise "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Y_Supervise_Phase + 1) > Joint_Y_Supervise_Divisor,
-      "joint_y.supervise " & "has a phase beyond its divisor");
-
    Joint_Z_Supervise_Divisor : constant := 1;
    Joint_Z_Supervise_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Joint_Z_Supervise_Divisor /= 1,
-      "joint_z.supervise "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Joint_Z_Supervise_Phase + 1) > Joint_Z_Supervise_Divisor,
-      "joint_z.supervise " & "has a phase beyond its divisor");
-
    Coordinator_Summarise_Divisor : constant := 1;
    Coordinator_Summarise_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Coordinator_Summarise_Divisor /= 1,
-      "coordinator.summarise "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Coordinator_Summarise_Phase + 1) > Coordinator_Summarise_Divisor,
-      "coordinator.summarise " & "has a phase beyond its divisor");
-
+     (Coordinator_Ports_Divisor /= 1
+      or else Coordinator_Ports_Phase /= 0
+      or else Coordinator_Mission_Divisor /= 1
+      or else Coordinator_Mission_Phase /= 0
+      or else Joint_X_Motion_Divisor /= 1
+      or else Joint_X_Motion_Phase /= 0
+      or else Joint_Y_Motion_Divisor /= 1
+      or else Joint_Y_Motion_Phase /= 0
+      or else Joint_Z_Motion_Divisor /= 1
+      or else Joint_Z_Motion_Phase /= 0
+      or else Joint_X_Supervise_Divisor /= 1
+      or else Joint_X_Supervise_Phase /= 0
+      or else Joint_Y_Supervise_Divisor /= 1
+      or else Joint_Y_Supervise_Phase /= 0
+      or else Joint_Z_Supervise_Divisor /= 1
+      or else Joint_Z_Supervise_Phase /= 0
+      or else Coordinator_Summarise_Divisor /= 1
+      or else Coordinator_Summarise_Phase /= 0,
+      "supervision must keep divisors and phases of its rows");
    Supervision_J : constant := 0;
-   Supervision_A : constant := Supervision_J + (Supervision_T - 1);
    Supervision_C : constant :=
-     Coordinator_Ports_Budget
-     + Coordinator_Mission_Budget
-     + Joint_X_Motion_Budget
-     + Joint_Y_Motion_Budget
-     + Joint_Z_Motion_Budget
-     + Joint_X_Supervise_Budget
-     + Joint_Y_Supervise_Budget
-     + Joint_Z_Supervise_Budget
-     + Coordinator_Summarise_Budget
+     Coordinator_Ports_Budget + Coordinator_Mission_Budget
+     + Joint_X_Motion_Budget + Joint_Y_Motion_Budget + Joint_Z_Motion_Budget
+     + Joint_X_Supervise_Budget + Joint_Y_Supervise_Budget
+     + Joint_Z_Supervise_Budget + Coordinator_Summarise_Budget
      + 2 * Controller_Context_Switch;
    Supervision_B : constant := Controller_Critical_Section;
 
-   --  [robot_bus.driver_rx.robot_command] the driver's work, released by
-   --  robot_bus.robot_command, which is J late. B: supervision may be
-   --  inside coordinator.Mission.queue.
+   --  [robot_bus.driver_rx.robot_command] the driver, released by
+   --  robot_bus.robot_command. B: supervision in coordinator.Mission.queue.
    Robot_Bus_Driver_Rx_Robot_Command_Priority : constant :=
      System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_Robot_Command_Budget : constant := 40_000;
@@ -373,222 +221,239 @@ is
    Robot_Bus_Driver_Rx_Robot_Command_D : constant := 100_000_000;
    Robot_Bus_Driver_Rx_Robot_Command_J : constant :=
      Robot_Bus_Robot_Command_R;
-   Robot_Bus_Driver_Rx_Robot_Command_A : constant :=
-     Robot_Bus_Driver_Rx_Robot_Command_J
-     + (Robot_Bus_Driver_Rx_Robot_Command_T - 1);
    Robot_Bus_Driver_Rx_Robot_Command_C : constant :=
      Robot_Bus_Driver_Rx_Robot_Command_Budget
      + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Robot_Command_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_tx.robot_status] the driver's work, released by
-   --  supervision, which is J late. B: supervision may be inside
-   --  coordinator.Mission.queue.
+   --  [robot_bus.driver_tx.robot_status] the driver, released by
+   --  supervision. B: supervision in coordinator.Mission.queue.
    Robot_Bus_Driver_Tx_Robot_Status_Priority : constant :=
      System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_Robot_Status_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Robot_Status_T : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_D : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_J : constant := Supervision_R;
-   Robot_Bus_Driver_Tx_Robot_Status_A : constant :=
-     Robot_Bus_Driver_Tx_Robot_Status_J
-     + (Robot_Bus_Driver_Tx_Robot_Status_T - 1);
    Robot_Bus_Driver_Tx_Robot_Status_C : constant :=
      Robot_Bus_Driver_Tx_Robot_Status_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Robot_Status_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_tx.x_set_point] the driver's work, released by
-   --  control, which is J late. B: supervision may be inside
-   --  coordinator.Mission.queue.
+   --  [robot_bus.driver_tx.x_set_point] the driver, released by control. B:
+   --  supervision in coordinator.Mission.queue.
    Robot_Bus_Driver_Tx_X_Set_Point_Priority : constant :=
      System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_X_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_X_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_J : constant := Control_R;
-   Robot_Bus_Driver_Tx_X_Set_Point_A : constant :=
-     Robot_Bus_Driver_Tx_X_Set_Point_J
-     + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1);
    Robot_Bus_Driver_Tx_X_Set_Point_C : constant :=
      Robot_Bus_Driver_Tx_X_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_X_Set_Point_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_tx.y_set_point] the driver's work, released by
-   --  control, which is J late. B: supervision may be inside
-   --  coordinator.Mission.queue.
+   --  [robot_bus.driver_tx.y_set_point] the driver, released by control. B:
+   --  supervision in coordinator.Mission.queue.
    Robot_Bus_Driver_Tx_Y_Set_Point_Priority : constant :=
      System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_Y_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_J : constant := Control_R;
-   Robot_Bus_Driver_Tx_Y_Set_Point_A : constant :=
-     Robot_Bus_Driver_Tx_Y_Set_Point_J
-     + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1);
    Robot_Bus_Driver_Tx_Y_Set_Point_C : constant :=
      Robot_Bus_Driver_Tx_Y_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Y_Set_Point_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_tx.z_set_point] the driver's work, released by
-   --  control, which is J late. B: supervision may be inside
-   --  coordinator.Mission.queue.
+   --  [robot_bus.driver_tx.z_set_point] the driver, released by control. B:
+   --  supervision in coordinator.Mission.queue.
    Robot_Bus_Driver_Tx_Z_Set_Point_Priority : constant :=
      System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_Z_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_J : constant := Control_R;
-   Robot_Bus_Driver_Tx_Z_Set_Point_A : constant :=
-     Robot_Bus_Driver_Tx_Z_Set_Point_J
-     + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1);
    Robot_Bus_Driver_Tx_Z_Set_Point_C : constant :=
      Robot_Bus_Driver_Tx_Z_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Z_Set_Point_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_rx.x_feedback] the driver's work, released by
-   --  robot_bus.x_feedback, which is J late. B: supervision may be inside
-   --  coordinator.Mission.queue.
+   --  [robot_bus.driver_rx.x_feedback] the driver, released by
+   --  robot_bus.x_feedback. B: supervision in coordinator.Mission.queue.
    Robot_Bus_Driver_Rx_X_Feedback_Priority : constant :=
      System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_X_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_X_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_J : constant := Robot_Bus_X_Feedback_R;
-   Robot_Bus_Driver_Rx_X_Feedback_A : constant :=
-     Robot_Bus_Driver_Rx_X_Feedback_J
-     + (Robot_Bus_Driver_Rx_X_Feedback_T - 1);
    Robot_Bus_Driver_Rx_X_Feedback_C : constant :=
      Robot_Bus_Driver_Rx_X_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_X_Feedback_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_rx.y_feedback] the driver's work, released by
-   --  robot_bus.y_feedback, which is J late. B: supervision may be inside
-   --  coordinator.Mission.queue.
+   --  [robot_bus.driver_rx.y_feedback] the driver, released by
+   --  robot_bus.y_feedback. B: supervision in coordinator.Mission.queue.
    Robot_Bus_Driver_Rx_Y_Feedback_Priority : constant :=
      System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_Y_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Y_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_J : constant := Robot_Bus_Y_Feedback_R;
-   Robot_Bus_Driver_Rx_Y_Feedback_A : constant :=
-     Robot_Bus_Driver_Rx_Y_Feedback_J
-     + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1);
    Robot_Bus_Driver_Rx_Y_Feedback_C : constant :=
      Robot_Bus_Driver_Rx_Y_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Y_Feedback_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_rx.z_feedback] the driver's work, released by
-   --  robot_bus.z_feedback, which is J late. B: supervision may be inside
-   --  coordinator.Mission.queue.
+   --  [robot_bus.driver_rx.z_feedback] the driver, released by
+   --  robot_bus.z_feedback. B: supervision in coordinator.Mission.queue.
    Robot_Bus_Driver_Rx_Z_Feedback_Priority : constant :=
      System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_Z_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Z_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_J : constant := Robot_Bus_Z_Feedback_R;
-   Robot_Bus_Driver_Rx_Z_Feedback_A : constant :=
-     Robot_Bus_Driver_Rx_Z_Feedback_J
-     + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1);
    Robot_Bus_Driver_Rx_Z_Feedback_C : constant :=
      Robot_Bus_Driver_Rx_Z_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Z_Feedback_B : constant :=
      Controller_Critical_Section;
 
-   --  [controller.supervisor] released every T. B: supervision may be
-   --  inside coordinator.Mission.queue.
+   --  [controller.supervisor] released every T. B: supervision in
+   --  coordinator.Mission.queue.
    Controller_Supervisor_Priority : constant := System.Default_Priority + 6;
    Controller_Supervisor_Budget : constant := 50_000;
    Controller_Supervisor_T : constant := 10_000_000;
    Controller_Supervisor_D : constant := 10_000_000;
    Controller_Supervisor_J : constant := 0;
-   Controller_Supervisor_A : constant :=
-     Controller_Supervisor_J + (Controller_Supervisor_T - 1);
    Controller_Supervisor_C : constant :=
      Controller_Supervisor_Budget + 2 * Controller_Context_Switch;
    Controller_Supervisor_B : constant := Controller_Critical_Section;
 
-   --  [controller.probe] released every T. B: main may be inside
+   --  [controller.probe] released every T. B: main in
    --  controller.probe.board.
    Controller_Probe_Priority : constant := System.Default_Priority + 7;
    Controller_Probe_Budget : constant := 20_000;
    Controller_Probe_T : constant := 1_000_000;
    Controller_Probe_D : constant := 1_000_000;
    Controller_Probe_J : constant := 0;
-   Controller_Probe_A : constant :=
-     Controller_Probe_J + (Controller_Probe_T - 1);
    Controller_Probe_C : constant :=
      Controller_Probe_Budget + 2 * Controller_Context_Switch;
    Controller_Probe_B : constant := Controller_Critical_Section;
 
+   function Controller_Probe_Up (W : Window) return Time is
+     (Demand (W, Controller_Probe_J, Controller_Probe_T, Controller_Probe_C))
+   with Static;
+   function Controller_Supervisor_Up (W : Window) return Time is
+     (Demand (W, Controller_Supervisor_J, Controller_Supervisor_T,
+         Controller_Supervisor_C, Controller_Probe_Up (W))) with Static;
+   function Robot_Bus_Driver_Rx_Robot_Command_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_Robot_Command_J,
+         Robot_Bus_Driver_Rx_Robot_Command_T,
+         Robot_Bus_Driver_Rx_Robot_Command_C, Controller_Supervisor_Up (W)))
+   with Static;
+   function Robot_Bus_Driver_Tx_Robot_Status_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Tx_Robot_Status_J,
+         Robot_Bus_Driver_Tx_Robot_Status_T,
+         Robot_Bus_Driver_Tx_Robot_Status_C,
+         Robot_Bus_Driver_Rx_Robot_Command_Up (W))) with Static;
+   function Robot_Bus_Driver_Tx_X_Set_Point_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Tx_X_Set_Point_J,
+         Robot_Bus_Driver_Tx_X_Set_Point_T,
+         Robot_Bus_Driver_Tx_X_Set_Point_C,
+         Robot_Bus_Driver_Tx_Robot_Status_Up (W))) with Static;
+   function Robot_Bus_Driver_Tx_Y_Set_Point_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Tx_Y_Set_Point_J,
+         Robot_Bus_Driver_Tx_Y_Set_Point_T,
+         Robot_Bus_Driver_Tx_Y_Set_Point_C,
+         Robot_Bus_Driver_Tx_X_Set_Point_Up (W))) with Static;
+   function Robot_Bus_Driver_Tx_Z_Set_Point_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Tx_Z_Set_Point_J,
+         Robot_Bus_Driver_Tx_Z_Set_Point_T,
+         Robot_Bus_Driver_Tx_Z_Set_Point_C,
+         Robot_Bus_Driver_Tx_Y_Set_Point_Up (W))) with Static;
+   function Robot_Bus_Driver_Rx_X_Feedback_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_X_Feedback_J,
+         Robot_Bus_Driver_Rx_X_Feedback_T, Robot_Bus_Driver_Rx_X_Feedback_C,
+         Robot_Bus_Driver_Tx_Z_Set_Point_Up (W))) with Static;
+   function Robot_Bus_Driver_Rx_Y_Feedback_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_Y_Feedback_J,
+         Robot_Bus_Driver_Rx_Y_Feedback_T, Robot_Bus_Driver_Rx_Y_Feedback_C,
+         Robot_Bus_Driver_Rx_X_Feedback_Up (W))) with Static;
+   function Robot_Bus_Driver_Rx_Z_Feedback_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_Z_Feedback_J,
+         Robot_Bus_Driver_Rx_Z_Feedback_T, Robot_Bus_Driver_Rx_Z_Feedback_C,
+         Robot_Bus_Driver_Rx_Y_Feedback_Up (W))) with Static;
+   function Reception_Up (W : Window) return Time is
+     (Demand (W, Reception_J, Reception_T, Reception_C,
+         Robot_Bus_Driver_Rx_Z_Feedback_Up (W))) with Static;
+   function Trajectory_Up (W : Window) return Time is
+     (Demand (W, Trajectory_J, Trajectory_T, Trajectory_C, Reception_Up (W)))
+   with Static;
+   function Control_Up (W : Window) return Time is
+     (Demand (W, Control_J, Control_T, Control_C, Trajectory_Up (W)))
+   with Static;
+   function Robot_Bus_Driver_Rx_Z_Feedback_Rest (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_Z_Feedback_J,
+         Robot_Bus_Driver_Rx_Z_Feedback_T, Robot_Bus_Driver_Rx_Z_Feedback_C))
+   with Static;
+   function Robot_Bus_Driver_Rx_Y_Feedback_Rest (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_Y_Feedback_J,
+         Robot_Bus_Driver_Rx_Y_Feedback_T, Robot_Bus_Driver_Rx_Y_Feedback_C,
+         Robot_Bus_Driver_Rx_Z_Feedback_Rest (W))) with Static;
+   function Robot_Bus_Driver_Rx_X_Feedback_Rest (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_X_Feedback_J,
+         Robot_Bus_Driver_Rx_X_Feedback_T, Robot_Bus_Driver_Rx_X_Feedback_C,
+         Robot_Bus_Driver_Rx_Y_Feedback_Rest (W))) with Static;
+   function Robot_Bus_Driver_Tx_Z_Set_Point_Rest (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Tx_Z_Set_Point_J,
+         Robot_Bus_Driver_Tx_Z_Set_Point_T,
+         Robot_Bus_Driver_Tx_Z_Set_Point_C,
+         Robot_Bus_Driver_Rx_X_Feedback_Rest (W))) with Static;
+   function Robot_Bus_Driver_Tx_Y_Set_Point_Rest (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Tx_Y_Set_Point_J,
+         Robot_Bus_Driver_Tx_Y_Set_Point_T,
+         Robot_Bus_Driver_Tx_Y_Set_Point_C,
+         Robot_Bus_Driver_Tx_Z_Set_Point_Rest (W))) with Static;
+   function Robot_Bus_Driver_Tx_X_Set_Point_Rest (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Tx_X_Set_Point_J,
+         Robot_Bus_Driver_Tx_X_Set_Point_T,
+         Robot_Bus_Driver_Tx_X_Set_Point_C,
+         Robot_Bus_Driver_Tx_Y_Set_Point_Rest (W))) with Static;
+   function Robot_Bus_Driver_Tx_Robot_Status_Rest (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Tx_Robot_Status_J,
+         Robot_Bus_Driver_Tx_Robot_Status_T,
+         Robot_Bus_Driver_Tx_Robot_Status_C,
+         Robot_Bus_Driver_Tx_X_Set_Point_Rest (W))) with Static;
+
    pragma Compile_Time_Error
-     ((Controller_Supervisor_Priority + 1) > Controller_Probe_Priority,
-      "controller.probe "
-      & "must have a higher priority than controller.supervisor");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Rx_Robot_Command_Priority + 1)
-      > Controller_Supervisor_Priority,
-      "controller.supervisor "
-      & "must have a higher priority than robot_bus.driver_rx.robot_command");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Robot_Command_Priority
-      /= Robot_Bus_Driver_Tx_Robot_Status_Priority,
-      "robot_bus.driver_rx.robot_command "
-      & "must have the priority of robot_bus.driver_tx.robot_status");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Robot_Status_Priority
-      /= Robot_Bus_Driver_Tx_X_Set_Point_Priority,
-      "robot_bus.driver_tx.robot_status "
-      & "must have the priority of robot_bus.driver_tx.x_set_point");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_X_Set_Point_Priority
-      /= Robot_Bus_Driver_Tx_Y_Set_Point_Priority,
-      "robot_bus.driver_tx.x_set_point "
-      & "must have the priority of robot_bus.driver_tx.y_set_point");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Y_Set_Point_Priority
-      /= Robot_Bus_Driver_Tx_Z_Set_Point_Priority,
-      "robot_bus.driver_tx.y_set_point "
-      & "must have the priority of robot_bus.driver_tx.z_set_point");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Z_Set_Point_Priority
-      /= Robot_Bus_Driver_Rx_X_Feedback_Priority,
-      "robot_bus.driver_tx.z_set_point "
-      & "must have the priority of robot_bus.driver_rx.x_feedback");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_X_Feedback_Priority
-      /= Robot_Bus_Driver_Rx_Y_Feedback_Priority,
-      "robot_bus.driver_rx.x_feedback "
-      & "must have the priority of robot_bus.driver_rx.y_feedback");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Y_Feedback_Priority
-      /= Robot_Bus_Driver_Rx_Z_Feedback_Priority,
-      "robot_bus.driver_rx.y_feedback "
-      & "must have the priority of robot_bus.driver_rx.z_feedback");
-   pragma Compile_Time_Error
-     ((Reception_Priority + 1) > Robot_Bus_Driver_Rx_Z_Feedback_Priority,
-      "robot_bus.driver_rx.z_feedback "
-      & "must have a higher priority than reception");
-   pragma Compile_Time_Error
-     ((Trajectory_Priority + 1) > Reception_Priority,
-      "reception " & "must have a higher priority than trajectory");
-   pragma Compile_Time_Error
-     ((Control_Priority + 1) > Trajectory_Priority,
-      "trajectory " & "must have a higher priority than control");
-   pragma Compile_Time_Error
-     ((Supervision_Priority + 1) > Control_Priority,
-      "control " & "must have a higher priority than supervision");
+     (Controller_Probe_Priority <= Controller_Supervisor_Priority
+      or else Controller_Supervisor_Priority
+        <= Robot_Bus_Driver_Rx_Robot_Command_Priority
+      or else Robot_Bus_Driver_Rx_Robot_Command_Priority
+        /= Robot_Bus_Driver_Tx_Robot_Status_Priority
+      or else Robot_Bus_Driver_Tx_Robot_Status_Priority
+        /= Robot_Bus_Driver_Tx_X_Set_Point_Priority
+      or else Robot_Bus_Driver_Tx_X_Set_Point_Priority
+        /= Robot_Bus_Driver_Tx_Y_Set_Point_Priority
+      or else Robot_Bus_Driver_Tx_Y_Set_Point_Priority
+        /= Robot_Bus_Driver_Tx_Z_Set_Point_Priority
+      or else Robot_Bus_Driver_Tx_Z_Set_Point_Priority
+        /= Robot_Bus_Driver_Rx_X_Feedback_Priority
+      or else Robot_Bus_Driver_Rx_X_Feedback_Priority
+        /= Robot_Bus_Driver_Rx_Y_Feedback_Priority
+      or else Robot_Bus_Driver_Rx_Y_Feedback_Priority
+        /= Robot_Bus_Driver_Rx_Z_Feedback_Priority
+      or else Robot_Bus_Driver_Rx_Z_Feedback_Priority <= Reception_Priority
+      or else Reception_Priority <= Trajectory_Priority
+      or else Trajectory_Priority <= Control_Priority
+      or else Control_Priority <= Supervision_Priority,
+      "controller must keep the order of its priorities");
 
    --  [robot_bus] bits in a second, and one bit in nanoseconds, rounded up.
-   --  Of a message, Stuffed: bits that stuffing can lengthen by a quarter;
-   --  Bits: the longest frame, with 10 bits that are not stuffed and 3 to
-   --  the next frame.
+   --  A message waits for the longest frame that goes behind it and has
+   --  begun, and for those that go before it. Of a message, Stuffed: bits
+   --  that stuffing can lengthen by a quarter; Bits: the longest frame,
+   --  with 10 bits that are not stuffed and 3 to the next frame.
    Robot_Bus_Bit_Rate : constant := 500_000;
    Robot_Bus_Bit : constant :=
      (1_000_000_000 + (Robot_Bus_Bit_Rate - 1)) / Robot_Bus_Bit_Rate;
@@ -602,15 +467,12 @@ is
    Robot_Bus_Robot_Command_Stuffed : constant :=
      34 + 8 * Robot_Bus_Robot_Command_Length;
    Robot_Bus_Robot_Command_Bits : constant :=
-     Robot_Bus_Robot_Command_Stuffed
-     + 13
-     + ((Robot_Bus_Robot_Command_Stuffed - 1) / 4);
+     Robot_Bus_Robot_Command_Stuffed + 13
+     + (Robot_Bus_Robot_Command_Stuffed - 1) / 4;
    Robot_Bus_Robot_Command_C : constant :=
-     ((Robot_Bus_Robot_Command_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     (Robot_Bus_Robot_Command_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Robot_Command_J : constant := 0;
-   Robot_Bus_Robot_Command_A : constant :=
-     Robot_Bus_Robot_Command_J + (Robot_Bus_Robot_Command_T - 1);
 
    --  [robot_bus.x_set_point] 11-bit identifier Id, Length bytes from
    --  joint_x.drive
@@ -621,15 +483,12 @@ is
    Robot_Bus_X_Set_Point_Stuffed : constant :=
      34 + 8 * Robot_Bus_X_Set_Point_Length;
    Robot_Bus_X_Set_Point_Bits : constant :=
-     Robot_Bus_X_Set_Point_Stuffed
-     + 13
-     + ((Robot_Bus_X_Set_Point_Stuffed - 1) / 4);
+     Robot_Bus_X_Set_Point_Stuffed + 13
+     + (Robot_Bus_X_Set_Point_Stuffed - 1) / 4;
    Robot_Bus_X_Set_Point_C : constant :=
-     ((Robot_Bus_X_Set_Point_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     (Robot_Bus_X_Set_Point_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_X_Set_Point_J : constant := Robot_Bus_Driver_Tx_X_Set_Point_R;
-   Robot_Bus_X_Set_Point_A : constant :=
-     Robot_Bus_X_Set_Point_J + (Robot_Bus_X_Set_Point_T - 1);
 
    --  [robot_bus.y_set_point] 11-bit identifier Id, Length bytes from
    --  joint_y.drive
@@ -640,15 +499,12 @@ is
    Robot_Bus_Y_Set_Point_Stuffed : constant :=
      34 + 8 * Robot_Bus_Y_Set_Point_Length;
    Robot_Bus_Y_Set_Point_Bits : constant :=
-     Robot_Bus_Y_Set_Point_Stuffed
-     + 13
-     + ((Robot_Bus_Y_Set_Point_Stuffed - 1) / 4);
+     Robot_Bus_Y_Set_Point_Stuffed + 13
+     + (Robot_Bus_Y_Set_Point_Stuffed - 1) / 4;
    Robot_Bus_Y_Set_Point_C : constant :=
-     ((Robot_Bus_Y_Set_Point_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     (Robot_Bus_Y_Set_Point_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Y_Set_Point_J : constant := Robot_Bus_Driver_Tx_Y_Set_Point_R;
-   Robot_Bus_Y_Set_Point_A : constant :=
-     Robot_Bus_Y_Set_Point_J + (Robot_Bus_Y_Set_Point_T - 1);
 
    --  [robot_bus.z_set_point] 11-bit identifier Id, Length bytes from
    --  joint_z.drive
@@ -659,15 +515,12 @@ is
    Robot_Bus_Z_Set_Point_Stuffed : constant :=
      34 + 8 * Robot_Bus_Z_Set_Point_Length;
    Robot_Bus_Z_Set_Point_Bits : constant :=
-     Robot_Bus_Z_Set_Point_Stuffed
-     + 13
-     + ((Robot_Bus_Z_Set_Point_Stuffed - 1) / 4);
+     Robot_Bus_Z_Set_Point_Stuffed + 13
+     + (Robot_Bus_Z_Set_Point_Stuffed - 1) / 4;
    Robot_Bus_Z_Set_Point_C : constant :=
-     ((Robot_Bus_Z_Set_Point_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     (Robot_Bus_Z_Set_Point_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Z_Set_Point_J : constant := Robot_Bus_Driver_Tx_Z_Set_Point_R;
-   Robot_Bus_Z_Set_Point_A : constant :=
-     Robot_Bus_Z_Set_Point_J + (Robot_Bus_Z_Set_Point_T - 1);
 
    --  [robot_bus.x_feedback] 11-bit identifier Id, Length bytes from
    --  somebody outside
@@ -678,15 +531,12 @@ is
    Robot_Bus_X_Feedback_Stuffed : constant :=
      34 + 8 * Robot_Bus_X_Feedback_Length;
    Robot_Bus_X_Feedback_Bits : constant :=
-     Robot_Bus_X_Feedback_Stuffed
-     + 13
-     + ((Robot_Bus_X_Feedback_Stuffed - 1) / 4);
+     Robot_Bus_X_Feedback_Stuffed + 13
+     + (Robot_Bus_X_Feedback_Stuffed - 1) / 4;
    Robot_Bus_X_Feedback_C : constant :=
-     ((Robot_Bus_X_Feedback_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     (Robot_Bus_X_Feedback_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_X_Feedback_J : constant := 0;
-   Robot_Bus_X_Feedback_A : constant :=
-     Robot_Bus_X_Feedback_J + (Robot_Bus_X_Feedback_T - 1);
 
    --  [robot_bus.y_feedback] 11-bit identifier Id, Length bytes from
    --  somebody outside
@@ -697,15 +547,12 @@ is
    Robot_Bus_Y_Feedback_Stuffed : constant :=
      34 + 8 * Robot_Bus_Y_Feedback_Length;
    Robot_Bus_Y_Feedback_Bits : constant :=
-     Robot_Bus_Y_Feedback_Stuffed
-     + 13
-     + ((Robot_Bus_Y_Feedback_Stuffed - 1) / 4);
+     Robot_Bus_Y_Feedback_Stuffed + 13
+     + (Robot_Bus_Y_Feedback_Stuffed - 1) / 4;
    Robot_Bus_Y_Feedback_C : constant :=
-     ((Robot_Bus_Y_Feedback_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     (Robot_Bus_Y_Feedback_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Y_Feedback_J : constant := 0;
-   Robot_Bus_Y_Feedback_A : constant :=
-     Robot_Bus_Y_Feedback_J + (Robot_Bus_Y_Feedback_T - 1);
 
    --  [robot_bus.z_feedback] 11-bit identifier Id, Length bytes from
    --  somebody outside
@@ -716,15 +563,12 @@ is
    Robot_Bus_Z_Feedback_Stuffed : constant :=
      34 + 8 * Robot_Bus_Z_Feedback_Length;
    Robot_Bus_Z_Feedback_Bits : constant :=
-     Robot_Bus_Z_Feedback_Stuffed
-     + 13
-     + ((Robot_Bus_Z_Feedback_Stuffed - 1) / 4);
+     Robot_Bus_Z_Feedback_Stuffed + 13
+     + (Robot_Bus_Z_Feedback_Stuffed - 1) / 4;
    Robot_Bus_Z_Feedback_C : constant :=
-     ((Robot_Bus_Z_Feedback_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     (Robot_Bus_Z_Feedback_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Z_Feedback_J : constant := 0;
-   Robot_Bus_Z_Feedback_A : constant :=
-     Robot_Bus_Z_Feedback_J + (Robot_Bus_Z_Feedback_T - 1);
 
    --  [robot_bus.robot_status] 11-bit identifier Id, Length bytes from
    --  coordinator.status
@@ -735,1400 +579,390 @@ is
    Robot_Bus_Robot_Status_Stuffed : constant :=
      34 + 8 * Robot_Bus_Robot_Status_Length;
    Robot_Bus_Robot_Status_Bits : constant :=
-     Robot_Bus_Robot_Status_Stuffed
-     + 13
-     + ((Robot_Bus_Robot_Status_Stuffed - 1) / 4);
+     Robot_Bus_Robot_Status_Stuffed + 13
+     + (Robot_Bus_Robot_Status_Stuffed - 1) / 4;
    Robot_Bus_Robot_Status_C : constant :=
-     ((Robot_Bus_Robot_Status_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     (Robot_Bus_Robot_Status_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Robot_Status_J : constant :=
      Robot_Bus_Driver_Tx_Robot_Status_R;
-   Robot_Bus_Robot_Status_A : constant :=
-     Robot_Bus_Robot_Status_J + (Robot_Bus_Robot_Status_T - 1);
 
-   pragma Compile_Time_Error
-     (((2**19 * Robot_Bus_Robot_Command_Id) + 1)
-      > (2**19 * Robot_Bus_X_Set_Point_Id),
-      "robot_bus.robot_command "
-      & "must win the arbitration against robot_bus.x_set_point");
-   pragma Compile_Time_Error
-     (((2**19 * Robot_Bus_X_Set_Point_Id) + 1)
-      > (2**19 * Robot_Bus_Y_Set_Point_Id),
-      "robot_bus.x_set_point "
-      & "must win the arbitration against robot_bus.y_set_point");
-   pragma Compile_Time_Error
-     (((2**19 * Robot_Bus_Y_Set_Point_Id) + 1)
-      > (2**19 * Robot_Bus_Z_Set_Point_Id),
-      "robot_bus.y_set_point "
-      & "must win the arbitration against robot_bus.z_set_point");
-   pragma Compile_Time_Error
-     (((2**19 * Robot_Bus_Z_Set_Point_Id) + 1)
-      > (2**19 * Robot_Bus_X_Feedback_Id),
-      "robot_bus.z_set_point "
-      & "must win the arbitration against robot_bus.x_feedback");
-   pragma Compile_Time_Error
-     (((2**19 * Robot_Bus_X_Feedback_Id) + 1)
-      > (2**19 * Robot_Bus_Y_Feedback_Id),
-      "robot_bus.x_feedback "
-      & "must win the arbitration against robot_bus.y_feedback");
-   pragma Compile_Time_Error
-     (((2**19 * Robot_Bus_Y_Feedback_Id) + 1)
-      > (2**19 * Robot_Bus_Z_Feedback_Id),
-      "robot_bus.y_feedback "
-      & "must win the arbitration against robot_bus.z_feedback");
-   pragma Compile_Time_Error
-     (((2**19 * Robot_Bus_Z_Feedback_Id) + 1)
-      > (2**19 * Robot_Bus_Robot_Status_Id),
-      "robot_bus.z_feedback "
-      & "must win the arbitration against robot_bus.robot_status");
-
-   --  [reception] what can delay it: jobs of the same or higher priority
+   --  [reception] what delays it
    Reception_W : constant := Reception_R - Reception_J;
    Reception_Needs : constant :=
-     Reception_C
-     + Reception_B
-     + (((Reception_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Reception_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Reception_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Reception_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Reception_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Reception_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Reception_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Reception_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Reception_W + Controller_Supervisor_A) / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Reception_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
+     Reception_C + Reception_B
+     + Robot_Bus_Driver_Rx_Z_Feedback_Up (Reception_W);
+   pragma Compile_Time_Error (Reception_W /= Reception_Needs,
+      "reception claims a wrong response time");
+   pragma Compile_Time_Error
+     (Reception_R > Time'Min (Reception_D, Reception_T),
+      "reception can miss its deadline or overlap");
+   pragma Assert
+     (Reception_Needs <= Reception_W and then Reception_R <= Reception_D);
 
-   pragma Compile_Time_Error
-     (0 > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_Needs > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_W > Reception_Needs,
-      "reception " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Reception_J + Reception_W) > Reception_T,
-      "reception " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Reception_R > Reception_D,
-      "reception " & "can miss its deadline");
-   pragma Assert (Reception_Needs <= Reception_W);
-   pragma Assert (Reception_R <= Reception_D);
-
-   --  [trajectory] what can delay it: jobs of the same or higher priority
+   --  [trajectory] what delays it
    Trajectory_W : constant := Trajectory_R - Trajectory_J;
    Trajectory_Needs : constant :=
-     Trajectory_C
-     + Trajectory_B
-     + (((Trajectory_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Trajectory_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Trajectory_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Trajectory_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Trajectory_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Trajectory_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Trajectory_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Trajectory_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Trajectory_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Trajectory_W + Controller_Supervisor_A) / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Trajectory_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
+     Trajectory_C + Trajectory_B + Reception_Up (Trajectory_W);
+   pragma Compile_Time_Error (Trajectory_W /= Trajectory_Needs,
+      "trajectory claims a wrong response time");
+   pragma Compile_Time_Error
+     (Trajectory_R > Time'Min (Trajectory_D, Trajectory_T),
+      "trajectory can miss its deadline or overlap");
+   pragma Assert
+     (Trajectory_Needs <= Trajectory_W and then Trajectory_R <= Trajectory_D);
 
-   pragma Compile_Time_Error
-     (0 > Trajectory_W,
-      "trajectory " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Trajectory_Needs > Trajectory_W,
-      "trajectory " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Trajectory_W > Trajectory_Needs,
-      "trajectory " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Trajectory_J + Trajectory_W) > Trajectory_T,
-      "trajectory " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Trajectory_R > Trajectory_D,
-      "trajectory " & "can miss its deadline");
-   pragma Assert (Trajectory_Needs <= Trajectory_W);
-   pragma Assert (Trajectory_R <= Trajectory_D);
-
-   --  [control] what can delay it: jobs of the same or higher priority
+   --  [control] what delays it
    Control_W : constant := Control_R - Control_J;
    Control_Needs : constant :=
-     Control_C
-     + Control_B
-     + (((Control_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Control_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
-     + (((Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Control_W + Controller_Supervisor_A) / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Control_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
+     Control_C + Control_B + Trajectory_Up (Control_W);
+   pragma Compile_Time_Error (Control_W /= Control_Needs,
+      "control claims a wrong response time");
+   pragma Compile_Time_Error (Control_R > Time'Min (Control_D, Control_T),
+      "control can miss its deadline or overlap");
+   pragma Assert
+     (Control_Needs <= Control_W and then Control_R <= Control_D);
 
-   pragma Compile_Time_Error
-     (0 > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_Needs > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_W > Control_Needs,
-      "control " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Control_J + Control_W) > Control_T,
-      "control " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Control_R > Control_D,
-      "control " & "can miss its deadline");
-   pragma Assert (Control_Needs <= Control_W);
-   pragma Assert (Control_R <= Control_D);
-
-   --  [joint_x.ports] done, from the event that releases its processor
+   --  [joint_x.ports] done, from the event of its processor
    Joint_X_Ports_Done : constant := 975_000;
    Joint_X_Ports_W : constant := Joint_X_Ports_Done - Control_J;
    Joint_X_Ports_Needs : constant :=
-     2 * Controller_Context_Switch
-     + Joint_X_Ports_Budget
-     + Control_B
-     + (((Joint_X_Ports_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Joint_X_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
-     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_X_Ports_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Joint_X_Ports_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
+     2 * Controller_Context_Switch + Joint_X_Ports_Budget + Control_B
+     + Trajectory_Up (Joint_X_Ports_W);
+   pragma Compile_Time_Error (Joint_X_Ports_W /= Joint_X_Ports_Needs,
+      "joint_x.ports claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Joint_X_Ports_W,
-      "joint_x.ports " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_X_Ports_Needs > Joint_X_Ports_W,
-      "joint_x.ports " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_X_Ports_W > Joint_X_Ports_Needs,
-      "joint_x.ports " & "claims more than its terms add up to");
-
-   --  [joint_x.position_control] done, from the event that releases its
-   --  processor
+   --  [joint_x.position_control] done, from the event of its processor
    Joint_X_Position_Control_Done : constant := 1_315_000;
    Joint_X_Position_Control_W : constant :=
      Joint_X_Position_Control_Done - Control_J;
    Joint_X_Position_Control_Needs : constant :=
-     2 * Controller_Context_Switch
-     + Joint_X_Ports_Budget
-     + Joint_X_Monitoring_Budget
-     + Joint_X_Position_Control_Budget
-     + Control_B
-     + (((Joint_X_Position_Control_W + Reception_A) / Reception_T)
-        * Reception_C)
-     + (((Joint_X_Position_Control_W + Trajectory_A) / Trajectory_T)
-        * Trajectory_C)
-     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_X_Position_Control_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Joint_X_Position_Control_W + Controller_Probe_A)
-         / Controller_Probe_T)
-        * Controller_Probe_C);
+     2 * Controller_Context_Switch + Joint_X_Ports_Budget
+     + Joint_X_Monitoring_Budget + Joint_X_Position_Control_Budget
+     + Control_B + Trajectory_Up (Joint_X_Position_Control_W);
+   pragma Compile_Time_Error
+     (Joint_X_Position_Control_W /= Joint_X_Position_Control_Needs,
+      "joint_x.position_control claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Joint_X_Position_Control_W,
-      "joint_x.position_control "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_X_Position_Control_Needs > Joint_X_Position_Control_W,
-      "joint_x.position_control "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_X_Position_Control_W > Joint_X_Position_Control_Needs,
-      "joint_x.position_control " & "claims more than its terms add up to");
-
-   --  [joint_y.ports] done, from the event that releases its processor
+   --  [joint_y.ports] done, from the event of its processor
    Joint_Y_Ports_Done : constant := 1_415_000;
    Joint_Y_Ports_W : constant := Joint_Y_Ports_Done - Control_J;
    Joint_Y_Ports_Needs : constant :=
-     2 * Controller_Context_Switch
-     + Joint_X_Ports_Budget
-     + Joint_X_Monitoring_Budget
-     + Joint_X_Position_Control_Budget
-     + Joint_Y_Ports_Budget
-     + Control_B
-     + (((Joint_Y_Ports_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Joint_Y_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
-     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_Y_Ports_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Joint_Y_Ports_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
+     2 * Controller_Context_Switch + Joint_X_Ports_Budget
+     + Joint_X_Monitoring_Budget + Joint_X_Position_Control_Budget
+     + Joint_Y_Ports_Budget + Control_B + Trajectory_Up (Joint_Y_Ports_W);
+   pragma Compile_Time_Error (Joint_Y_Ports_W /= Joint_Y_Ports_Needs,
+      "joint_y.ports claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Joint_Y_Ports_W,
-      "joint_y.ports " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_Y_Ports_Needs > Joint_Y_Ports_W,
-      "joint_y.ports " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_Y_Ports_W > Joint_Y_Ports_Needs,
-      "joint_y.ports " & "claims more than its terms add up to");
-
-   --  [joint_y.position_control] done, from the event that releases its
-   --  processor
+   --  [joint_y.position_control] done, from the event of its processor
    Joint_Y_Position_Control_Done : constant := 1_665_000;
    Joint_Y_Position_Control_W : constant :=
      Joint_Y_Position_Control_Done - Control_J;
    Joint_Y_Position_Control_Needs : constant :=
-     2 * Controller_Context_Switch
-     + Joint_X_Ports_Budget
-     + Joint_X_Monitoring_Budget
-     + Joint_X_Position_Control_Budget
-     + Joint_Y_Ports_Budget
-     + Joint_Y_Monitoring_Budget
-     + Joint_Y_Position_Control_Budget
-     + Control_B
-     + (((Joint_Y_Position_Control_W + Reception_A) / Reception_T)
-        * Reception_C)
-     + (((Joint_Y_Position_Control_W + Trajectory_A) / Trajectory_T)
-        * Trajectory_C)
-     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_Y_Position_Control_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Joint_Y_Position_Control_W + Controller_Probe_A)
-         / Controller_Probe_T)
-        * Controller_Probe_C);
+     2 * Controller_Context_Switch + Joint_X_Ports_Budget
+     + Joint_X_Monitoring_Budget + Joint_X_Position_Control_Budget
+     + Joint_Y_Ports_Budget + Joint_Y_Monitoring_Budget
+     + Joint_Y_Position_Control_Budget + Control_B
+     + Trajectory_Up (Joint_Y_Position_Control_W);
+   pragma Compile_Time_Error
+     (Joint_Y_Position_Control_W /= Joint_Y_Position_Control_Needs,
+      "joint_y.position_control claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Joint_Y_Position_Control_W,
-      "joint_y.position_control "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_Y_Position_Control_Needs > Joint_Y_Position_Control_W,
-      "joint_y.position_control "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_Y_Position_Control_W > Joint_Y_Position_Control_Needs,
-      "joint_y.position_control " & "claims more than its terms add up to");
-
-   --  [joint_z.ports] done, from the event that releases its processor
+   --  [joint_z.ports] done, from the event of its processor
    Joint_Z_Ports_Done : constant := 1_765_000;
    Joint_Z_Ports_W : constant := Joint_Z_Ports_Done - Control_J;
    Joint_Z_Ports_Needs : constant :=
-     2 * Controller_Context_Switch
-     + Joint_X_Ports_Budget
-     + Joint_X_Monitoring_Budget
-     + Joint_X_Position_Control_Budget
-     + Joint_Y_Ports_Budget
-     + Joint_Y_Monitoring_Budget
-     + Joint_Y_Position_Control_Budget
-     + Joint_Z_Ports_Budget
-     + Control_B
-     + (((Joint_Z_Ports_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Joint_Z_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
-     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_Z_Ports_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Joint_Z_Ports_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
+     2 * Controller_Context_Switch + Joint_X_Ports_Budget
+     + Joint_X_Monitoring_Budget + Joint_X_Position_Control_Budget
+     + Joint_Y_Ports_Budget + Joint_Y_Monitoring_Budget
+     + Joint_Y_Position_Control_Budget + Joint_Z_Ports_Budget + Control_B
+     + Trajectory_Up (Joint_Z_Ports_W);
+   pragma Compile_Time_Error (Joint_Z_Ports_W /= Joint_Z_Ports_Needs,
+      "joint_z.ports claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Joint_Z_Ports_W,
-      "joint_z.ports " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_Z_Ports_Needs > Joint_Z_Ports_W,
-      "joint_z.ports " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_Z_Ports_W > Joint_Z_Ports_Needs,
-      "joint_z.ports " & "claims more than its terms add up to");
-
-   --  [joint_z.position_control] done, from the event that releases its
-   --  processor
+   --  [joint_z.position_control] done, from the event of its processor
    Joint_Z_Position_Control_Done : constant := 2_105_000;
    Joint_Z_Position_Control_W : constant :=
      Joint_Z_Position_Control_Done - Control_J;
    Joint_Z_Position_Control_Needs : constant :=
-     2 * Controller_Context_Switch
-     + Joint_X_Ports_Budget
-     + Joint_X_Monitoring_Budget
-     + Joint_X_Position_Control_Budget
-     + Joint_Y_Ports_Budget
-     + Joint_Y_Monitoring_Budget
-     + Joint_Y_Position_Control_Budget
-     + Joint_Z_Ports_Budget
-     + Joint_Z_Monitoring_Budget
-     + Joint_Z_Position_Control_Budget
-     + Control_B
-     + (((Joint_Z_Position_Control_W + Reception_A) / Reception_T)
-        * Reception_C)
-     + (((Joint_Z_Position_Control_W + Trajectory_A) / Trajectory_T)
-        * Trajectory_C)
-     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_Z_Position_Control_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Joint_Z_Position_Control_W + Controller_Probe_A)
-         / Controller_Probe_T)
-        * Controller_Probe_C);
+     2 * Controller_Context_Switch + Joint_X_Ports_Budget
+     + Joint_X_Monitoring_Budget + Joint_X_Position_Control_Budget
+     + Joint_Y_Ports_Budget + Joint_Y_Monitoring_Budget
+     + Joint_Y_Position_Control_Budget + Joint_Z_Ports_Budget
+     + Joint_Z_Monitoring_Budget + Joint_Z_Position_Control_Budget
+     + Control_B + Trajectory_Up (Joint_Z_Position_Control_W);
+   pragma Compile_Time_Error
+     (Joint_Z_Position_Control_W /= Joint_Z_Position_Control_Needs,
+      "joint_z.position_control claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Joint_Z_Position_Control_W,
-      "joint_z.position_control "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_Z_Position_Control_Needs > Joint_Z_Position_Control_W,
-      "joint_z.position_control "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_Z_Position_Control_W > Joint_Z_Position_Control_Needs,
-      "joint_z.position_control " & "claims more than its terms add up to");
-
-   --  [supervision] what can delay it: jobs of the same or higher priority
+   --  [supervision] what delays it
    Supervision_W : constant := Supervision_R - Supervision_J;
    Supervision_Needs : constant :=
-     Supervision_C
-     + Supervision_B
-     + (((Supervision_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Supervision_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
-     + (((Supervision_W + Control_A) / Control_T) * Control_C)
-     + (((Supervision_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Supervision_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Supervision_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Supervision_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Supervision_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Supervision_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Supervision_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Supervision_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Supervision_W + Controller_Supervisor_A) / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Supervision_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
+     Supervision_C + Supervision_B + Control_Up (Supervision_W);
+   pragma Compile_Time_Error (Supervision_W /= Supervision_Needs,
+      "supervision claims a wrong response time");
+   pragma Compile_Time_Error
+     (Supervision_R > Time'Min (Supervision_D, Supervision_T),
+      "supervision can miss its deadline or overlap");
+   pragma Assert
+     (Supervision_Needs <= Supervision_W
+      and then Supervision_R <= Supervision_D);
 
-   pragma Compile_Time_Error
-     (0 > Supervision_W,
-      "supervision " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Supervision_Needs > Supervision_W,
-      "supervision " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Supervision_W > Supervision_Needs,
-      "supervision " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Supervision_J + Supervision_W) > Supervision_T,
-      "supervision " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Supervision_R > Supervision_D,
-      "supervision " & "can miss its deadline");
-   pragma Assert (Supervision_Needs <= Supervision_W);
-   pragma Assert (Supervision_R <= Supervision_D);
-
-   --  [coordinator.ports] done, from the event that releases its processor
+   --  [coordinator.ports] done, from the event of its processor
    Coordinator_Ports_Done : constant := 2_215_000;
    Coordinator_Ports_W : constant := Coordinator_Ports_Done - Supervision_J;
    Coordinator_Ports_Needs : constant :=
-     2 * Controller_Context_Switch
-     + Coordinator_Ports_Budget
-     + Supervision_B
-     + (((Coordinator_Ports_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Coordinator_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
-     + (((Coordinator_Ports_W + Control_A) / Control_T) * Control_C)
-     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Coordinator_Ports_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Coordinator_Ports_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
+     2 * Controller_Context_Switch + Coordinator_Ports_Budget
+     + Supervision_B + Control_Up (Coordinator_Ports_W);
+   pragma Compile_Time_Error
+     (Coordinator_Ports_W /= Coordinator_Ports_Needs,
+      "coordinator.ports claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Coordinator_Ports_W,
-      "coordinator.ports "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Coordinator_Ports_Needs > Coordinator_Ports_W,
-      "coordinator.ports "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Coordinator_Ports_W > Coordinator_Ports_Needs,
-      "coordinator.ports " & "claims more than its terms add up to");
-
-   --  [joint_x.supervise] done, from the event that releases its processor
+   --  [joint_x.supervise] done, from the event of its processor
    Joint_X_Supervise_Done : constant := 2_965_000;
    Joint_X_Supervise_W : constant := Joint_X_Supervise_Done - Supervision_J;
    Joint_X_Supervise_Needs : constant :=
-     2 * Controller_Context_Switch
-     + Coordinator_Ports_Budget
-     + Coordinator_Mission_Budget
-     + Joint_X_Motion_Budget
-     + Joint_Y_Motion_Budget
-     + Joint_Z_Motion_Budget
-     + Joint_X_Supervise_Budget
-     + Supervision_B
-     + (((Joint_X_Supervise_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Joint_X_Supervise_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
-     + (((Joint_X_Supervise_W + Control_A) / Control_T) * Control_C)
-     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_X_Supervise_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Joint_X_Supervise_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
+     2 * Controller_Context_Switch + Coordinator_Ports_Budget
+     + Coordinator_Mission_Budget + Joint_X_Motion_Budget
+     + Joint_Y_Motion_Budget + Joint_Z_Motion_Budget
+     + Joint_X_Supervise_Budget + Supervision_B
+     + Control_Up (Joint_X_Supervise_W);
+   pragma Compile_Time_Error
+     (Joint_X_Supervise_W /= Joint_X_Supervise_Needs,
+      "joint_x.supervise claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Joint_X_Supervise_W,
-      "joint_x.supervise "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_X_Supervise_Needs > Joint_X_Supervise_W,
-      "joint_x.supervise "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Joint_X_Supervise_W > Joint_X_Supervise_Needs,
-      "joint_x.supervise " & "claims more than its terms add up to");
-
-   --  [coordinator.summarise] done, from the event that releases its
-   --  processor
+   --  [coordinator.summarise] done, from the event of its processor
    Coordinator_Summarise_Done : constant := 3_405_000;
    Coordinator_Summarise_W : constant :=
      Coordinator_Summarise_Done - Supervision_J;
    Coordinator_Summarise_Needs : constant :=
-     2 * Controller_Context_Switch
-     + Coordinator_Ports_Budget
-     + Coordinator_Mission_Budget
-     + Joint_X_Motion_Budget
-     + Joint_Y_Motion_Budget
-     + Joint_Z_Motion_Budget
-     + Joint_X_Supervise_Budget
-     + Joint_Y_Supervise_Budget
-     + Joint_Z_Supervise_Budget
-     + Coordinator_Summarise_Budget
-     + Supervision_B
-     + (((Coordinator_Summarise_W + Reception_A) / Reception_T)
-        * Reception_C)
-     + (((Coordinator_Summarise_W + Trajectory_A) / Trajectory_T)
-        * Trajectory_C)
-     + (((Coordinator_Summarise_W + Control_A) / Control_T) * Control_C)
-     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Coordinator_Summarise_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Coordinator_Summarise_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
+     2 * Controller_Context_Switch + Coordinator_Ports_Budget
+     + Coordinator_Mission_Budget + Joint_X_Motion_Budget
+     + Joint_Y_Motion_Budget + Joint_Z_Motion_Budget
+     + Joint_X_Supervise_Budget + Joint_Y_Supervise_Budget
+     + Joint_Z_Supervise_Budget + Coordinator_Summarise_Budget
+     + Supervision_B + Control_Up (Coordinator_Summarise_W);
+   pragma Compile_Time_Error
+     (Coordinator_Summarise_W /= Coordinator_Summarise_Needs,
+      "coordinator.summarise claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Coordinator_Summarise_W,
-      "coordinator.summarise "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Coordinator_Summarise_Needs > Coordinator_Summarise_W,
-      "coordinator.summarise "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Coordinator_Summarise_W > Coordinator_Summarise_Needs,
-      "coordinator.summarise " & "claims more than its terms add up to");
-
-   --  [robot_bus.driver_rx.robot_command] what can delay it: jobs of the
-   --  same or higher priority
+   --  [robot_bus.driver_rx.robot_command] what delays it
    Robot_Bus_Driver_Rx_Robot_Command_W : constant :=
      Robot_Bus_Driver_Rx_Robot_Command_R
      - Robot_Bus_Driver_Rx_Robot_Command_J;
    Robot_Bus_Driver_Rx_Robot_Command_Needs : constant :=
      Robot_Bus_Driver_Rx_Robot_Command_C
      + Robot_Bus_Driver_Rx_Robot_Command_B
-     + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_W + Controller_Probe_A)
-         / Controller_Probe_T)
-        * Controller_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Robot_Bus_Driver_Rx_Robot_Command_W,
-      "robot_bus.driver_rx.robot_command "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Robot_Command_Needs
-      > Robot_Bus_Driver_Rx_Robot_Command_W,
-      "robot_bus.driver_rx.robot_command "
-      & "can take longer than its claimed response time");
+     + Controller_Supervisor_Up (Robot_Bus_Driver_Rx_Robot_Command_W)
+     + Robot_Bus_Driver_Tx_Robot_Status_Rest
+         (Robot_Bus_Driver_Rx_Robot_Command_W);
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_Robot_Command_W
-      > Robot_Bus_Driver_Rx_Robot_Command_Needs,
-      "robot_bus.driver_rx.robot_command "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Rx_Robot_Command_J
-       + Robot_Bus_Driver_Rx_Robot_Command_W)
-      > Robot_Bus_Driver_Rx_Robot_Command_T,
-      "robot_bus.driver_rx.robot_command "
-      & "can be released again before it completes");
+      /= Robot_Bus_Driver_Rx_Robot_Command_Needs,
+      "robot_bus.driver_rx.robot_command claims a wrong response time");
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_Robot_Command_R
-      > Robot_Bus_Driver_Rx_Robot_Command_D,
-      "robot_bus.driver_rx.robot_command " & "can miss its deadline");
+      > Time'Min (Robot_Bus_Driver_Rx_Robot_Command_D,
+           Robot_Bus_Driver_Rx_Robot_Command_T),
+      "robot_bus.driver_rx.robot_command can miss its deadline or overlap");
    pragma Assert
      (Robot_Bus_Driver_Rx_Robot_Command_Needs
-      <= Robot_Bus_Driver_Rx_Robot_Command_W);
-   pragma Assert
-     (Robot_Bus_Driver_Rx_Robot_Command_R
-      <= Robot_Bus_Driver_Rx_Robot_Command_D);
+      <= Robot_Bus_Driver_Rx_Robot_Command_W
+      and then Robot_Bus_Driver_Rx_Robot_Command_R
+        <= Robot_Bus_Driver_Rx_Robot_Command_D);
 
-   --  [robot_bus.driver_tx.robot_status] what can delay it: jobs of the
-   --  same or higher priority
+   --  [robot_bus.driver_tx.robot_status] what delays it
    Robot_Bus_Driver_Tx_Robot_Status_W : constant :=
      Robot_Bus_Driver_Tx_Robot_Status_R - Robot_Bus_Driver_Tx_Robot_Status_J;
    Robot_Bus_Driver_Tx_Robot_Status_Needs : constant :=
-     Robot_Bus_Driver_Tx_Robot_Status_C
-     + Robot_Bus_Driver_Tx_Robot_Status_B
-     + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_W + Controller_Probe_A)
-         / Controller_Probe_T)
-        * Controller_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Robot_Bus_Driver_Tx_Robot_Status_W,
-      "robot_bus.driver_tx.robot_status "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Robot_Status_Needs
-      > Robot_Bus_Driver_Tx_Robot_Status_W,
-      "robot_bus.driver_tx.robot_status "
-      & "can take longer than its claimed response time");
+     Robot_Bus_Driver_Tx_Robot_Status_C + Robot_Bus_Driver_Tx_Robot_Status_B
+     + Robot_Bus_Driver_Rx_Robot_Command_Up
+         (Robot_Bus_Driver_Tx_Robot_Status_W)
+     + Robot_Bus_Driver_Tx_X_Set_Point_Rest
+         (Robot_Bus_Driver_Tx_Robot_Status_W);
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_Robot_Status_W
-      > Robot_Bus_Driver_Tx_Robot_Status_Needs,
-      "robot_bus.driver_tx.robot_status "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Tx_Robot_Status_J
-       + Robot_Bus_Driver_Tx_Robot_Status_W)
-      > Robot_Bus_Driver_Tx_Robot_Status_T,
-      "robot_bus.driver_tx.robot_status "
-      & "can be released again before it completes");
+      /= Robot_Bus_Driver_Tx_Robot_Status_Needs,
+      "robot_bus.driver_tx.robot_status claims a wrong response time");
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_Robot_Status_R
-      > Robot_Bus_Driver_Tx_Robot_Status_D,
-      "robot_bus.driver_tx.robot_status " & "can miss its deadline");
+      > Time'Min (Robot_Bus_Driver_Tx_Robot_Status_D,
+           Robot_Bus_Driver_Tx_Robot_Status_T),
+      "robot_bus.driver_tx.robot_status can miss its deadline or overlap");
    pragma Assert
      (Robot_Bus_Driver_Tx_Robot_Status_Needs
-      <= Robot_Bus_Driver_Tx_Robot_Status_W);
-   pragma Assert
-     (Robot_Bus_Driver_Tx_Robot_Status_R
-      <= Robot_Bus_Driver_Tx_Robot_Status_D);
+      <= Robot_Bus_Driver_Tx_Robot_Status_W
+      and then Robot_Bus_Driver_Tx_Robot_Status_R
+        <= Robot_Bus_Driver_Tx_Robot_Status_D);
 
-   --  [robot_bus.driver_tx.x_set_point] what can delay it: jobs of the same
-   --  or higher priority
+   --  [robot_bus.driver_tx.x_set_point] what delays it
    Robot_Bus_Driver_Tx_X_Set_Point_W : constant :=
      Robot_Bus_Driver_Tx_X_Set_Point_R - Robot_Bus_Driver_Tx_X_Set_Point_J;
    Robot_Bus_Driver_Tx_X_Set_Point_Needs : constant :=
-     Robot_Bus_Driver_Tx_X_Set_Point_C
-     + Robot_Bus_Driver_Tx_X_Set_Point_B
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_W + Controller_Probe_A)
-         / Controller_Probe_T)
-        * Controller_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Robot_Bus_Driver_Tx_X_Set_Point_W,
-      "robot_bus.driver_tx.x_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_X_Set_Point_Needs
-      > Robot_Bus_Driver_Tx_X_Set_Point_W,
-      "robot_bus.driver_tx.x_set_point "
-      & "can take longer than its claimed response time");
+     Robot_Bus_Driver_Tx_X_Set_Point_C + Robot_Bus_Driver_Tx_X_Set_Point_B
+     + Robot_Bus_Driver_Tx_Robot_Status_Up
+         (Robot_Bus_Driver_Tx_X_Set_Point_W)
+     + Robot_Bus_Driver_Tx_Y_Set_Point_Rest
+         (Robot_Bus_Driver_Tx_X_Set_Point_W);
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_X_Set_Point_W
-      > Robot_Bus_Driver_Tx_X_Set_Point_Needs,
-      "robot_bus.driver_tx.x_set_point "
-      & "claims more than its terms add up to");
+      /= Robot_Bus_Driver_Tx_X_Set_Point_Needs,
+      "robot_bus.driver_tx.x_set_point claims a wrong response time");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Tx_X_Set_Point_J + Robot_Bus_Driver_Tx_X_Set_Point_W)
-      > Robot_Bus_Driver_Tx_X_Set_Point_T,
-      "robot_bus.driver_tx.x_set_point "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_X_Set_Point_R > Robot_Bus_Driver_Tx_X_Set_Point_D,
-      "robot_bus.driver_tx.x_set_point " & "can miss its deadline");
+     (Robot_Bus_Driver_Tx_X_Set_Point_R
+      > Time'Min (Robot_Bus_Driver_Tx_X_Set_Point_D,
+           Robot_Bus_Driver_Tx_X_Set_Point_T),
+      "robot_bus.driver_tx.x_set_point can miss its deadline or overlap");
    pragma Assert
      (Robot_Bus_Driver_Tx_X_Set_Point_Needs
-      <= Robot_Bus_Driver_Tx_X_Set_Point_W);
-   pragma Assert
-     (Robot_Bus_Driver_Tx_X_Set_Point_R <= Robot_Bus_Driver_Tx_X_Set_Point_D);
+      <= Robot_Bus_Driver_Tx_X_Set_Point_W
+      and then Robot_Bus_Driver_Tx_X_Set_Point_R
+        <= Robot_Bus_Driver_Tx_X_Set_Point_D);
 
-   --  [robot_bus.driver_tx.y_set_point] what can delay it: jobs of the same
-   --  or higher priority
+   --  [robot_bus.driver_tx.y_set_point] what delays it
    Robot_Bus_Driver_Tx_Y_Set_Point_W : constant :=
      Robot_Bus_Driver_Tx_Y_Set_Point_R - Robot_Bus_Driver_Tx_Y_Set_Point_J;
    Robot_Bus_Driver_Tx_Y_Set_Point_Needs : constant :=
-     Robot_Bus_Driver_Tx_Y_Set_Point_C
-     + Robot_Bus_Driver_Tx_Y_Set_Point_B
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W + Controller_Probe_A)
-         / Controller_Probe_T)
-        * Controller_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Robot_Bus_Driver_Tx_Y_Set_Point_W,
-      "robot_bus.driver_tx.y_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Y_Set_Point_Needs
-      > Robot_Bus_Driver_Tx_Y_Set_Point_W,
-      "robot_bus.driver_tx.y_set_point "
-      & "can take longer than its claimed response time");
+     Robot_Bus_Driver_Tx_Y_Set_Point_C + Robot_Bus_Driver_Tx_Y_Set_Point_B
+     + Robot_Bus_Driver_Tx_X_Set_Point_Up
+         (Robot_Bus_Driver_Tx_Y_Set_Point_W)
+     + Robot_Bus_Driver_Tx_Z_Set_Point_Rest
+         (Robot_Bus_Driver_Tx_Y_Set_Point_W);
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_Y_Set_Point_W
-      > Robot_Bus_Driver_Tx_Y_Set_Point_Needs,
-      "robot_bus.driver_tx.y_set_point "
-      & "claims more than its terms add up to");
+      /= Robot_Bus_Driver_Tx_Y_Set_Point_Needs,
+      "robot_bus.driver_tx.y_set_point claims a wrong response time");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Tx_Y_Set_Point_J + Robot_Bus_Driver_Tx_Y_Set_Point_W)
-      > Robot_Bus_Driver_Tx_Y_Set_Point_T,
-      "robot_bus.driver_tx.y_set_point "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Y_Set_Point_R > Robot_Bus_Driver_Tx_Y_Set_Point_D,
-      "robot_bus.driver_tx.y_set_point " & "can miss its deadline");
+     (Robot_Bus_Driver_Tx_Y_Set_Point_R
+      > Time'Min (Robot_Bus_Driver_Tx_Y_Set_Point_D,
+           Robot_Bus_Driver_Tx_Y_Set_Point_T),
+      "robot_bus.driver_tx.y_set_point can miss its deadline or overlap");
    pragma Assert
      (Robot_Bus_Driver_Tx_Y_Set_Point_Needs
-      <= Robot_Bus_Driver_Tx_Y_Set_Point_W);
-   pragma Assert
-     (Robot_Bus_Driver_Tx_Y_Set_Point_R <= Robot_Bus_Driver_Tx_Y_Set_Point_D);
+      <= Robot_Bus_Driver_Tx_Y_Set_Point_W
+      and then Robot_Bus_Driver_Tx_Y_Set_Point_R
+        <= Robot_Bus_Driver_Tx_Y_Set_Point_D);
 
-   --  [robot_bus.driver_tx.z_set_point] what can delay it: jobs of the same
-   --  or higher priority
+   --  [robot_bus.driver_tx.z_set_point] what delays it
    Robot_Bus_Driver_Tx_Z_Set_Point_W : constant :=
      Robot_Bus_Driver_Tx_Z_Set_Point_R - Robot_Bus_Driver_Tx_Z_Set_Point_J;
    Robot_Bus_Driver_Tx_Z_Set_Point_Needs : constant :=
-     Robot_Bus_Driver_Tx_Z_Set_Point_C
-     + Robot_Bus_Driver_Tx_Z_Set_Point_B
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W + Controller_Probe_A)
-         / Controller_Probe_T)
-        * Controller_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Robot_Bus_Driver_Tx_Z_Set_Point_W,
-      "robot_bus.driver_tx.z_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Z_Set_Point_Needs
-      > Robot_Bus_Driver_Tx_Z_Set_Point_W,
-      "robot_bus.driver_tx.z_set_point "
-      & "can take longer than its claimed response time");
+     Robot_Bus_Driver_Tx_Z_Set_Point_C + Robot_Bus_Driver_Tx_Z_Set_Point_B
+     + Robot_Bus_Driver_Tx_Y_Set_Point_Up
+         (Robot_Bus_Driver_Tx_Z_Set_Point_W)
+     + Robot_Bus_Driver_Rx_X_Feedback_Rest
+         (Robot_Bus_Driver_Tx_Z_Set_Point_W);
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_Z_Set_Point_W
-      > Robot_Bus_Driver_Tx_Z_Set_Point_Needs,
-      "robot_bus.driver_tx.z_set_point "
-      & "claims more than its terms add up to");
+      /= Robot_Bus_Driver_Tx_Z_Set_Point_Needs,
+      "robot_bus.driver_tx.z_set_point claims a wrong response time");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Tx_Z_Set_Point_J + Robot_Bus_Driver_Tx_Z_Set_Point_W)
-      > Robot_Bus_Driver_Tx_Z_Set_Point_T,
-      "robot_bus.driver_tx.z_set_point "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Z_Set_Point_R > Robot_Bus_Driver_Tx_Z_Set_Point_D,
-      "robot_bus.driver_tx.z_set_point " & "can miss its deadline");
+     (Robot_Bus_Driver_Tx_Z_Set_Point_R
+      > Time'Min (Robot_Bus_Driver_Tx_Z_Set_Point_D,
+           Robot_Bus_Driver_Tx_Z_Set_Point_T),
+      "robot_bus.driver_tx.z_set_point can miss its deadline or overlap");
    pragma Assert
      (Robot_Bus_Driver_Tx_Z_Set_Point_Needs
-      <= Robot_Bus_Driver_Tx_Z_Set_Point_W);
-   pragma Assert
-     (Robot_Bus_Driver_Tx_Z_Set_Point_R <= Robot_Bus_Driver_Tx_Z_Set_Point_D);
+      <= Robot_Bus_Driver_Tx_Z_Set_Point_W
+      and then Robot_Bus_Driver_Tx_Z_Set_Point_R
+        <= Robot_Bus_Driver_Tx_Z_Set_Point_D);
 
-   --  [robot_bus.driver_rx.x_feedback] what can delay it: jobs of the same
-   --  or higher priority
+   --  [robot_bus.driver_rx.x_feedback] what delays it
    Robot_Bus_Driver_Rx_X_Feedback_W : constant :=
      Robot_Bus_Driver_Rx_X_Feedback_R - Robot_Bus_Driver_Rx_X_Feedback_J;
    Robot_Bus_Driver_Rx_X_Feedback_Needs : constant :=
-     Robot_Bus_Driver_Rx_X_Feedback_C
-     + Robot_Bus_Driver_Rx_X_Feedback_B
-     + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_W + Controller_Probe_A)
-         / Controller_Probe_T)
-        * Controller_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Robot_Bus_Driver_Rx_X_Feedback_W,
-      "robot_bus.driver_rx.x_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_X_Feedback_Needs
-      > Robot_Bus_Driver_Rx_X_Feedback_W,
-      "robot_bus.driver_rx.x_feedback "
-      & "can take longer than its claimed response time");
+     Robot_Bus_Driver_Rx_X_Feedback_C + Robot_Bus_Driver_Rx_X_Feedback_B
+     + Robot_Bus_Driver_Tx_Z_Set_Point_Up (Robot_Bus_Driver_Rx_X_Feedback_W)
+     + Robot_Bus_Driver_Rx_Y_Feedback_Rest
+         (Robot_Bus_Driver_Rx_X_Feedback_W);
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_X_Feedback_W
-      > Robot_Bus_Driver_Rx_X_Feedback_Needs,
-      "robot_bus.driver_rx.x_feedback "
-      & "claims more than its terms add up to");
+      /= Robot_Bus_Driver_Rx_X_Feedback_Needs,
+      "robot_bus.driver_rx.x_feedback claims a wrong response time");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Rx_X_Feedback_J + Robot_Bus_Driver_Rx_X_Feedback_W)
-      > Robot_Bus_Driver_Rx_X_Feedback_T,
-      "robot_bus.driver_rx.x_feedback "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_X_Feedback_R > Robot_Bus_Driver_Rx_X_Feedback_D,
-      "robot_bus.driver_rx.x_feedback " & "can miss its deadline");
+     (Robot_Bus_Driver_Rx_X_Feedback_R
+      > Time'Min (Robot_Bus_Driver_Rx_X_Feedback_D,
+           Robot_Bus_Driver_Rx_X_Feedback_T),
+      "robot_bus.driver_rx.x_feedback can miss its deadline or overlap");
    pragma Assert
      (Robot_Bus_Driver_Rx_X_Feedback_Needs
-      <= Robot_Bus_Driver_Rx_X_Feedback_W);
-   pragma Assert
-     (Robot_Bus_Driver_Rx_X_Feedback_R <= Robot_Bus_Driver_Rx_X_Feedback_D);
+      <= Robot_Bus_Driver_Rx_X_Feedback_W
+      and then Robot_Bus_Driver_Rx_X_Feedback_R
+        <= Robot_Bus_Driver_Rx_X_Feedback_D);
 
-   --  [robot_bus.driver_rx.y_feedback] what can delay it: jobs of the same
-   --  or higher priority
+   --  [robot_bus.driver_rx.y_feedback] what delays it
    Robot_Bus_Driver_Rx_Y_Feedback_W : constant :=
      Robot_Bus_Driver_Rx_Y_Feedback_R - Robot_Bus_Driver_Rx_Y_Feedback_J;
    Robot_Bus_Driver_Rx_Y_Feedback_Needs : constant :=
-     Robot_Bus_Driver_Rx_Y_Feedback_C
-     + Robot_Bus_Driver_Rx_Y_Feedback_B
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_W + Controller_Probe_A)
-         / Controller_Probe_T)
-        * Controller_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Robot_Bus_Driver_Rx_Y_Feedback_W,
-      "robot_bus.driver_rx.y_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Y_Feedback_Needs
-      > Robot_Bus_Driver_Rx_Y_Feedback_W,
-      "robot_bus.driver_rx.y_feedback "
-      & "can take longer than its claimed response time");
+     Robot_Bus_Driver_Rx_Y_Feedback_C + Robot_Bus_Driver_Rx_Y_Feedback_B
+     + Robot_Bus_Driver_Rx_X_Feedback_Up (Robot_Bus_Driver_Rx_Y_Feedback_W)
+     + Robot_Bus_Driver_Rx_Z_Feedback_Rest
+         (Robot_Bus_Driver_Rx_Y_Feedback_W);
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_Y_Feedback_W
-      > Robot_Bus_Driver_Rx_Y_Feedback_Needs,
-      "robot_bus.driver_rx.y_feedback "
-      & "claims more than its terms add up to");
+      /= Robot_Bus_Driver_Rx_Y_Feedback_Needs,
+      "robot_bus.driver_rx.y_feedback claims a wrong response time");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Rx_Y_Feedback_J + Robot_Bus_Driver_Rx_Y_Feedback_W)
-      > Robot_Bus_Driver_Rx_Y_Feedback_T,
-      "robot_bus.driver_rx.y_feedback "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Y_Feedback_R > Robot_Bus_Driver_Rx_Y_Feedback_D,
-      "robot_bus.driver_rx.y_feedback " & "can miss its deadline");
+     (Robot_Bus_Driver_Rx_Y_Feedback_R
+      > Time'Min (Robot_Bus_Driver_Rx_Y_Feedback_D,
+           Robot_Bus_Driver_Rx_Y_Feedback_T),
+      "robot_bus.driver_rx.y_feedback can miss its deadline or overlap");
    pragma Assert
      (Robot_Bus_Driver_Rx_Y_Feedback_Needs
-      <= Robot_Bus_Driver_Rx_Y_Feedback_W);
-   pragma Assert
-     (Robot_Bus_Driver_Rx_Y_Feedback_R <= Robot_Bus_Driver_Rx_Y_Feedback_D);
+      <= Robot_Bus_Driver_Rx_Y_Feedback_W
+      and then Robot_Bus_Driver_Rx_Y_Feedback_R
+        <= Robot_Bus_Driver_Rx_Y_Feedback_D);
 
-   --  [robot_bus.driver_rx.z_feedback] what can delay it: jobs of the same
-   --  or higher priority
+   --  [robot_bus.driver_rx.z_feedback] what delays it
    Robot_Bus_Driver_Rx_Z_Feedback_W : constant :=
      Robot_Bus_Driver_Rx_Z_Feedback_R - Robot_Bus_Driver_Rx_Z_Feedback_J;
    Robot_Bus_Driver_Rx_Z_Feedback_Needs : constant :=
-     Robot_Bus_Driver_Rx_Z_Feedback_C
-     + Robot_Bus_Driver_Rx_Z_Feedback_B
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_W + Controller_Supervisor_A)
-         / Controller_Supervisor_T)
-        * Controller_Supervisor_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_W + Controller_Probe_A)
-         / Controller_Probe_T)
-        * Controller_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Robot_Bus_Driver_Rx_Z_Feedback_W,
-      "robot_bus.driver_rx.z_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Z_Feedback_Needs
-      > Robot_Bus_Driver_Rx_Z_Feedback_W,
-      "robot_bus.driver_rx.z_feedback "
-      & "can take longer than its claimed response time");
+     Robot_Bus_Driver_Rx_Z_Feedback_C + Robot_Bus_Driver_Rx_Z_Feedback_B
+     + Robot_Bus_Driver_Rx_Y_Feedback_Up (Robot_Bus_Driver_Rx_Z_Feedback_W);
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_Z_Feedback_W
-      > Robot_Bus_Driver_Rx_Z_Feedback_Needs,
-      "robot_bus.driver_rx.z_feedback "
-      & "claims more than its terms add up to");
+      /= Robot_Bus_Driver_Rx_Z_Feedback_Needs,
+      "robot_bus.driver_rx.z_feedback claims a wrong response time");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Rx_Z_Feedback_J + Robot_Bus_Driver_Rx_Z_Feedback_W)
-      > Robot_Bus_Driver_Rx_Z_Feedback_T,
-      "robot_bus.driver_rx.z_feedback "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Z_Feedback_R > Robot_Bus_Driver_Rx_Z_Feedback_D,
-      "robot_bus.driver_rx.z_feedback " & "can miss its deadline");
+     (Robot_Bus_Driver_Rx_Z_Feedback_R
+      > Time'Min (Robot_Bus_Driver_Rx_Z_Feedback_D,
+           Robot_Bus_Driver_Rx_Z_Feedback_T),
+      "robot_bus.driver_rx.z_feedback can miss its deadline or overlap");
    pragma Assert
      (Robot_Bus_Driver_Rx_Z_Feedback_Needs
-      <= Robot_Bus_Driver_Rx_Z_Feedback_W);
-   pragma Assert
-     (Robot_Bus_Driver_Rx_Z_Feedback_R <= Robot_Bus_Driver_Rx_Z_Feedback_D);
+      <= Robot_Bus_Driver_Rx_Z_Feedback_W
+      and then Robot_Bus_Driver_Rx_Z_Feedback_R
+        <= Robot_Bus_Driver_Rx_Z_Feedback_D);
 
-   --  [controller.supervisor] what can delay it: jobs of the same or higher
-   --  priority
+   --  [controller.supervisor] what delays it
    Controller_Supervisor_W : constant :=
      Controller_Supervisor_R - Controller_Supervisor_J;
    Controller_Supervisor_Needs : constant :=
-     Controller_Supervisor_C
-     + Controller_Supervisor_B
-     + (((Controller_Supervisor_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
+     Controller_Supervisor_C + Controller_Supervisor_B
+     + Controller_Probe_Up (Controller_Supervisor_W);
+   pragma Compile_Time_Error
+     (Controller_Supervisor_W /= Controller_Supervisor_Needs,
+      "controller.supervisor claims a wrong response time");
+   pragma Compile_Time_Error
+     (Controller_Supervisor_R
+      > Time'Min (Controller_Supervisor_D, Controller_Supervisor_T),
+      "controller.supervisor can miss its deadline or overlap");
+   pragma Assert
+     (Controller_Supervisor_Needs <= Controller_Supervisor_W
+      and then Controller_Supervisor_R <= Controller_Supervisor_D);
 
-   pragma Compile_Time_Error
-     (0 > Controller_Supervisor_W,
-      "controller.supervisor "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Controller_Supervisor_Needs > Controller_Supervisor_W,
-      "controller.supervisor "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Controller_Supervisor_W > Controller_Supervisor_Needs,
-      "controller.supervisor " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Controller_Supervisor_J + Controller_Supervisor_W)
-      > Controller_Supervisor_T,
-      "controller.supervisor " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Controller_Supervisor_R > Controller_Supervisor_D,
-      "controller.supervisor " & "can miss its deadline");
-   pragma Assert (Controller_Supervisor_Needs <= Controller_Supervisor_W);
-   pragma Assert (Controller_Supervisor_R <= Controller_Supervisor_D);
-
-   --  [controller.probe] what can delay it: jobs of the same or higher
-   --  priority
+   --  [controller.probe] what delays it
    Controller_Probe_W : constant := Controller_Probe_R - Controller_Probe_J;
    Controller_Probe_Needs : constant :=
      Controller_Probe_C + Controller_Probe_B;
-
+   pragma Compile_Time_Error (Controller_Probe_W /= Controller_Probe_Needs,
+      "controller.probe claims a wrong response time");
    pragma Compile_Time_Error
-     (0 > Controller_Probe_W,
-      "controller.probe " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Controller_Probe_Needs > Controller_Probe_W,
-      "controller.probe " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Controller_Probe_W > Controller_Probe_Needs,
-      "controller.probe " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Controller_Probe_J + Controller_Probe_W) > Controller_Probe_T,
-      "controller.probe " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Controller_Probe_R > Controller_Probe_D,
-      "controller.probe " & "can miss its deadline");
-   pragma Assert (Controller_Probe_Needs <= Controller_Probe_W);
-   pragma Assert (Controller_Probe_R <= Controller_Probe_D);
+     (Controller_Probe_R > Time'Min (Controller_Probe_D, Controller_Probe_T),
+      "controller.probe can miss its deadline or overlap");
+   pragma Assert
+     (Controller_Probe_Needs <= Controller_Probe_W
+      and then Controller_Probe_R <= Controller_Probe_D);
 
    --  [controller] a release that has not completed L after it was due
    --  makes its processor silent; the supervisor has reported that S after
@@ -2147,1219 +981,457 @@ is
    Supervision_S : constant :=
      Supervision_L + Controller_Supervisor_T + Controller_Supervisor_R;
 
-   --  [robot_bus.robot_command] what can delay it: frames that go before
-   --  it, and one of those that go behind it, the longest of which counts
-   --  once
+   function Robot_Bus_Robot_Command_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Robot_Command_J, Robot_Bus_Robot_Command_T,
+         Robot_Bus_Robot_Command_C)) with Static;
+   function Robot_Bus_X_Set_Point_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C,
+         Robot_Bus_X_Set_Point_T, Robot_Bus_X_Set_Point_C,
+         Robot_Bus_Robot_Command_Up (W))) with Static;
+   function Robot_Bus_Y_Set_Point_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C,
+         Robot_Bus_Y_Set_Point_T, Robot_Bus_Y_Set_Point_C,
+         Robot_Bus_X_Set_Point_Up (W))) with Static;
+   function Robot_Bus_Z_Set_Point_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C,
+         Robot_Bus_Z_Set_Point_T, Robot_Bus_Z_Set_Point_C,
+         Robot_Bus_Y_Set_Point_Up (W))) with Static;
+   function Robot_Bus_X_Feedback_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_X_Feedback_J, Robot_Bus_X_Feedback_T,
+         Robot_Bus_X_Feedback_C, Robot_Bus_Z_Set_Point_Up (W))) with Static;
+   function Robot_Bus_Y_Feedback_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Y_Feedback_J, Robot_Bus_Y_Feedback_T,
+         Robot_Bus_Y_Feedback_C, Robot_Bus_X_Feedback_Up (W))) with Static;
+   function Robot_Bus_Z_Feedback_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Z_Feedback_J, Robot_Bus_Z_Feedback_T,
+         Robot_Bus_Z_Feedback_C, Robot_Bus_Y_Feedback_Up (W))) with Static;
+   function Robot_Bus_Robot_Status_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Robot_Status_R - Robot_Bus_Robot_Status_C,
+         Robot_Bus_Robot_Status_T, Robot_Bus_Robot_Status_C,
+         Robot_Bus_Z_Feedback_Up (W))) with Static;
+   function Robot_Bus_Robot_Command_Up_Controller (W : Window) return Time is
+     (Demand (W, Robot_Bus_Robot_Command_J, Robot_Bus_Robot_Command_T,
+         Robot_Bus_Robot_Command_C)) with Static;
+   function Robot_Bus_X_Feedback_Up_Controller (W : Window) return Time is
+     (Demand (W, Robot_Bus_X_Feedback_J, Robot_Bus_X_Feedback_T,
+         Robot_Bus_X_Feedback_C, Robot_Bus_Robot_Command_Up_Controller (W)))
+   with Static;
+   function Robot_Bus_Y_Feedback_Up_Controller (W : Window) return Time is
+     (Demand (W, Robot_Bus_Y_Feedback_J, Robot_Bus_Y_Feedback_T,
+         Robot_Bus_Y_Feedback_C, Robot_Bus_X_Feedback_Up_Controller (W)))
+   with Static;
+   function Robot_Bus_Z_Feedback_Up_Controller (W : Window) return Time is
+     (Demand (W, Robot_Bus_Z_Feedback_J, Robot_Bus_Z_Feedback_T,
+         Robot_Bus_Z_Feedback_C, Robot_Bus_Y_Feedback_Up_Controller (W)))
+   with Static;
+   function Robot_Bus_X_Set_Point_Up_Controller (W : Window) return Time is
+     (Demand (W, Robot_Bus_X_Set_Point_J, Robot_Bus_X_Set_Point_T,
+         Robot_Bus_X_Set_Point_C, Robot_Bus_Z_Feedback_Up_Controller (W)))
+   with Static;
+   function Robot_Bus_Y_Set_Point_Up_Controller (W : Window) return Time is
+     (Demand (W, Robot_Bus_Y_Set_Point_J, Robot_Bus_Y_Set_Point_T,
+         Robot_Bus_Y_Set_Point_C, Robot_Bus_X_Set_Point_Up_Controller (W)))
+   with Static;
+   function Robot_Bus_Z_Set_Point_Up_Controller (W : Window) return Time is
+     (Demand (W, Robot_Bus_Z_Set_Point_J, Robot_Bus_Z_Set_Point_T,
+         Robot_Bus_Z_Set_Point_C, Robot_Bus_Y_Set_Point_Up_Controller (W)))
+   with Static;
+   function Robot_Bus_Robot_Status_Up_Controller (W : Window) return Time is
+     (Demand (W, Robot_Bus_Robot_Status_J, Robot_Bus_Robot_Status_T,
+         Robot_Bus_Robot_Status_C, Robot_Bus_Z_Set_Point_Up_Controller (W)))
+   with Static;
+   function Robot_Bus_Robot_Status_Rest_Controller (W : Window) return Time is
+     (Demand (W, Robot_Bus_Robot_Status_J, Robot_Bus_Robot_Status_T,
+         Robot_Bus_Robot_Status_C)) with Static;
+   function Robot_Bus_Z_Set_Point_Rest_Controller (W : Window) return Time is
+     (Demand (W, Robot_Bus_Z_Set_Point_J, Robot_Bus_Z_Set_Point_T,
+         Robot_Bus_Z_Set_Point_C,
+         Robot_Bus_Robot_Status_Rest_Controller (W))) with Static;
+   function Robot_Bus_Y_Set_Point_Rest_Controller (W : Window) return Time is
+     (Demand (W, Robot_Bus_Y_Set_Point_J, Robot_Bus_Y_Set_Point_T,
+         Robot_Bus_Y_Set_Point_C, Robot_Bus_Z_Set_Point_Rest_Controller (W)))
+   with Static;
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Robot_Command_Id >= Robot_Bus_X_Set_Point_Id
+      or else Robot_Bus_X_Set_Point_Id >= Robot_Bus_Y_Set_Point_Id
+      or else Robot_Bus_Y_Set_Point_Id >= Robot_Bus_Z_Set_Point_Id
+      or else Robot_Bus_Z_Set_Point_Id >= Robot_Bus_X_Feedback_Id
+      or else Robot_Bus_X_Feedback_Id >= Robot_Bus_Y_Feedback_Id
+      or else Robot_Bus_Y_Feedback_Id >= Robot_Bus_Z_Feedback_Id
+      or else Robot_Bus_Z_Feedback_Id >= Robot_Bus_Robot_Status_Id,
+      "robot_bus must keep the order of its identifiers");
+
+   --  [robot_bus.robot_command] what delays it
    Robot_Bus_Robot_Command_Busy : constant := 500_000;
    Robot_Bus_Robot_Command_Busy_Needs : constant :=
      Robot_Bus_X_Feedback_C
-     + (((Robot_Bus_Robot_Command_Busy + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C);
-
+     + Robot_Bus_Robot_Command_Up (Robot_Bus_Robot_Command_Busy);
    pragma Compile_Time_Error
-     (1 > Robot_Bus_Robot_Command_Busy,
-      "robot_bus.robot_command "
-      & "can keep others waiting for longer than claimed");
+     (Robot_Bus_Robot_Command_Busy < 1
+      or else Robot_Bus_Robot_Command_Busy
+        /= Robot_Bus_Robot_Command_Busy_Needs,
+      "robot_bus.robot_command claims a wrong busy period");
    pragma Compile_Time_Error
-     (Robot_Bus_Robot_Command_Busy_Needs > Robot_Bus_Robot_Command_Busy,
-      "robot_bus.robot_command "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_Robot_Command_Busy > Robot_Bus_Robot_Command_Busy_Needs,
-      "robot_bus.robot_command " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Robot_Command_Busy + Robot_Bus_Robot_Command_J)
+     (Robot_Bus_Robot_Command_Busy + Robot_Bus_Robot_Command_J
       > Robot_Bus_Robot_Command_T,
-      "robot_bus.robot_command " & "can come again before it is sent");
-
-   Robot_Bus_Robot_Command_W : constant := 230_000;
+      "robot_bus.robot_command can come again before it is sent");
+   Robot_Bus_Robot_Command_W : constant :=
+     Robot_Bus_Robot_Command_R - Robot_Bus_Robot_Command_J
+     - Robot_Bus_Robot_Command_C;
    Robot_Bus_Robot_Command_Needs : constant := Robot_Bus_X_Feedback_C;
-
    pragma Compile_Time_Error
-     (0 > Robot_Bus_Robot_Command_W,
-      "robot_bus.robot_command "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Robot_Command_Needs > Robot_Bus_Robot_Command_W,
-      "robot_bus.robot_command "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Robot_Command_W > Robot_Bus_Robot_Command_Needs,
-      "robot_bus.robot_command " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Robot_Command_J
-       + Robot_Bus_Robot_Command_W
-       + Robot_Bus_Robot_Command_C)
-      > Robot_Bus_Robot_Command_R,
-      "robot_bus.robot_command "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Robot_Command_R
-      > (Robot_Bus_Robot_Command_J
-         + Robot_Bus_Robot_Command_W
-         + Robot_Bus_Robot_Command_C),
-      "robot_bus.robot_command " & "claims more than its terms add up to");
+     (Robot_Bus_Robot_Command_W /= Robot_Bus_Robot_Command_Needs,
+      "robot_bus.robot_command claims a wrong response time");
    pragma Compile_Time_Error
      (Robot_Bus_Robot_Command_R > Robot_Bus_Robot_Command_D,
-      "robot_bus.robot_command " & "can miss its deadline");
+      "robot_bus.robot_command can miss its deadline");
    pragma Assert (Robot_Bus_Robot_Command_R <= Robot_Bus_Robot_Command_D);
 
-   --  [robot_bus.x_set_point] what can delay it: frames that go before it
+   --  [robot_bus.x_set_point] what delays it
    Robot_Bus_X_Set_Point_Busy : constant := 1_700_000;
    Robot_Bus_X_Set_Point_Busy_Needs : constant :=
-     0
-     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_X_Set_Point_A)
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Y_Set_Point_A)
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Z_Set_Point_A)
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Y_Feedback_A)
-         / Robot_Bus_Y_Feedback_T)
-        * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Z_Feedback_A)
-         / Robot_Bus_Z_Feedback_T)
-        * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Robot_Status_A)
-         / Robot_Bus_Robot_Status_T)
-        * Robot_Bus_Robot_Status_C);
-
+     Robot_Bus_Robot_Status_Up_Controller (Robot_Bus_X_Set_Point_Busy);
    pragma Compile_Time_Error
-     (1 > Robot_Bus_X_Set_Point_Busy,
-      "robot_bus.x_set_point "
-      & "can keep others waiting for longer than claimed");
+     (Robot_Bus_X_Set_Point_Busy < 1
+      or else Robot_Bus_X_Set_Point_Busy /= Robot_Bus_X_Set_Point_Busy_Needs,
+      "robot_bus.x_set_point claims a wrong busy period");
    pragma Compile_Time_Error
-     (Robot_Bus_X_Set_Point_Busy_Needs > Robot_Bus_X_Set_Point_Busy,
-      "robot_bus.x_set_point "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Set_Point_Busy > Robot_Bus_X_Set_Point_Busy_Needs,
-      "robot_bus.x_set_point " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_X_Set_Point_Busy + Robot_Bus_X_Set_Point_J)
+     (Robot_Bus_X_Set_Point_Busy + Robot_Bus_X_Set_Point_J
       > Robot_Bus_X_Set_Point_T,
-      "robot_bus.x_set_point " & "can come again before it is sent");
-
-   Robot_Bus_X_Set_Point_W : constant := 1_530_000;
+      "robot_bus.x_set_point can come again before it is sent");
+   Robot_Bus_X_Set_Point_W : constant :=
+     Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_J
+     - Robot_Bus_X_Set_Point_C;
    Robot_Bus_X_Set_Point_Needs : constant :=
-     0
-     + (((Robot_Bus_X_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Set_Point_A)
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Set_Point_A)
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
-         / Robot_Bus_Y_Feedback_T)
-        * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
-         / Robot_Bus_Z_Feedback_T)
-        * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Robot_Status_A)
-         / Robot_Bus_Robot_Status_T)
-        * Robot_Bus_Robot_Status_C);
-
+     Robot_Bus_Z_Feedback_Up_Controller
+       (Robot_Bus_X_Set_Point_W + Robot_Bus_Bit)
+     + Robot_Bus_Y_Set_Point_Rest_Controller
+         (Robot_Bus_X_Set_Point_W + Robot_Bus_Bit);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_X_Set_Point_W,
-      "robot_bus.x_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Set_Point_Needs > Robot_Bus_X_Set_Point_W,
-      "robot_bus.x_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Set_Point_W > Robot_Bus_X_Set_Point_Needs,
-      "robot_bus.x_set_point " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_X_Set_Point_J
-       + Robot_Bus_X_Set_Point_W
-       + Robot_Bus_X_Set_Point_C)
-      > Robot_Bus_X_Set_Point_R,
-      "robot_bus.x_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Set_Point_R
-      > (Robot_Bus_X_Set_Point_J
-         + Robot_Bus_X_Set_Point_W
-         + Robot_Bus_X_Set_Point_C),
-      "robot_bus.x_set_point " & "claims more than its terms add up to");
+     (Robot_Bus_X_Set_Point_W /= Robot_Bus_X_Set_Point_Needs,
+      "robot_bus.x_set_point claims a wrong response time");
    pragma Compile_Time_Error
      (Robot_Bus_X_Set_Point_R > Robot_Bus_X_Set_Point_D,
-      "robot_bus.x_set_point " & "can miss its deadline");
+      "robot_bus.x_set_point can miss its deadline");
    pragma Assert (Robot_Bus_X_Set_Point_R <= Robot_Bus_X_Set_Point_D);
 
-   --  [robot_bus.y_set_point] what can delay it: frames that go before it
+   --  [robot_bus.y_set_point] what delays it
    Robot_Bus_Y_Set_Point_Busy : constant := 1_700_000;
    Robot_Bus_Y_Set_Point_Busy_Needs : constant :=
-     0
-     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_X_Set_Point_A)
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Y_Set_Point_A)
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Z_Set_Point_A)
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Y_Feedback_A)
-         / Robot_Bus_Y_Feedback_T)
-        * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Z_Feedback_A)
-         / Robot_Bus_Z_Feedback_T)
-        * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Robot_Status_A)
-         / Robot_Bus_Robot_Status_T)
-        * Robot_Bus_Robot_Status_C);
-
+     Robot_Bus_Robot_Status_Up_Controller (Robot_Bus_Y_Set_Point_Busy);
    pragma Compile_Time_Error
-     (1 > Robot_Bus_Y_Set_Point_Busy,
-      "robot_bus.y_set_point "
-      & "can keep others waiting for longer than claimed");
+     (Robot_Bus_Y_Set_Point_Busy < 1
+      or else Robot_Bus_Y_Set_Point_Busy /= Robot_Bus_Y_Set_Point_Busy_Needs,
+      "robot_bus.y_set_point claims a wrong busy period");
    pragma Compile_Time_Error
-     (Robot_Bus_Y_Set_Point_Busy_Needs > Robot_Bus_Y_Set_Point_Busy,
-      "robot_bus.y_set_point "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Set_Point_Busy > Robot_Bus_Y_Set_Point_Busy_Needs,
-      "robot_bus.y_set_point " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Y_Set_Point_J)
+     (Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Y_Set_Point_J
       > Robot_Bus_Y_Set_Point_T,
-      "robot_bus.y_set_point " & "can come again before it is sent");
-
-   Robot_Bus_Y_Set_Point_W : constant := 1_530_000;
+      "robot_bus.y_set_point can come again before it is sent");
+   Robot_Bus_Y_Set_Point_W : constant :=
+     Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_J
+     - Robot_Bus_Y_Set_Point_C;
    Robot_Bus_Y_Set_Point_Needs : constant :=
-     0
-     + (((Robot_Bus_Y_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Set_Point_A)
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Set_Point_A)
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
-         / Robot_Bus_Y_Feedback_T)
-        * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
-         / Robot_Bus_Z_Feedback_T)
-        * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Robot_Status_A)
-         / Robot_Bus_Robot_Status_T)
-        * Robot_Bus_Robot_Status_C);
-
+     Robot_Bus_X_Set_Point_Up_Controller
+       (Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit)
+     + Robot_Bus_Z_Set_Point_Rest_Controller
+         (Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_Y_Set_Point_W,
-      "robot_bus.y_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Set_Point_Needs > Robot_Bus_Y_Set_Point_W,
-      "robot_bus.y_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Set_Point_W > Robot_Bus_Y_Set_Point_Needs,
-      "robot_bus.y_set_point " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Y_Set_Point_J
-       + Robot_Bus_Y_Set_Point_W
-       + Robot_Bus_Y_Set_Point_C)
-      > Robot_Bus_Y_Set_Point_R,
-      "robot_bus.y_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Set_Point_R
-      > (Robot_Bus_Y_Set_Point_J
-         + Robot_Bus_Y_Set_Point_W
-         + Robot_Bus_Y_Set_Point_C),
-      "robot_bus.y_set_point " & "claims more than its terms add up to");
+     (Robot_Bus_Y_Set_Point_W /= Robot_Bus_Y_Set_Point_Needs,
+      "robot_bus.y_set_point claims a wrong response time");
    pragma Compile_Time_Error
      (Robot_Bus_Y_Set_Point_R > Robot_Bus_Y_Set_Point_D,
-      "robot_bus.y_set_point " & "can miss its deadline");
+      "robot_bus.y_set_point can miss its deadline");
    pragma Assert (Robot_Bus_Y_Set_Point_R <= Robot_Bus_Y_Set_Point_D);
 
-   --  [robot_bus.z_set_point] what can delay it: frames that go before it
+   --  [robot_bus.z_set_point] what delays it
    Robot_Bus_Z_Set_Point_Busy : constant := 1_700_000;
    Robot_Bus_Z_Set_Point_Busy_Needs : constant :=
-     0
-     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_X_Set_Point_A)
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Y_Set_Point_A)
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Z_Set_Point_A)
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Y_Feedback_A)
-         / Robot_Bus_Y_Feedback_T)
-        * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Z_Feedback_A)
-         / Robot_Bus_Z_Feedback_T)
-        * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Robot_Status_A)
-         / Robot_Bus_Robot_Status_T)
-        * Robot_Bus_Robot_Status_C);
-
+     Robot_Bus_Robot_Status_Up_Controller (Robot_Bus_Z_Set_Point_Busy);
    pragma Compile_Time_Error
-     (1 > Robot_Bus_Z_Set_Point_Busy,
-      "robot_bus.z_set_point "
-      & "can keep others waiting for longer than claimed");
+     (Robot_Bus_Z_Set_Point_Busy < 1
+      or else Robot_Bus_Z_Set_Point_Busy /= Robot_Bus_Z_Set_Point_Busy_Needs,
+      "robot_bus.z_set_point claims a wrong busy period");
    pragma Compile_Time_Error
-     (Robot_Bus_Z_Set_Point_Busy_Needs > Robot_Bus_Z_Set_Point_Busy,
-      "robot_bus.z_set_point "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Set_Point_Busy > Robot_Bus_Z_Set_Point_Busy_Needs,
-      "robot_bus.z_set_point " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Z_Set_Point_J)
+     (Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Z_Set_Point_J
       > Robot_Bus_Z_Set_Point_T,
-      "robot_bus.z_set_point " & "can come again before it is sent");
-
-   Robot_Bus_Z_Set_Point_W : constant := 1_530_000;
+      "robot_bus.z_set_point can come again before it is sent");
+   Robot_Bus_Z_Set_Point_W : constant :=
+     Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_J
+     - Robot_Bus_Z_Set_Point_C;
    Robot_Bus_Z_Set_Point_Needs : constant :=
-     0
-     + (((Robot_Bus_Z_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Set_Point_A)
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Set_Point_A)
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
-         / Robot_Bus_Y_Feedback_T)
-        * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
-         / Robot_Bus_Z_Feedback_T)
-        * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Robot_Status_A)
-         / Robot_Bus_Robot_Status_T)
-        * Robot_Bus_Robot_Status_C);
-
+     Robot_Bus_Y_Set_Point_Up_Controller
+       (Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit)
+     + Robot_Bus_Robot_Status_Rest_Controller
+         (Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_Z_Set_Point_W,
-      "robot_bus.z_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Set_Point_Needs > Robot_Bus_Z_Set_Point_W,
-      "robot_bus.z_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Set_Point_W > Robot_Bus_Z_Set_Point_Needs,
-      "robot_bus.z_set_point " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Z_Set_Point_J
-       + Robot_Bus_Z_Set_Point_W
-       + Robot_Bus_Z_Set_Point_C)
-      > Robot_Bus_Z_Set_Point_R,
-      "robot_bus.z_set_point "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Set_Point_R
-      > (Robot_Bus_Z_Set_Point_J
-         + Robot_Bus_Z_Set_Point_W
-         + Robot_Bus_Z_Set_Point_C),
-      "robot_bus.z_set_point " & "claims more than its terms add up to");
+     (Robot_Bus_Z_Set_Point_W /= Robot_Bus_Z_Set_Point_Needs,
+      "robot_bus.z_set_point claims a wrong response time");
    pragma Compile_Time_Error
      (Robot_Bus_Z_Set_Point_R > Robot_Bus_Z_Set_Point_D,
-      "robot_bus.z_set_point " & "can miss its deadline");
+      "robot_bus.z_set_point can miss its deadline");
    pragma Assert (Robot_Bus_Z_Set_Point_R <= Robot_Bus_Z_Set_Point_D);
 
-   --  [robot_bus.x_feedback] what can delay it: frames that go before it,
-   --  and one of those that go behind it, the longest of which counts once
+   --  [robot_bus.x_feedback] what delays it
    Robot_Bus_X_Feedback_Busy : constant := 1_240_000;
    Robot_Bus_X_Feedback_Busy_Needs : constant :=
      Robot_Bus_Y_Feedback_C
-     + (((Robot_Bus_X_Feedback_Busy + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_X_Feedback_Busy
-          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
-          + (Robot_Bus_X_Set_Point_T - 1))
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_X_Feedback_Busy
-          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
-          + (Robot_Bus_Y_Set_Point_T - 1))
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_X_Feedback_Busy
-          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
-          + (Robot_Bus_Z_Set_Point_T - 1))
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_X_Feedback_Busy + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C);
-
+     + Robot_Bus_X_Feedback_Up (Robot_Bus_X_Feedback_Busy);
    pragma Compile_Time_Error
-     (1 > Robot_Bus_X_Feedback_Busy,
-      "robot_bus.x_feedback "
-      & "can keep others waiting for longer than claimed");
+     (Robot_Bus_X_Feedback_Busy < 1
+      or else Robot_Bus_X_Feedback_Busy /= Robot_Bus_X_Feedback_Busy_Needs,
+      "robot_bus.x_feedback claims a wrong busy period");
    pragma Compile_Time_Error
-     (Robot_Bus_X_Feedback_Busy_Needs > Robot_Bus_X_Feedback_Busy,
-      "robot_bus.x_feedback "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Feedback_Busy > Robot_Bus_X_Feedback_Busy_Needs,
-      "robot_bus.x_feedback " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_X_Feedback_Busy + Robot_Bus_X_Feedback_J)
+     (Robot_Bus_X_Feedback_Busy + Robot_Bus_X_Feedback_J
       > Robot_Bus_X_Feedback_T,
-      "robot_bus.x_feedback " & "can come again before it is sent");
-
-   Robot_Bus_X_Feedback_W : constant := 1_010_000;
+      "robot_bus.x_feedback can come again before it is sent");
+   Robot_Bus_X_Feedback_W : constant :=
+     Robot_Bus_X_Feedback_R - Robot_Bus_X_Feedback_J
+     - Robot_Bus_X_Feedback_C;
    Robot_Bus_X_Feedback_Needs : constant :=
      Robot_Bus_Y_Feedback_C
-     + (((Robot_Bus_X_Feedback_W + Robot_Bus_Bit + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_X_Feedback_W
-          + Robot_Bus_Bit
-          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
-          + (Robot_Bus_X_Set_Point_T - 1))
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_X_Feedback_W
-          + Robot_Bus_Bit
-          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
-          + (Robot_Bus_Y_Set_Point_T - 1))
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_X_Feedback_W
-          + Robot_Bus_Bit
-          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
-          + (Robot_Bus_Z_Set_Point_T - 1))
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C);
-
+     + Robot_Bus_Z_Set_Point_Up (Robot_Bus_X_Feedback_W + Robot_Bus_Bit);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_X_Feedback_W,
-      "robot_bus.x_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Feedback_Needs > Robot_Bus_X_Feedback_W,
-      "robot_bus.x_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Feedback_W > Robot_Bus_X_Feedback_Needs,
-      "robot_bus.x_feedback " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_X_Feedback_J
-       + Robot_Bus_X_Feedback_W
-       + Robot_Bus_X_Feedback_C)
-      > Robot_Bus_X_Feedback_R,
-      "robot_bus.x_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Feedback_R
-      > (Robot_Bus_X_Feedback_J
-         + Robot_Bus_X_Feedback_W
-         + Robot_Bus_X_Feedback_C),
-      "robot_bus.x_feedback " & "claims more than its terms add up to");
+     (Robot_Bus_X_Feedback_W /= Robot_Bus_X_Feedback_Needs,
+      "robot_bus.x_feedback claims a wrong response time");
    pragma Compile_Time_Error
      (Robot_Bus_X_Feedback_R > Robot_Bus_X_Feedback_D,
-      "robot_bus.x_feedback " & "can miss its deadline");
+      "robot_bus.x_feedback can miss its deadline");
    pragma Assert (Robot_Bus_X_Feedback_R <= Robot_Bus_X_Feedback_D);
 
-   --  [robot_bus.y_feedback] what can delay it: frames that go before it,
-   --  and one of those that go behind it, the longest of which counts once
+   --  [robot_bus.y_feedback] what delays it
    Robot_Bus_Y_Feedback_Busy : constant := 1_470_000;
    Robot_Bus_Y_Feedback_Busy_Needs : constant :=
      Robot_Bus_Z_Feedback_C
-     + (((Robot_Bus_Y_Feedback_Busy + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Y_Feedback_Busy
-          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
-          + (Robot_Bus_X_Set_Point_T - 1))
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Y_Feedback_Busy
-          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
-          + (Robot_Bus_Y_Set_Point_T - 1))
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Y_Feedback_Busy
-          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
-          + (Robot_Bus_Z_Set_Point_T - 1))
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Y_Feedback_Busy + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Y_Feedback_Busy + Robot_Bus_Y_Feedback_A)
-         / Robot_Bus_Y_Feedback_T)
-        * Robot_Bus_Y_Feedback_C);
-
+     + Robot_Bus_Y_Feedback_Up (Robot_Bus_Y_Feedback_Busy);
    pragma Compile_Time_Error
-     (1 > Robot_Bus_Y_Feedback_Busy,
-      "robot_bus.y_feedback "
-      & "can keep others waiting for longer than claimed");
+     (Robot_Bus_Y_Feedback_Busy < 1
+      or else Robot_Bus_Y_Feedback_Busy /= Robot_Bus_Y_Feedback_Busy_Needs,
+      "robot_bus.y_feedback claims a wrong busy period");
    pragma Compile_Time_Error
-     (Robot_Bus_Y_Feedback_Busy_Needs > Robot_Bus_Y_Feedback_Busy,
-      "robot_bus.y_feedback "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Feedback_Busy > Robot_Bus_Y_Feedback_Busy_Needs,
-      "robot_bus.y_feedback " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Y_Feedback_Busy + Robot_Bus_Y_Feedback_J)
+     (Robot_Bus_Y_Feedback_Busy + Robot_Bus_Y_Feedback_J
       > Robot_Bus_Y_Feedback_T,
-      "robot_bus.y_feedback " & "can come again before it is sent");
-
-   Robot_Bus_Y_Feedback_W : constant := 1_240_000;
+      "robot_bus.y_feedback can come again before it is sent");
+   Robot_Bus_Y_Feedback_W : constant :=
+     Robot_Bus_Y_Feedback_R - Robot_Bus_Y_Feedback_J
+     - Robot_Bus_Y_Feedback_C;
    Robot_Bus_Y_Feedback_Needs : constant :=
      Robot_Bus_Z_Feedback_C
-     + (((Robot_Bus_Y_Feedback_W + Robot_Bus_Bit + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Y_Feedback_W
-          + Robot_Bus_Bit
-          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
-          + (Robot_Bus_X_Set_Point_T - 1))
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Y_Feedback_W
-          + Robot_Bus_Bit
-          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
-          + (Robot_Bus_Y_Set_Point_T - 1))
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Y_Feedback_W
-          + Robot_Bus_Bit
-          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
-          + (Robot_Bus_Z_Set_Point_T - 1))
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Y_Feedback_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C);
-
+     + Robot_Bus_X_Feedback_Up (Robot_Bus_Y_Feedback_W + Robot_Bus_Bit);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_Y_Feedback_W,
-      "robot_bus.y_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Feedback_Needs > Robot_Bus_Y_Feedback_W,
-      "robot_bus.y_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Feedback_W > Robot_Bus_Y_Feedback_Needs,
-      "robot_bus.y_feedback " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Y_Feedback_J
-       + Robot_Bus_Y_Feedback_W
-       + Robot_Bus_Y_Feedback_C)
-      > Robot_Bus_Y_Feedback_R,
-      "robot_bus.y_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Feedback_R
-      > (Robot_Bus_Y_Feedback_J
-         + Robot_Bus_Y_Feedback_W
-         + Robot_Bus_Y_Feedback_C),
-      "robot_bus.y_feedback " & "claims more than its terms add up to");
+     (Robot_Bus_Y_Feedback_W /= Robot_Bus_Y_Feedback_Needs,
+      "robot_bus.y_feedback claims a wrong response time");
    pragma Compile_Time_Error
      (Robot_Bus_Y_Feedback_R > Robot_Bus_Y_Feedback_D,
-      "robot_bus.y_feedback " & "can miss its deadline");
+      "robot_bus.y_feedback can miss its deadline");
    pragma Assert (Robot_Bus_Y_Feedback_R <= Robot_Bus_Y_Feedback_D);
 
-   --  [robot_bus.z_feedback] what can delay it: frames that go before it,
-   --  and one of those that go behind it, the longest of which counts once
+   --  [robot_bus.z_feedback] what delays it
    Robot_Bus_Z_Feedback_Busy : constant := 1_700_000;
    Robot_Bus_Z_Feedback_Busy_Needs : constant :=
      Robot_Bus_Robot_Status_C
-     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Z_Feedback_Busy
-          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
-          + (Robot_Bus_X_Set_Point_T - 1))
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Z_Feedback_Busy
-          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
-          + (Robot_Bus_Y_Set_Point_T - 1))
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Z_Feedback_Busy
-          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
-          + (Robot_Bus_Z_Set_Point_T - 1))
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Y_Feedback_A)
-         / Robot_Bus_Y_Feedback_T)
-        * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Z_Feedback_A)
-         / Robot_Bus_Z_Feedback_T)
-        * Robot_Bus_Z_Feedback_C);
-
+     + Robot_Bus_Z_Feedback_Up (Robot_Bus_Z_Feedback_Busy);
    pragma Compile_Time_Error
-     (1 > Robot_Bus_Z_Feedback_Busy,
-      "robot_bus.z_feedback "
-      & "can keep others waiting for longer than claimed");
+     (Robot_Bus_Z_Feedback_Busy < 1
+      or else Robot_Bus_Z_Feedback_Busy /= Robot_Bus_Z_Feedback_Busy_Needs,
+      "robot_bus.z_feedback claims a wrong busy period");
    pragma Compile_Time_Error
-     (Robot_Bus_Z_Feedback_Busy_Needs > Robot_Bus_Z_Feedback_Busy,
-      "robot_bus.z_feedback "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Feedback_Busy > Robot_Bus_Z_Feedback_Busy_Needs,
-      "robot_bus.z_feedback " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Z_Feedback_J)
+     (Robot_Bus_Z_Feedback_Busy + Robot_Bus_Z_Feedback_J
       > Robot_Bus_Z_Feedback_T,
-      "robot_bus.z_feedback " & "can come again before it is sent");
-
-   Robot_Bus_Z_Feedback_W : constant := 1_470_000;
+      "robot_bus.z_feedback can come again before it is sent");
+   Robot_Bus_Z_Feedback_W : constant :=
+     Robot_Bus_Z_Feedback_R - Robot_Bus_Z_Feedback_J
+     - Robot_Bus_Z_Feedback_C;
    Robot_Bus_Z_Feedback_Needs : constant :=
      Robot_Bus_Robot_Status_C
-     + (((Robot_Bus_Z_Feedback_W + Robot_Bus_Bit + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Z_Feedback_W
-          + Robot_Bus_Bit
-          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
-          + (Robot_Bus_X_Set_Point_T - 1))
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Z_Feedback_W
-          + Robot_Bus_Bit
-          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
-          + (Robot_Bus_Y_Set_Point_T - 1))
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Z_Feedback_W
-          + Robot_Bus_Bit
-          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
-          + (Robot_Bus_Z_Set_Point_T - 1))
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Z_Feedback_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Z_Feedback_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
-         / Robot_Bus_Y_Feedback_T)
-        * Robot_Bus_Y_Feedback_C);
-
+     + Robot_Bus_Y_Feedback_Up (Robot_Bus_Z_Feedback_W + Robot_Bus_Bit);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_Z_Feedback_W,
-      "robot_bus.z_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Feedback_Needs > Robot_Bus_Z_Feedback_W,
-      "robot_bus.z_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Feedback_W > Robot_Bus_Z_Feedback_Needs,
-      "robot_bus.z_feedback " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Z_Feedback_J
-       + Robot_Bus_Z_Feedback_W
-       + Robot_Bus_Z_Feedback_C)
-      > Robot_Bus_Z_Feedback_R,
-      "robot_bus.z_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Feedback_R
-      > (Robot_Bus_Z_Feedback_J
-         + Robot_Bus_Z_Feedback_W
-         + Robot_Bus_Z_Feedback_C),
-      "robot_bus.z_feedback " & "claims more than its terms add up to");
+     (Robot_Bus_Z_Feedback_W /= Robot_Bus_Z_Feedback_Needs,
+      "robot_bus.z_feedback claims a wrong response time");
    pragma Compile_Time_Error
      (Robot_Bus_Z_Feedback_R > Robot_Bus_Z_Feedback_D,
-      "robot_bus.z_feedback " & "can miss its deadline");
+      "robot_bus.z_feedback can miss its deadline");
    pragma Assert (Robot_Bus_Z_Feedback_R <= Robot_Bus_Z_Feedback_D);
 
-   --  [robot_bus.robot_status] what can delay it: frames that go before it
+   --  [robot_bus.robot_status] what delays it
    Robot_Bus_Robot_Status_Busy : constant := 1_700_000;
    Robot_Bus_Robot_Status_Busy_Needs : constant :=
-     0
-     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_X_Set_Point_A)
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Y_Set_Point_A)
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Z_Set_Point_A)
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Y_Feedback_A)
-         / Robot_Bus_Y_Feedback_T)
-        * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Z_Feedback_A)
-         / Robot_Bus_Z_Feedback_T)
-        * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Robot_Status_A)
-         / Robot_Bus_Robot_Status_T)
-        * Robot_Bus_Robot_Status_C);
-
+     Robot_Bus_Robot_Status_Up_Controller (Robot_Bus_Robot_Status_Busy);
    pragma Compile_Time_Error
-     (1 > Robot_Bus_Robot_Status_Busy,
-      "robot_bus.robot_status "
-      & "can keep others waiting for longer than claimed");
+     (Robot_Bus_Robot_Status_Busy < 1
+      or else Robot_Bus_Robot_Status_Busy
+        /= Robot_Bus_Robot_Status_Busy_Needs,
+      "robot_bus.robot_status claims a wrong busy period");
    pragma Compile_Time_Error
-     (Robot_Bus_Robot_Status_Busy_Needs > Robot_Bus_Robot_Status_Busy,
-      "robot_bus.robot_status "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_Robot_Status_Busy > Robot_Bus_Robot_Status_Busy_Needs,
-      "robot_bus.robot_status " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Robot_Status_Busy + Robot_Bus_Robot_Status_J)
+     (Robot_Bus_Robot_Status_Busy + Robot_Bus_Robot_Status_J
       > Robot_Bus_Robot_Status_T,
-      "robot_bus.robot_status " & "can come again before it is sent");
-
-   Robot_Bus_Robot_Status_W : constant := 1_470_000;
+      "robot_bus.robot_status can come again before it is sent");
+   Robot_Bus_Robot_Status_W : constant :=
+     Robot_Bus_Robot_Status_R - Robot_Bus_Robot_Status_J
+     - Robot_Bus_Robot_Status_C;
    Robot_Bus_Robot_Status_Needs : constant :=
-     0
-     + (((Robot_Bus_Robot_Status_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Robot_Command_A)
-         / Robot_Bus_Robot_Command_T)
-        * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_X_Set_Point_A)
-         / Robot_Bus_X_Set_Point_T)
-        * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Y_Set_Point_A)
-         / Robot_Bus_Y_Set_Point_T)
-        * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Z_Set_Point_A)
-         / Robot_Bus_Z_Set_Point_T)
-        * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
-         / Robot_Bus_X_Feedback_T)
-        * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
-         / Robot_Bus_Y_Feedback_T)
-        * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
-         / Robot_Bus_Z_Feedback_T)
-        * Robot_Bus_Z_Feedback_C);
-
+     Robot_Bus_Z_Set_Point_Up_Controller
+       (Robot_Bus_Robot_Status_W + Robot_Bus_Bit);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_Robot_Status_W,
-      "robot_bus.robot_status "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Robot_Status_Needs > Robot_Bus_Robot_Status_W,
-      "robot_bus.robot_status "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Robot_Status_W > Robot_Bus_Robot_Status_Needs,
-      "robot_bus.robot_status " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Robot_Status_J
-       + Robot_Bus_Robot_Status_W
-       + Robot_Bus_Robot_Status_C)
-      > Robot_Bus_Robot_Status_R,
-      "robot_bus.robot_status "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Robot_Status_R
-      > (Robot_Bus_Robot_Status_J
-         + Robot_Bus_Robot_Status_W
-         + Robot_Bus_Robot_Status_C),
-      "robot_bus.robot_status " & "claims more than its terms add up to");
+     (Robot_Bus_Robot_Status_W /= Robot_Bus_Robot_Status_Needs,
+      "robot_bus.robot_status claims a wrong response time");
    pragma Compile_Time_Error
      (Robot_Bus_Robot_Status_R > Robot_Bus_Robot_Status_D,
-      "robot_bus.robot_status " & "can miss its deadline");
+      "robot_bus.robot_status can miss its deadline");
    pragma Assert (Robot_Bus_Robot_Status_R <= Robot_Bus_Robot_Status_D);
 
-   --  [robot_bus.x_feedback] its turn in the queue of reception, and when
-   --  it is handed over
+   --  [reception] how long it is ever busy with what it receives
+   function Robot_Bus_Robot_Command_Turn_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_Robot_Command_R,
+         Robot_Bus_Robot_Command_T, Reception_T)) with Static;
+   function Robot_Bus_X_Feedback_Turn_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_X_Feedback_R, Robot_Bus_X_Feedback_T,
+         Reception_T, Robot_Bus_Robot_Command_Turn_Up (W))) with Static;
+   function Robot_Bus_Y_Feedback_Turn_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_Y_Feedback_R, Robot_Bus_Y_Feedback_T,
+         Reception_T, Robot_Bus_X_Feedback_Turn_Up (W))) with Static;
+   function Robot_Bus_Z_Feedback_Turn_Up (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_Z_Feedback_R, Robot_Bus_Z_Feedback_T,
+         Reception_T, Robot_Bus_Y_Feedback_Turn_Up (W))) with Static;
+   function Robot_Bus_Z_Feedback_Turn_Rest (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_Z_Feedback_R, Robot_Bus_Z_Feedback_T,
+         Reception_T)) with Static;
+   function Robot_Bus_Y_Feedback_Turn_Rest (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_Y_Feedback_R, Robot_Bus_Y_Feedback_T,
+         Reception_T, Robot_Bus_Z_Feedback_Turn_Rest (W))) with Static;
+   function Robot_Bus_X_Feedback_Turn_Rest (W : Window) return Time is
+     (Demand (W, Robot_Bus_Driver_Rx_X_Feedback_R, Robot_Bus_X_Feedback_T,
+         Reception_T, Robot_Bus_Y_Feedback_Turn_Rest (W))) with Static;
+
+   Reception_Busy : constant := 7_000_000;
+   Reception_Busy_Needs : constant :=
+     Robot_Bus_Z_Feedback_Turn_Up (Reception_Busy);
+   pragma Compile_Time_Error
+     (Reception_Busy < 1 or else Reception_Busy /= Reception_Busy_Needs,
+      "reception claims a wrong busy period");
+
+   --  [robot_bus.x_feedback] its turn in reception, and when it is handed
+   --  over
    Robot_Bus_X_Feedback_Turn_J : constant :=
      Robot_Bus_Driver_Rx_X_Feedback_R;
-   Robot_Bus_X_Feedback_Turn_Busy : constant := 7_000_000;
-   Robot_Bus_X_Feedback_Turn_Busy_Needs : constant :=
-     (((Robot_Bus_X_Feedback_Turn_Busy
-        + Robot_Bus_Driver_Rx_Robot_Command_R
-        + (Robot_Bus_Robot_Command_T - 1))
-       / Robot_Bus_Robot_Command_T)
-      * Reception_T)
-     + (((Robot_Bus_X_Feedback_Turn_Busy
-          + Robot_Bus_Driver_Rx_X_Feedback_R
-          + (Robot_Bus_X_Feedback_T - 1))
-         / Robot_Bus_X_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_X_Feedback_Turn_Busy
-          + Robot_Bus_Driver_Rx_Y_Feedback_R
-          + (Robot_Bus_Y_Feedback_T - 1))
-         / Robot_Bus_Y_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_X_Feedback_Turn_Busy
-          + Robot_Bus_Driver_Rx_Z_Feedback_R
-          + (Robot_Bus_Z_Feedback_T - 1))
-         / Robot_Bus_Z_Feedback_T)
-        * Reception_T);
-
    pragma Compile_Time_Error
-     (1 > Robot_Bus_X_Feedback_Turn_Busy,
-      "robot_bus.x_feedback "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Feedback_Turn_Busy_Needs > Robot_Bus_X_Feedback_Turn_Busy,
-      "robot_bus.x_feedback "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Feedback_Turn_Busy > Robot_Bus_X_Feedback_Turn_Busy_Needs,
-      "robot_bus.x_feedback " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_X_Feedback_Turn_Busy + Robot_Bus_X_Feedback_Turn_J)
-      > (2 * Robot_Bus_X_Feedback_T),
-      "robot_bus.x_feedback " & "can come again before it is sent");
-
+     (Reception_Busy + Robot_Bus_X_Feedback_Turn_J
+      > 2 * Robot_Bus_X_Feedback_T,
+      "robot_bus.x_feedback can come again before it is sent");
    Robot_Bus_X_Feedback_Turn_W_1 : constant := 5_000_000;
    Robot_Bus_X_Feedback_Turn_Needs_1 : constant :=
-     (((Robot_Bus_X_Feedback_Turn_W_1
-        + 1
-        + Robot_Bus_Driver_Rx_Robot_Command_R
-        + (Robot_Bus_Robot_Command_T - 1))
-       / Robot_Bus_Robot_Command_T)
-      * Reception_T)
-     + (((Robot_Bus_X_Feedback_Turn_W_1
-          + 1
-          + Robot_Bus_Driver_Rx_Y_Feedback_R
-          + (Robot_Bus_Y_Feedback_T - 1))
-         / Robot_Bus_Y_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_X_Feedback_Turn_W_1
-          + 1
-          + Robot_Bus_Driver_Rx_Z_Feedback_R
-          + (Robot_Bus_Z_Feedback_T - 1))
-         / Robot_Bus_Z_Feedback_T)
-        * Reception_T);
-
+     Robot_Bus_Robot_Command_Turn_Up (Robot_Bus_X_Feedback_Turn_W_1 + 1)
+     + Robot_Bus_Y_Feedback_Turn_Rest (Robot_Bus_X_Feedback_Turn_W_1 + 1);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_X_Feedback_Turn_W_1,
-      "robot_bus.x_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Feedback_Turn_Needs_1 > Robot_Bus_X_Feedback_Turn_W_1,
-      "robot_bus.x_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Feedback_Turn_W_1 > Robot_Bus_X_Feedback_Turn_Needs_1,
-      "robot_bus.x_feedback " & "claims more than its terms add up to");
-
+     (Robot_Bus_X_Feedback_Turn_W_1 /= Robot_Bus_X_Feedback_Turn_Needs_1,
+      "robot_bus.x_feedback claims a wrong response time");
    Robot_Bus_X_Feedback_Turn_W_2 : constant := 6_000_000;
    Robot_Bus_X_Feedback_Turn_Needs_2 : constant :=
      Reception_T
-     + (((Robot_Bus_X_Feedback_Turn_W_2
-          + 1
-          + Robot_Bus_Driver_Rx_Robot_Command_R
-          + (Robot_Bus_Robot_Command_T - 1))
-         / Robot_Bus_Robot_Command_T)
-        * Reception_T)
-     + (((Robot_Bus_X_Feedback_Turn_W_2
-          + 1
-          + Robot_Bus_Driver_Rx_Y_Feedback_R
-          + (Robot_Bus_Y_Feedback_T - 1))
-         / Robot_Bus_Y_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_X_Feedback_Turn_W_2
-          + 1
-          + Robot_Bus_Driver_Rx_Z_Feedback_R
-          + (Robot_Bus_Z_Feedback_T - 1))
-         / Robot_Bus_Z_Feedback_T)
-        * Reception_T);
-
+     + Robot_Bus_Robot_Command_Turn_Up (Robot_Bus_X_Feedback_Turn_W_2 + 1)
+     + Robot_Bus_Y_Feedback_Turn_Rest (Robot_Bus_X_Feedback_Turn_W_2 + 1);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_X_Feedback_Turn_W_2,
-      "robot_bus.x_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Feedback_Turn_Needs_2 > Robot_Bus_X_Feedback_Turn_W_2,
-      "robot_bus.x_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_X_Feedback_Turn_W_2 > Robot_Bus_X_Feedback_Turn_Needs_2,
-      "robot_bus.x_feedback " & "claims more than its terms add up to");
-
+     (Robot_Bus_X_Feedback_Turn_W_2 /= Robot_Bus_X_Feedback_Turn_Needs_2,
+      "robot_bus.x_feedback claims a wrong response time");
    Robot_Bus_X_Feedback_Turn : constant := 6_735_000;
-
-   pragma Compile_Time_Error
-     ((Robot_Bus_X_Feedback_Turn_J + Robot_Bus_X_Feedback_Turn_W_1)
-      > Robot_Bus_X_Feedback_Turn,
-      "robot_bus.x_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     ((Robot_Bus_X_Feedback_Turn_J
-       + Robot_Bus_X_Feedback_Turn_W_2
-       + ((-1) * Robot_Bus_X_Feedback_T))
-      > Robot_Bus_X_Feedback_Turn,
-      "robot_bus.x_feedback "
-      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_X_Feedback_Turn
-      > (Robot_Bus_X_Feedback_Turn_J + Robot_Bus_X_Feedback_Turn_W_1)
-      and then Robot_Bus_X_Feedback_Turn
-        > (Robot_Bus_X_Feedback_Turn_J
-           + Robot_Bus_X_Feedback_Turn_W_2
-           + ((-1) * Robot_Bus_X_Feedback_T)),
-      "robot_bus.x_feedback " & "claims more than its terms add up to");
-
+      /= Time'Max
+          (Robot_Bus_X_Feedback_Turn_J + Robot_Bus_X_Feedback_Turn_W_1,
+           Robot_Bus_X_Feedback_Turn_J + Robot_Bus_X_Feedback_Turn_W_2
+           - Robot_Bus_X_Feedback_T),
+      "robot_bus.x_feedback claims a wrong response time");
    Robot_Bus_X_Feedback_Handed : constant :=
-     Robot_Bus_X_Feedback_Turn + (2 * Reception_R);
+     Robot_Bus_X_Feedback_Turn + 2 * Reception_R;
 
-   --  [robot_bus.y_feedback] its turn in the queue of reception, and when
-   --  it is handed over
+   --  [robot_bus.y_feedback] its turn in reception, and when it is handed
+   --  over
    Robot_Bus_Y_Feedback_Turn_J : constant :=
      Robot_Bus_Driver_Rx_Y_Feedback_R;
-   Robot_Bus_Y_Feedback_Turn_Busy : constant := 7_000_000;
-   Robot_Bus_Y_Feedback_Turn_Busy_Needs : constant :=
-     (((Robot_Bus_Y_Feedback_Turn_Busy
-        + Robot_Bus_Driver_Rx_Robot_Command_R
-        + (Robot_Bus_Robot_Command_T - 1))
-       / Robot_Bus_Robot_Command_T)
-      * Reception_T)
-     + (((Robot_Bus_Y_Feedback_Turn_Busy
-          + Robot_Bus_Driver_Rx_X_Feedback_R
-          + (Robot_Bus_X_Feedback_T - 1))
-         / Robot_Bus_X_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_Y_Feedback_Turn_Busy
-          + Robot_Bus_Driver_Rx_Y_Feedback_R
-          + (Robot_Bus_Y_Feedback_T - 1))
-         / Robot_Bus_Y_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_Y_Feedback_Turn_Busy
-          + Robot_Bus_Driver_Rx_Z_Feedback_R
-          + (Robot_Bus_Z_Feedback_T - 1))
-         / Robot_Bus_Z_Feedback_T)
-        * Reception_T);
-
    pragma Compile_Time_Error
-     (1 > Robot_Bus_Y_Feedback_Turn_Busy,
-      "robot_bus.y_feedback "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Feedback_Turn_Busy_Needs > Robot_Bus_Y_Feedback_Turn_Busy,
-      "robot_bus.y_feedback "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Feedback_Turn_Busy > Robot_Bus_Y_Feedback_Turn_Busy_Needs,
-      "robot_bus.y_feedback " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Y_Feedback_Turn_Busy + Robot_Bus_Y_Feedback_Turn_J)
-      > (2 * Robot_Bus_Y_Feedback_T),
-      "robot_bus.y_feedback " & "can come again before it is sent");
-
+     (Reception_Busy + Robot_Bus_Y_Feedback_Turn_J
+      > 2 * Robot_Bus_Y_Feedback_T,
+      "robot_bus.y_feedback can come again before it is sent");
    Robot_Bus_Y_Feedback_Turn_W_1 : constant := 5_000_000;
    Robot_Bus_Y_Feedback_Turn_Needs_1 : constant :=
-     (((Robot_Bus_Y_Feedback_Turn_W_1
-        + 1
-        + Robot_Bus_Driver_Rx_Robot_Command_R
-        + (Robot_Bus_Robot_Command_T - 1))
-       / Robot_Bus_Robot_Command_T)
-      * Reception_T)
-     + (((Robot_Bus_Y_Feedback_Turn_W_1
-          + 1
-          + Robot_Bus_Driver_Rx_X_Feedback_R
-          + (Robot_Bus_X_Feedback_T - 1))
-         / Robot_Bus_X_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_Y_Feedback_Turn_W_1
-          + 1
-          + Robot_Bus_Driver_Rx_Z_Feedback_R
-          + (Robot_Bus_Z_Feedback_T - 1))
-         / Robot_Bus_Z_Feedback_T)
-        * Reception_T);
-
+     Robot_Bus_X_Feedback_Turn_Up (Robot_Bus_Y_Feedback_Turn_W_1 + 1)
+     + Robot_Bus_Z_Feedback_Turn_Rest (Robot_Bus_Y_Feedback_Turn_W_1 + 1);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_Y_Feedback_Turn_W_1,
-      "robot_bus.y_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Feedback_Turn_Needs_1 > Robot_Bus_Y_Feedback_Turn_W_1,
-      "robot_bus.y_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Feedback_Turn_W_1 > Robot_Bus_Y_Feedback_Turn_Needs_1,
-      "robot_bus.y_feedback " & "claims more than its terms add up to");
-
+     (Robot_Bus_Y_Feedback_Turn_W_1 /= Robot_Bus_Y_Feedback_Turn_Needs_1,
+      "robot_bus.y_feedback claims a wrong response time");
    Robot_Bus_Y_Feedback_Turn_W_2 : constant := 6_000_000;
    Robot_Bus_Y_Feedback_Turn_Needs_2 : constant :=
      Reception_T
-     + (((Robot_Bus_Y_Feedback_Turn_W_2
-          + 1
-          + Robot_Bus_Driver_Rx_Robot_Command_R
-          + (Robot_Bus_Robot_Command_T - 1))
-         / Robot_Bus_Robot_Command_T)
-        * Reception_T)
-     + (((Robot_Bus_Y_Feedback_Turn_W_2
-          + 1
-          + Robot_Bus_Driver_Rx_X_Feedback_R
-          + (Robot_Bus_X_Feedback_T - 1))
-         / Robot_Bus_X_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_Y_Feedback_Turn_W_2
-          + 1
-          + Robot_Bus_Driver_Rx_Z_Feedback_R
-          + (Robot_Bus_Z_Feedback_T - 1))
-         / Robot_Bus_Z_Feedback_T)
-        * Reception_T);
-
+     + Robot_Bus_X_Feedback_Turn_Up (Robot_Bus_Y_Feedback_Turn_W_2 + 1)
+     + Robot_Bus_Z_Feedback_Turn_Rest (Robot_Bus_Y_Feedback_Turn_W_2 + 1);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_Y_Feedback_Turn_W_2,
-      "robot_bus.y_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Feedback_Turn_Needs_2 > Robot_Bus_Y_Feedback_Turn_W_2,
-      "robot_bus.y_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Y_Feedback_Turn_W_2 > Robot_Bus_Y_Feedback_Turn_Needs_2,
-      "robot_bus.y_feedback " & "claims more than its terms add up to");
-
+     (Robot_Bus_Y_Feedback_Turn_W_2 /= Robot_Bus_Y_Feedback_Turn_Needs_2,
+      "robot_bus.y_feedback claims a wrong response time");
    Robot_Bus_Y_Feedback_Turn : constant := 6_965_000;
-
-   pragma Compile_Time_Error
-     ((Robot_Bus_Y_Feedback_Turn_J + Robot_Bus_Y_Feedback_Turn_W_1)
-      > Robot_Bus_Y_Feedback_Turn,
-      "robot_bus.y_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Y_Feedback_Turn_J
-       + Robot_Bus_Y_Feedback_Turn_W_2
-       + ((-1) * Robot_Bus_Y_Feedback_T))
-      > Robot_Bus_Y_Feedback_Turn,
-      "robot_bus.y_feedback "
-      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_Y_Feedback_Turn
-      > (Robot_Bus_Y_Feedback_Turn_J + Robot_Bus_Y_Feedback_Turn_W_1)
-      and then Robot_Bus_Y_Feedback_Turn
-        > (Robot_Bus_Y_Feedback_Turn_J
-           + Robot_Bus_Y_Feedback_Turn_W_2
-           + ((-1) * Robot_Bus_Y_Feedback_T)),
-      "robot_bus.y_feedback " & "claims more than its terms add up to");
-
+      /= Time'Max
+          (Robot_Bus_Y_Feedback_Turn_J + Robot_Bus_Y_Feedback_Turn_W_1,
+           Robot_Bus_Y_Feedback_Turn_J + Robot_Bus_Y_Feedback_Turn_W_2
+           - Robot_Bus_Y_Feedback_T),
+      "robot_bus.y_feedback claims a wrong response time");
    Robot_Bus_Y_Feedback_Handed : constant :=
-     Robot_Bus_Y_Feedback_Turn + (2 * Reception_R);
+     Robot_Bus_Y_Feedback_Turn + 2 * Reception_R;
 
-   --  [robot_bus.z_feedback] its turn in the queue of reception, and when
-   --  it is handed over
+   --  [robot_bus.z_feedback] its turn in reception, and when it is handed
+   --  over
    Robot_Bus_Z_Feedback_Turn_J : constant :=
      Robot_Bus_Driver_Rx_Z_Feedback_R;
-   Robot_Bus_Z_Feedback_Turn_Busy : constant := 7_000_000;
-   Robot_Bus_Z_Feedback_Turn_Busy_Needs : constant :=
-     (((Robot_Bus_Z_Feedback_Turn_Busy
-        + Robot_Bus_Driver_Rx_Robot_Command_R
-        + (Robot_Bus_Robot_Command_T - 1))
-       / Robot_Bus_Robot_Command_T)
-      * Reception_T)
-     + (((Robot_Bus_Z_Feedback_Turn_Busy
-          + Robot_Bus_Driver_Rx_X_Feedback_R
-          + (Robot_Bus_X_Feedback_T - 1))
-         / Robot_Bus_X_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_Z_Feedback_Turn_Busy
-          + Robot_Bus_Driver_Rx_Y_Feedback_R
-          + (Robot_Bus_Y_Feedback_T - 1))
-         / Robot_Bus_Y_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_Z_Feedback_Turn_Busy
-          + Robot_Bus_Driver_Rx_Z_Feedback_R
-          + (Robot_Bus_Z_Feedback_T - 1))
-         / Robot_Bus_Z_Feedback_T)
-        * Reception_T);
-
    pragma Compile_Time_Error
-     (1 > Robot_Bus_Z_Feedback_Turn_Busy,
-      "robot_bus.z_feedback "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Feedback_Turn_Busy_Needs > Robot_Bus_Z_Feedback_Turn_Busy,
-      "robot_bus.z_feedback "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Feedback_Turn_Busy > Robot_Bus_Z_Feedback_Turn_Busy_Needs,
-      "robot_bus.z_feedback " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Z_Feedback_Turn_Busy + Robot_Bus_Z_Feedback_Turn_J)
-      > (2 * Robot_Bus_Z_Feedback_T),
-      "robot_bus.z_feedback " & "can come again before it is sent");
-
+     (Reception_Busy + Robot_Bus_Z_Feedback_Turn_J
+      > 2 * Robot_Bus_Z_Feedback_T,
+      "robot_bus.z_feedback can come again before it is sent");
    Robot_Bus_Z_Feedback_Turn_W_1 : constant := 3_000_000;
    Robot_Bus_Z_Feedback_Turn_Needs_1 : constant :=
-     (((Robot_Bus_Z_Feedback_Turn_W_1
-        + 1
-        + Robot_Bus_Driver_Rx_Robot_Command_R
-        + (Robot_Bus_Robot_Command_T - 1))
-       / Robot_Bus_Robot_Command_T)
-      * Reception_T)
-     + (((Robot_Bus_Z_Feedback_Turn_W_1
-          + 1
-          + Robot_Bus_Driver_Rx_X_Feedback_R
-          + (Robot_Bus_X_Feedback_T - 1))
-         / Robot_Bus_X_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_Z_Feedback_Turn_W_1
-          + 1
-          + Robot_Bus_Driver_Rx_Y_Feedback_R
-          + (Robot_Bus_Y_Feedback_T - 1))
-         / Robot_Bus_Y_Feedback_T)
-        * Reception_T);
-
+     Robot_Bus_Y_Feedback_Turn_Up (Robot_Bus_Z_Feedback_Turn_W_1 + 1);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_Z_Feedback_Turn_W_1,
-      "robot_bus.z_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Feedback_Turn_Needs_1 > Robot_Bus_Z_Feedback_Turn_W_1,
-      "robot_bus.z_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Feedback_Turn_W_1 > Robot_Bus_Z_Feedback_Turn_Needs_1,
-      "robot_bus.z_feedback " & "claims more than its terms add up to");
-
+     (Robot_Bus_Z_Feedback_Turn_W_1 /= Robot_Bus_Z_Feedback_Turn_Needs_1,
+      "robot_bus.z_feedback claims a wrong response time");
    Robot_Bus_Z_Feedback_Turn_W_2 : constant := 6_000_000;
    Robot_Bus_Z_Feedback_Turn_Needs_2 : constant :=
      Reception_T
-     + (((Robot_Bus_Z_Feedback_Turn_W_2
-          + 1
-          + Robot_Bus_Driver_Rx_Robot_Command_R
-          + (Robot_Bus_Robot_Command_T - 1))
-         / Robot_Bus_Robot_Command_T)
-        * Reception_T)
-     + (((Robot_Bus_Z_Feedback_Turn_W_2
-          + 1
-          + Robot_Bus_Driver_Rx_X_Feedback_R
-          + (Robot_Bus_X_Feedback_T - 1))
-         / Robot_Bus_X_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_Z_Feedback_Turn_W_2
-          + 1
-          + Robot_Bus_Driver_Rx_Y_Feedback_R
-          + (Robot_Bus_Y_Feedback_T - 1))
-         / Robot_Bus_Y_Feedback_T)
-        * Reception_T);
-
+     + Robot_Bus_Y_Feedback_Turn_Up (Robot_Bus_Z_Feedback_Turn_W_2 + 1);
    pragma Compile_Time_Error
-     (0 > Robot_Bus_Z_Feedback_Turn_W_2,
-      "robot_bus.z_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Feedback_Turn_Needs_2 > Robot_Bus_Z_Feedback_Turn_W_2,
-      "robot_bus.z_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Robot_Bus_Z_Feedback_Turn_W_2 > Robot_Bus_Z_Feedback_Turn_Needs_2,
-      "robot_bus.z_feedback " & "claims more than its terms add up to");
-
+     (Robot_Bus_Z_Feedback_Turn_W_2 /= Robot_Bus_Z_Feedback_Turn_Needs_2,
+      "robot_bus.z_feedback claims a wrong response time");
    Robot_Bus_Z_Feedback_Turn : constant := 5_195_000;
-
-   pragma Compile_Time_Error
-     ((Robot_Bus_Z_Feedback_Turn_J + Robot_Bus_Z_Feedback_Turn_W_1)
-      > Robot_Bus_Z_Feedback_Turn,
-      "robot_bus.z_feedback "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Z_Feedback_Turn_J
-       + Robot_Bus_Z_Feedback_Turn_W_2
-       + ((-1) * Robot_Bus_Z_Feedback_T))
-      > Robot_Bus_Z_Feedback_Turn,
-      "robot_bus.z_feedback "
-      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_Z_Feedback_Turn
-      > (Robot_Bus_Z_Feedback_Turn_J + Robot_Bus_Z_Feedback_Turn_W_1)
-      and then Robot_Bus_Z_Feedback_Turn
-        > (Robot_Bus_Z_Feedback_Turn_J
-           + Robot_Bus_Z_Feedback_Turn_W_2
-           + ((-1) * Robot_Bus_Z_Feedback_T)),
-      "robot_bus.z_feedback " & "claims more than its terms add up to");
-
+      /= Time'Max
+          (Robot_Bus_Z_Feedback_Turn_J + Robot_Bus_Z_Feedback_Turn_W_1,
+           Robot_Bus_Z_Feedback_Turn_J + Robot_Bus_Z_Feedback_Turn_W_2
+           - Robot_Bus_Z_Feedback_T),
+      "robot_bus.z_feedback claims a wrong response time");
    Robot_Bus_Z_Feedback_Handed : constant :=
-     Robot_Bus_Z_Feedback_Turn + (2 * Reception_R);
+     Robot_Bus_Z_Feedback_Turn + 2 * Reception_R;
 
    --  [x_loop] from end to end. joint_x.ports samples.
    Chain_X_Loop_Reaction : constant := 22_145_000;
    Chain_X_Loop_Reaction_Limit : constant := 25_000_000;
    Chain_X_Loop_Reaction_Needs : constant :=
      Robot_Bus_X_Feedback_Handed + Control_T + Robot_Bus_X_Set_Point_R;
-
    pragma Compile_Time_Error
-     (Chain_X_Loop_Reaction_Needs > Chain_X_Loop_Reaction,
-      "chain x_loop " & "can have a longer reaction than claimed");
-   pragma Compile_Time_Error
-     (Chain_X_Loop_Reaction > Chain_X_Loop_Reaction_Needs,
-      "chain x_loop " & "claims more than its terms add up to");
+     (Chain_X_Loop_Reaction /= Chain_X_Loop_Reaction_Needs,
+      "chain x_loop claims a wrong reaction");
    pragma Compile_Time_Error
      (Chain_X_Loop_Reaction > Chain_X_Loop_Reaction_Limit,
-      "chain x_loop " & "can exceed the limit of its reaction");
+      "chain x_loop can exceed the limit of its reaction");
    pragma Assert
      (Chain_X_Loop_Reaction_Needs <= Chain_X_Loop_Reaction_Limit);
-
    Chain_X_Loop_Age : constant := 17_145_000;
    Chain_X_Loop_Age_Limit : constant := 20_000_000;
    Chain_X_Loop_Age_Needs : constant :=
-     Robot_Bus_X_Feedback_Handed
-     + Robot_Bus_X_Feedback_T
+     Robot_Bus_X_Feedback_Handed + Robot_Bus_X_Feedback_T
      + Robot_Bus_X_Set_Point_R;
-
-   pragma Compile_Time_Error
-     (Chain_X_Loop_Age_Needs > Chain_X_Loop_Age,
-      "chain x_loop " & "can have a longer age than claimed");
-   pragma Compile_Time_Error
-     (Chain_X_Loop_Age > Chain_X_Loop_Age_Needs,
-      "chain x_loop " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Chain_X_Loop_Age > Chain_X_Loop_Age_Limit,
-      "chain x_loop " & "can exceed the limit of its age");
+   pragma Compile_Time_Error (Chain_X_Loop_Age /= Chain_X_Loop_Age_Needs,
+      "chain x_loop claims a wrong age");
+   pragma Compile_Time_Error (Chain_X_Loop_Age > Chain_X_Loop_Age_Limit,
+      "chain x_loop can exceed the limit of its age");
    pragma Assert (Chain_X_Loop_Age_Needs <= Chain_X_Loop_Age_Limit);
 
    --  [y_loop] from end to end. joint_y.ports samples.
@@ -3367,35 +1439,23 @@ is
    Chain_Y_Loop_Reaction_Limit : constant := 25_000_000;
    Chain_Y_Loop_Reaction_Needs : constant :=
      Robot_Bus_Y_Feedback_Handed + Control_T + Robot_Bus_Y_Set_Point_R;
-
    pragma Compile_Time_Error
-     (Chain_Y_Loop_Reaction_Needs > Chain_Y_Loop_Reaction,
-      "chain y_loop " & "can have a longer reaction than claimed");
-   pragma Compile_Time_Error
-     (Chain_Y_Loop_Reaction > Chain_Y_Loop_Reaction_Needs,
-      "chain y_loop " & "claims more than its terms add up to");
+     (Chain_Y_Loop_Reaction /= Chain_Y_Loop_Reaction_Needs,
+      "chain y_loop claims a wrong reaction");
    pragma Compile_Time_Error
      (Chain_Y_Loop_Reaction > Chain_Y_Loop_Reaction_Limit,
-      "chain y_loop " & "can exceed the limit of its reaction");
+      "chain y_loop can exceed the limit of its reaction");
    pragma Assert
      (Chain_Y_Loop_Reaction_Needs <= Chain_Y_Loop_Reaction_Limit);
-
    Chain_Y_Loop_Age : constant := 17_375_000;
    Chain_Y_Loop_Age_Limit : constant := 20_000_000;
    Chain_Y_Loop_Age_Needs : constant :=
-     Robot_Bus_Y_Feedback_Handed
-     + Robot_Bus_Y_Feedback_T
+     Robot_Bus_Y_Feedback_Handed + Robot_Bus_Y_Feedback_T
      + Robot_Bus_Y_Set_Point_R;
-
-   pragma Compile_Time_Error
-     (Chain_Y_Loop_Age_Needs > Chain_Y_Loop_Age,
-      "chain y_loop " & "can have a longer age than claimed");
-   pragma Compile_Time_Error
-     (Chain_Y_Loop_Age > Chain_Y_Loop_Age_Needs,
-      "chain y_loop " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Chain_Y_Loop_Age > Chain_Y_Loop_Age_Limit,
-      "chain y_loop " & "can exceed the limit of its age");
+   pragma Compile_Time_Error (Chain_Y_Loop_Age /= Chain_Y_Loop_Age_Needs,
+      "chain y_loop claims a wrong age");
+   pragma Compile_Time_Error (Chain_Y_Loop_Age > Chain_Y_Loop_Age_Limit,
+      "chain y_loop can exceed the limit of its age");
    pragma Assert (Chain_Y_Loop_Age_Needs <= Chain_Y_Loop_Age_Limit);
 
    --  [z_loop] from end to end. joint_z.ports samples.
@@ -3403,35 +1463,23 @@ is
    Chain_Z_Loop_Reaction_Limit : constant := 25_000_000;
    Chain_Z_Loop_Reaction_Needs : constant :=
      Robot_Bus_Z_Feedback_Handed + Control_T + Robot_Bus_Z_Set_Point_R;
-
    pragma Compile_Time_Error
-     (Chain_Z_Loop_Reaction_Needs > Chain_Z_Loop_Reaction,
-      "chain z_loop " & "can have a longer reaction than claimed");
-   pragma Compile_Time_Error
-     (Chain_Z_Loop_Reaction > Chain_Z_Loop_Reaction_Needs,
-      "chain z_loop " & "claims more than its terms add up to");
+     (Chain_Z_Loop_Reaction /= Chain_Z_Loop_Reaction_Needs,
+      "chain z_loop claims a wrong reaction");
    pragma Compile_Time_Error
      (Chain_Z_Loop_Reaction > Chain_Z_Loop_Reaction_Limit,
-      "chain z_loop " & "can exceed the limit of its reaction");
+      "chain z_loop can exceed the limit of its reaction");
    pragma Assert
      (Chain_Z_Loop_Reaction_Needs <= Chain_Z_Loop_Reaction_Limit);
-
    Chain_Z_Loop_Age : constant := 15_605_000;
    Chain_Z_Loop_Age_Limit : constant := 20_000_000;
    Chain_Z_Loop_Age_Needs : constant :=
-     Robot_Bus_Z_Feedback_Handed
-     + Robot_Bus_Z_Feedback_T
+     Robot_Bus_Z_Feedback_Handed + Robot_Bus_Z_Feedback_T
      + Robot_Bus_Z_Set_Point_R;
-
-   pragma Compile_Time_Error
-     (Chain_Z_Loop_Age_Needs > Chain_Z_Loop_Age,
-      "chain z_loop " & "can have a longer age than claimed");
-   pragma Compile_Time_Error
-     (Chain_Z_Loop_Age > Chain_Z_Loop_Age_Needs,
-      "chain z_loop " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Chain_Z_Loop_Age > Chain_Z_Loop_Age_Limit,
-      "chain z_loop " & "can exceed the limit of its age");
+   pragma Compile_Time_Error (Chain_Z_Loop_Age /= Chain_Z_Loop_Age_Needs,
+      "chain z_loop claims a wrong age");
+   pragma Compile_Time_Error (Chain_Z_Loop_Age > Chain_Z_Loop_Age_Limit,
+      "chain z_loop can exceed the limit of its age");
    pragma Assert (Chain_Z_Loop_Age_Needs <= Chain_Z_Loop_Age_Limit);
 
    --  [status] from end to end. joint_x.ports samples. joint_x.supervise
@@ -3439,45 +1487,26 @@ is
    Chain_Status_Reaction : constant := 67_725_000;
    Chain_Status_Reaction_Limit : constant := 80_000_000;
    Chain_Status_Reaction_Needs : constant :=
-     Robot_Bus_X_Feedback_Handed
-     + Control_T
-     + Joint_X_Position_Control_Done
-     + Supervision_T
-     + Joint_X_Supervise_Done
-     + Supervision_T
+     Robot_Bus_X_Feedback_Handed + Control_T + Joint_X_Position_Control_Done
+     + Supervision_T + Joint_X_Supervise_Done + Supervision_T
      + Robot_Bus_Robot_Status_R;
-
    pragma Compile_Time_Error
-     (Chain_Status_Reaction_Needs > Chain_Status_Reaction,
-      "chain status " & "can have a longer reaction than claimed");
-   pragma Compile_Time_Error
-     (Chain_Status_Reaction > Chain_Status_Reaction_Needs,
-      "chain status " & "claims more than its terms add up to");
+     (Chain_Status_Reaction /= Chain_Status_Reaction_Needs,
+      "chain status claims a wrong reaction");
    pragma Compile_Time_Error
      (Chain_Status_Reaction > Chain_Status_Reaction_Limit,
-      "chain status " & "can exceed the limit of its reaction");
+      "chain status can exceed the limit of its reaction");
    pragma Assert
      (Chain_Status_Reaction_Needs <= Chain_Status_Reaction_Limit);
-
    Chain_Status_Age : constant := 52_725_000;
    Chain_Status_Age_Limit : constant := 60_000_000;
    Chain_Status_Age_Needs : constant :=
-     Robot_Bus_X_Feedback_Handed
-     + Robot_Bus_X_Feedback_T
-     + Joint_X_Position_Control_Done
-     + Control_T
-     + Joint_X_Supervise_Done
-     + Supervision_T
-     + Robot_Bus_Robot_Status_R;
-
-   pragma Compile_Time_Error
-     (Chain_Status_Age_Needs > Chain_Status_Age,
-      "chain status " & "can have a longer age than claimed");
-   pragma Compile_Time_Error
-     (Chain_Status_Age > Chain_Status_Age_Needs,
-      "chain status " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Chain_Status_Age > Chain_Status_Age_Limit,
-      "chain status " & "can exceed the limit of its age");
+     Robot_Bus_X_Feedback_Handed + Robot_Bus_X_Feedback_T
+     + Joint_X_Position_Control_Done + Control_T + Joint_X_Supervise_Done
+     + Supervision_T + Robot_Bus_Robot_Status_R;
+   pragma Compile_Time_Error (Chain_Status_Age /= Chain_Status_Age_Needs,
+      "chain status claims a wrong age");
+   pragma Compile_Time_Error (Chain_Status_Age > Chain_Status_Age_Limit,
+      "chain status can exceed the limit of its age");
    pragma Assert (Chain_Status_Age_Needs <= Chain_Status_Age_Limit);
 end Cartesian_Robot.Timing_Certificate;

@@ -9,6 +9,5 @@ package Cartesian_Robot.Trace
 with SPARK_Mode
 is
    package Buffer is new Ravenchart.Trace_Buffers
-     (Capacity => 4_096,
-      Ceiling => System.Default_Priority + 6);
+     (Capacity => 4_096, Ceiling => System.Default_Priority + 6);
 end Cartesian_Robot.Trace;

@@ -12,8 +12,7 @@ with SPARK_Mode
 is
    --  [trajectory.table] the activities, in the order in which they run
    type Row is
-     (Joint_X_Trajectory_Step,
-      Joint_Y_Trajectory_Step,
+     (Joint_X_Trajectory_Step, Joint_Y_Trajectory_Step,
       Joint_Z_Trajectory_Step);
 
    procedure Execute (Item : Row);
@@ -51,16 +50,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Trajectory_Priority,
-      "trajectory " & "has another priority than its certificate");
+      "trajectory has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Trajectory_T,
-      "trajectory " & "has another period than its certificate");
+      "trajectory has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Trajectory_D,
-      "trajectory " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "trajectory " & "has another offset than its certificate");
+      "trajectory has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "trajectory has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Joint_X_Trajectory_Step).Divisor
       = Timing_Certificate.Joint_X_Trajectory_Step_Divisor

@@ -29,12 +29,7 @@ is
    type Joint_Condition is (Not_Homed, Homing, Standing, Moving, Failed);
 
    type Robot_Condition is
-     (Waiting,
-      Homing,
-      Ready,
-      Moving,
-      Failed,
-      Stopped);
+     (Waiting, Homing, Ready, Moving, Failed, Stopped);
 
    type Profile_Phase is (At_Rest, Speeding_Up, At_Speed, Slowing_Down);
 

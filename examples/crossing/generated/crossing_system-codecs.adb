@@ -75,14 +75,12 @@ is
         Pre => Raw <= 16#1#,
         Post =>
           (Raw <= 1)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Value)
              in 0 .. 1)
           and then (if Raw <= 1
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Value)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Value)
                    = Crossing_System.Order'Pos (Value_Of_Type_Order (Raw)))
       is
       begin
@@ -90,8 +88,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Value)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Value;
@@ -160,14 +157,12 @@ is
         Pre => Raw <= 16#1#,
         Post =>
           (Raw <= 0)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Value)
              in 0 .. 0)
           and then (if Raw <= 0
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Value)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Value)
                    = Crossing_System.Press'Pos (Value_Of_Type_Press (Raw)))
       is
       begin
@@ -175,8 +170,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Value)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Value;
@@ -245,14 +239,12 @@ is
         Pre => Raw <= 16#7#,
         Post =>
           (Raw <= 4)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Value)
              in 0 .. 4)
           and then (if Raw <= 4
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Value)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Value)
                    = Crossing_System.Car_Light'Pos
                        (Value_Of_Type_Car_Light (Raw)))
       is
@@ -261,8 +253,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Value)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Value;
@@ -331,14 +322,12 @@ is
         Pre => Raw <= 16#3#,
         Post =>
           (Raw <= 2)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Value)
              in 0 .. 2)
           and then (if Raw <= 2
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Value)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Value)
                    = Crossing_System.Walk_Light'Pos
                        (Value_Of_Type_Walk_Light (Raw)))
       is
@@ -347,8 +336,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Value)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Value;
@@ -417,14 +405,12 @@ is
         Pre => Raw <= 16#1#,
         Post =>
           (Raw <= 1)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Value)
              in 0 .. 1)
           and then (if Raw <= 1
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Value)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Value)
                    = Boolean'Pos (Value_Of_Type_Boolean (Raw)))
       is
       begin
@@ -432,8 +418,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Value)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Value;

@@ -53,16 +53,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Control_Priority,
-      "control " & "has another priority than its certificate");
+      "control has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Control_T,
-      "control " & "has another period than its certificate");
+      "control has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Control_D,
-      "control " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "control " & "has another offset than its certificate");
+      "control has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "control has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (School_Ports).Divisor
       = Timing_Certificate.School_Ports_Divisor

@@ -32,8 +32,7 @@ is
                when Lights_States.Red_Yellow =>
                   (if Now = Expiry_Of_Start then Start else None),
                when Lights_States.Least =>
-                  (if Now = Expiry_Of_Long_Enough
-                      then Long_Enough
+                  (if Now = Expiry_Of_Long_Enough then Long_Enough
                    else None),
                when Lights_States.Longer =>
                   (if Now = Conditions and then Data.Requested
@@ -56,14 +55,11 @@ is
                when Lights_States.Nobody =>
                   (if Now = On_Wish then Ask else None),
                when Lights_States.Waiting =>
-                  (if Now = Conditions and then Data.Cars_Stopped
-                      then Walk
+                  (if Now = Conditions and then Data.Cars_Stopped then Walk
                    else None),
                when Lights_States.Walking =>
-                  (if Now = Expiry_Of_Last_Call
-                      then Last_Call
-                   elsif Now = Expiry_Of_Gone
-                      then Gone
+                  (if Now = Expiry_Of_Last_Call then Last_Call
+                   elsif Now = Expiry_Of_Gone then Gone
                    else None),
                when Lights_States.Leaving =>
                   (if Now = Expiry_Of_Gone then Gone else None))
@@ -83,8 +79,7 @@ is
            (if Now = On_Ordered
                and then Item.Value_Order = Crossing_System.Work
                then Into_Service
-            elsif Now = Expiry_Of_Blink
-               then Blink
+            elsif Now = Expiry_Of_Blink then Blink
             else None),
         when Lights_States.Working =>
            (if Now = On_Ordered
@@ -113,24 +108,9 @@ is
    with Ghost
    is
       type Node is
-        (Nowhere,
-         Stopping,
-         Held,
-         Red_Yellow,
-         Least,
-         Longer,
-         Yellow,
-         Nobody,
-         Waiting,
-         Walking,
-         Leaving,
-         Blinking,
-         Working,
-         Red,
-         Green,
-         Dont_Walk,
-         On_The_Road,
-         Disorder);
+        (Nowhere, Stopping, Held, Red_Yellow, Least, Longer, Yellow, Nobody,
+         Waiting, Walking, Leaving, Blinking, Working, Red, Green,
+         Dont_Walk, On_The_Road, Disorder);
 
       function Innermost_Cars
         (Place : Lights_States.Configuration)
@@ -153,9 +133,7 @@ is
         (Node'Val (Lights_States.Leaf'Pos (Place.Top) + 11));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -206,80 +184,47 @@ is
        Self.Started
        and then Self.Place = Target (Chosen, Self.Place'Old)
        and then Self.Timers (1)
-         = Timer_After
-             (1,
-              Domain_Of (Chosen),
-              Self.Place'Old,
-              Self.Place,
+         = Timer_After (1, Domain_Of (Chosen), Self.Place'Old, Self.Place,
               Self.Timers'Old (1))
        and then Self.Timers (2)
-         = Timer_After
-             (2,
-              Domain_Of (Chosen),
-              Self.Place'Old,
-              Self.Place,
+         = Timer_After (2, Domain_Of (Chosen), Self.Place'Old, Self.Place,
               Self.Timers'Old (2))
        and then Self.Timers (3)
-         = Timer_After
-             (3,
-              Domain_Of (Chosen),
-              Self.Place'Old,
-              Self.Place,
+         = Timer_After (3, Domain_Of (Chosen), Self.Place'Old, Self.Place,
               Self.Timers'Old (3))
        and then Self.Timers (4)
-         = Timer_After
-             (4,
-              Domain_Of (Chosen),
-              Self.Place'Old,
-              Self.Place,
+         = Timer_After (4, Domain_Of (Chosen), Self.Place'Old, Self.Place,
               Self.Timers'Old (4))
        and then Self.Timers (5)
-         = Timer_After
-             (5,
-              Domain_Of (Chosen),
-              Self.Place'Old,
-              Self.Place,
+         = Timer_After (5, Domain_Of (Chosen), Self.Place'Old, Self.Place,
               Self.Timers'Old (5))
        and then Self.Timers (6)
-         = Timer_After
-             (6,
-              Domain_Of (Chosen),
-              Self.Place'Old,
-              Self.Place,
+         = Timer_After (6, Domain_Of (Chosen), Self.Place'Old, Self.Place,
               Self.Timers'Old (6))
        and then Self.Timers (7)
-         = Timer_After
-             (7,
-              Domain_Of (Chosen),
-              Self.Place'Old,
-              Self.Place,
+         = Timer_After (7, Domain_Of (Chosen), Self.Place'Old, Self.Place,
               Self.Timers'Old (7))
        and then Is_Safe (Self.Place, Self.Data)
    is
       use type Chart.Node;
       Active_Cars : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost_Cars (Self.Place)
+        (if Self.Started then Chart.Innermost_Cars (Self.Place)
          else Chart.Nowhere)
       with Ghost;
       Active_Walkers : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost_Walkers (Self.Place)
+        (if Self.Started then Chart.Innermost_Walkers (Self.Place)
          else Chart.Nowhere)
       with Ghost;
       Active_Top : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost_Top (Self.Place)
+        (if Self.Started then Chart.Innermost_Top (Self.Place)
          else Chart.Nowhere)
       with Ghost;
       function Data_After_Exit_Held (Data : Variables) return Variables is
-        ((Data with delta Cars_Stopped => False))
-      with Ghost;
+        ((Data with delta Cars_Stopped => False)) with Ghost;
       function Data_After_Exit_On_The_Road
         (Data : Variables)
         return Variables is
-        ((Data with delta Road_Free => True))
-      with Ghost;
+        ((Data with delta Road_Free => True)) with Ghost;
       function Data_After_Leave_Red (Data : Variables) return Variables is
         (case Lights_States.Red'(Self.Place.In_Cars) is
            when Lights_States.Stopping => Data,
@@ -305,47 +250,35 @@ is
       function Data_After_Enter_Blinking (Data : Variables) return Variables is
         ((Data with delta
             Cars_See => Crossing_System.Slow,
-            Walkers_See => Crossing_System.Dark))
-      with Ghost;
+            Walkers_See => Crossing_System.Dark)) with Ghost;
       function Data_After_Enter_Red (Data : Variables) return Variables is
-        ((Data with delta Cars_See => Crossing_System.Stop))
-      with Ghost;
+        ((Data with delta Cars_See => Crossing_System.Stop)) with Ghost;
       function Data_After_Enter_Held (Data : Variables) return Variables is
-        ((Data with delta Cars_Stopped => True))
-      with Ghost;
+        ((Data with delta Cars_Stopped => True)) with Ghost;
       function Data_After_Enter_Red_Yellow
         (Data : Variables)
         return Variables is
-        ((Data with delta Cars_See => Crossing_System.Ready))
-      with Ghost;
+        ((Data with delta Cars_See => Crossing_System.Ready)) with Ghost;
       function Data_After_Enter_Green (Data : Variables) return Variables is
-        ((Data with delta Cars_See => Crossing_System.Go))
-      with Ghost;
+        ((Data with delta Cars_See => Crossing_System.Go)) with Ghost;
       function Data_After_Enter_Yellow (Data : Variables) return Variables is
-        ((Data with delta Cars_See => Crossing_System.Slow))
-      with Ghost;
+        ((Data with delta Cars_See => Crossing_System.Slow)) with Ghost;
       function Data_After_Enter_Dont_Walk
         (Data : Variables)
         return Variables is
-        ((Data with delta Walkers_See => Crossing_System.Wait))
-      with Ghost;
+        ((Data with delta Walkers_See => Crossing_System.Wait)) with Ghost;
       function Data_After_Enter_Nobody (Data : Variables) return Variables is
-        ((Data with delta Requested => False))
-      with Ghost;
+        ((Data with delta Requested => False)) with Ghost;
       function Data_After_Enter_Waiting (Data : Variables) return Variables is
-        ((Data with delta Requested => True))
-      with Ghost;
+        ((Data with delta Requested => True)) with Ghost;
       function Data_After_Enter_On_The_Road
         (Data : Variables)
         return Variables is
-        ((Data with delta Road_Free => False))
-      with Ghost;
+        ((Data with delta Road_Free => False)) with Ghost;
       function Data_After_Enter_Walking (Data : Variables) return Variables is
-        ((Data with delta Walkers_See => Crossing_System.Walk))
-      with Ghost;
+        ((Data with delta Walkers_See => Crossing_System.Walk)) with Ghost;
       function Data_After_Enter_Leaving (Data : Variables) return Variables is
-        ((Data with delta Walkers_See => Crossing_System.Wait))
-      with Ghost;
+        ((Data with delta Walkers_See => Crossing_System.Wait)) with Ghost;
       procedure Exit_Blinking
       with
         Post =>
@@ -449,9 +382,7 @@ is
         Post =>
           Self.Place = Self.Place'Old
           and then Active_Walkers
-            = Chart.Moved
-                (Active_Walkers'Old,
-                 Chart.On_The_Road,
+            = Chart.Moved (Active_Walkers'Old, Chart.On_The_Road,
                  Chart.Nowhere)
           and then Self.Timers (7) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
@@ -470,9 +401,7 @@ is
         Post =>
           Self.Place = Self.Place'Old
           and then Active_Walkers
-            = Chart.Moved
-                (Active_Walkers'Old,
-                 Chart.Walking,
+            = Chart.Moved (Active_Walkers'Old, Chart.Walking,
                  Chart.On_The_Road)
           and then Self.Timers (6) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
@@ -510,9 +439,7 @@ is
                Exit_Walking;
             when Lights_States.Leaving =>
                Active_Walkers :=
-                 Chart.Moved
-                   (Active_Walkers,
-                    Chart.Leaving,
+                 Chart.Moved (Active_Walkers, Chart.Leaving,
                     Chart.On_The_Road);
          end case;
       end Leave_On_The_Road;
@@ -653,15 +580,12 @@ is
                  (if Self.Place.Top = Lights_States.Working
                      and then Self.Place.In_Walkers
                        in Lights_States.Dont_Walk
-                     then Chart.Moved
-                          (Active_Walkers,
+                     then Chart.Moved (Active_Walkers,
                            Chart.Innermost_Walkers (Self.Place),
                            Chart.Dont_Walk)
                   else Chart.Disorder);
                Active_Walkers :=
-                 Chart.Moved
-                   (Active_Walkers,
-                    Chart.Dont_Walk,
+                 Chart.Moved (Active_Walkers, Chart.Dont_Walk,
                     Chart.Nowhere);
             when Lights_States.On_The_Road =>
                Leave_On_The_Road;
@@ -695,9 +619,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Cars
             = (if Active_Top = Chart.Working
-                  then Chart.Moved
-                       (Active_Cars'Old,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Cars'Old, Chart.Nowhere,
                         Chart.Red)
                else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
@@ -753,9 +675,7 @@ is
           = (Self.Place'Old with delta In_Cars => Lights_States.Red_Yellow)
           and then Active_Cars
             = (if Active_Top = Chart.Working
-                  then Chart.Moved
-                       (Active_Cars'Old,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Cars'Old, Chart.Nowhere,
                         Chart.Red_Yellow)
                else Chart.Disorder)
           and then Self.Timers (3) = Ravenchart.Timers.Started (10)
@@ -769,9 +689,7 @@ is
          Ravenchart.Timers.Arm (Self.Timers (3), 10);
          Active_Cars :=
            (if Active_Top = Chart.Working
-               then Chart.Moved
-                    (Active_Cars,
-                     Chart.Nowhere,
+               then Chart.Moved (Active_Cars, Chart.Nowhere,
                      Chart.Red_Yellow)
             else Chart.Disorder);
          Self.Data.Cars_See := Crossing_System.Ready;
@@ -782,9 +700,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Cars
             = (if Active_Top = Chart.Working
-                  then Chart.Moved
-                       (Active_Cars'Old,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Cars'Old, Chart.Nowhere,
                         Chart.Green)
                else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
@@ -823,9 +739,7 @@ is
           = (Self.Place'Old with delta In_Cars => Lights_States.Yellow)
           and then Active_Cars
             = (if Active_Top = Chart.Working
-                  then Chart.Moved
-                       (Active_Cars'Old,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Cars'Old, Chart.Nowhere,
                         Chart.Yellow)
                else Chart.Disorder)
           and then Self.Timers (5) = Ravenchart.Timers.Started (30)
@@ -849,9 +763,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Walkers
             = (if Active_Top = Chart.Working
-                  then Chart.Moved
-                       (Active_Walkers'Old,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Walkers'Old, Chart.Nowhere,
                         Chart.Dont_Walk)
                else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
@@ -861,9 +773,7 @@ is
       begin
          Active_Walkers :=
            (if Active_Top = Chart.Working
-               then Chart.Moved
-                    (Active_Walkers,
-                     Chart.Nowhere,
+               then Chart.Moved (Active_Walkers, Chart.Nowhere,
                      Chart.Dont_Walk)
             else Chart.Disorder);
          Self.Data.Walkers_See := Crossing_System.Wait;
@@ -874,9 +784,7 @@ is
           Self.Place
           = (Self.Place'Old with delta In_Walkers => Lights_States.Nobody)
           and then Active_Walkers
-            = Chart.Moved
-                (Active_Walkers'Old,
-                 Chart.Dont_Walk,
+            = Chart.Moved (Active_Walkers'Old, Chart.Dont_Walk,
                  Chart.Nobody)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
@@ -894,9 +802,7 @@ is
           Self.Place
           = (Self.Place'Old with delta In_Walkers => Lights_States.Waiting)
           and then Active_Walkers
-            = Chart.Moved
-                (Active_Walkers'Old,
-                 Chart.Dont_Walk,
+            = Chart.Moved (Active_Walkers'Old, Chart.Dont_Walk,
                  Chart.Waiting)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
@@ -914,9 +820,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Walkers
             = (if Active_Top = Chart.Working
-                  then Chart.Moved
-                       (Active_Walkers'Old,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Walkers'Old, Chart.Nowhere,
                         Chart.On_The_Road)
                else Chart.Disorder)
           and then Self.Timers (7) = Ravenchart.Timers.Started (100)
@@ -929,9 +833,7 @@ is
          Ravenchart.Timers.Arm (Self.Timers (7), 100);
          Active_Walkers :=
            (if Active_Top = Chart.Working
-               then Chart.Moved
-                    (Active_Walkers,
-                     Chart.Nowhere,
+               then Chart.Moved (Active_Walkers, Chart.Nowhere,
                      Chart.On_The_Road)
             else Chart.Disorder);
          Self.Data.Road_Free := False;
@@ -942,9 +844,7 @@ is
           Self.Place
           = (Self.Place'Old with delta In_Walkers => Lights_States.Walking)
           and then Active_Walkers
-            = Chart.Moved
-                (Active_Walkers'Old,
-                 Chart.On_The_Road,
+            = Chart.Moved (Active_Walkers'Old, Chart.On_The_Road,
                  Chart.Walking)
           and then Self.Timers (6) = Ravenchart.Timers.Started (60)
           and then (for all I in Self.Timers'Range =>
@@ -965,9 +865,7 @@ is
           Self.Place
           = (Self.Place'Old with delta In_Walkers => Lights_States.Leaving)
           and then Active_Walkers
-            = Chart.Moved
-                (Active_Walkers'Old,
-                 Chart.On_The_Road,
+            = Chart.Moved (Active_Walkers'Old, Chart.On_The_Road,
                  Chart.Leaving)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
@@ -1031,9 +929,7 @@ is
             Active_Top :=
               (if Active_Cars = Chart.Nowhere
                   and then Active_Walkers = Chart.Nowhere
-                  then Chart.Moved
-                       (Active_Top,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Top, Chart.Nowhere,
                         Chart.Working)
                else Chart.Disorder);
             Self.Place.Top := Lights_States.Working;
@@ -1049,9 +945,7 @@ is
             Active_Top :=
               (if Active_Cars = Chart.Nowhere
                   and then Active_Walkers = Chart.Nowhere
-                  then Chart.Moved
-                       (Active_Top,
-                        Chart.Working,
+                  then Chart.Moved (Active_Top, Chart.Working,
                         Chart.Nowhere)
                else Chart.Disorder);
             Enter_Blinking;

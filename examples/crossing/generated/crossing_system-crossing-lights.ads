@@ -24,35 +24,15 @@ is
 
    --  [Crossing.Lights] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_Ordered,
-      On_Wish,
-      Expiry_Of_Blink,
-      Expiry_Of_Stopped,
-      Expiry_Of_Start,
-      Expiry_Of_Long_Enough,
-      Expiry_Of_Stop,
-      Expiry_Of_Last_Call,
-      Expiry_Of_Gone,
-      Conditions);
+     (Start_Of_Region, On_Ordered, On_Wish, Expiry_Of_Blink,
+      Expiry_Of_Stopped, Expiry_Of_Start, Expiry_Of_Long_Enough,
+      Expiry_Of_Stop, Expiry_Of_Last_Call, Expiry_Of_Gone, Conditions);
 
    --  [Crossing.Lights.transitions] in order of precedence, innermost
    --  source first
    type Selection is
-     (Initial_Entry,
-      Stopped,
-      Get_Ready,
-      Long_Enough,
-      Slow_Down,
-      Start,
-      Stop,
-      Ask,
-      Walk,
-      Last_Call,
-      Gone,
-      Into_Service,
-      Out_Of_Service,
-      Blink,
+     (Initial_Entry, Stopped, Get_Ready, Long_Enough, Slow_Down, Start,
+      Stop, Ask, Walk, Last_Call, Gone, Into_Service, Out_Of_Service, Blink,
       None);
 
    subtype Firing is Selection range Initial_Entry .. Blink;
@@ -158,8 +138,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Place : Lights_States.Configuration)
+     (T : Transition; Place : Lights_States.Configuration)
      return Boolean is
      (case T is
         when Stopped =>
@@ -198,8 +177,7 @@ is
    --  Is its source the leaf, or around it?
 
    function Target
-     (T : Firing;
-      Place : Lights_States.Configuration)
+     (T : Firing; Place : Lights_States.Configuration)
      return Lights_States.Configuration is
      (case T is
         when Initial_Entry =>
@@ -229,15 +207,8 @@ is
    --  The innermost region that holds all that a transition leaves and
    --  enters.
    type Domain is
-     (Nothing,
-      Inside_Cars,
-      Inside_Walkers,
-      Inside_Red,
-      Inside_Green,
-      Inside_Dont_Walk,
-      Inside_On_The_Road,
-      Everything,
-      Beginning);
+     (Nothing, Inside_Cars, Inside_Walkers, Inside_Red, Inside_Green,
+      Inside_Dont_Walk, Inside_On_The_Road, Everything, Beginning);
 
    function Domain_Of (T : Firing) return Domain is
      (case T is
@@ -267,15 +238,13 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Everything or else D = Beginning,
               D /= Beginning and then Before.Top = Lights_States.Blinking,
               After.Top = Lights_States.Blinking,
               Ravenchart.Timers.Started (5, 5)),
         when 2 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_Red
               or else D = Inside_Cars
               or else D = Everything
@@ -287,8 +256,7 @@ is
               and then After.In_Cars = Lights_States.Stopping,
               Ravenchart.Timers.Started (20)),
         when 3 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_Cars or else D = Everything or else D = Beginning,
               D /= Beginning
               and then Before.Top = Lights_States.Working
@@ -297,8 +265,7 @@ is
               and then After.In_Cars = Lights_States.Red_Yellow,
               Ravenchart.Timers.Started (10)),
         when 4 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_Green
               or else D = Inside_Cars
               or else D = Everything
@@ -310,8 +277,7 @@ is
               and then After.In_Cars = Lights_States.Least,
               Ravenchart.Timers.Started (100)),
         when 5 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_Cars or else D = Everything or else D = Beginning,
               D /= Beginning
               and then Before.Top = Lights_States.Working
@@ -320,8 +286,7 @@ is
               and then After.In_Cars = Lights_States.Yellow,
               Ravenchart.Timers.Started (30)),
         when 6 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_On_The_Road
               or else D = Inside_Walkers
               or else D = Everything
@@ -333,8 +298,7 @@ is
               and then After.In_Walkers = Lights_States.Walking,
               Ravenchart.Timers.Started (60)),
         when 7 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_Walkers
               or else D = Everything
               or else D = Beginning,
@@ -403,13 +367,11 @@ is
       and then Is_Walkers_Selection (C.Walkers, Place, Now, Data, Item)
       and then (if C.Cars = None and then C.Walkers = None
             then Is_Top_Selection (C.Top, Place, Now, Data, Item)
-         else C.Top = None))
-   with Ghost;
+         else C.Top = None)) with Ghost;
    --  Each lane's first; none where a lane inside it has one.
 
    function Is_Only (Fired : Firing_List; T : Selection) return Boolean is
-     (Fired.Count = 1 and then Fired.Items (1) = T)
-   with Ghost;
+     (Fired.Count = 1 and then Fired.Items (1) = T) with Ghost;
    --  Is that fired, with the segments of its way, and nothing else?
 
    function Choose
@@ -422,8 +384,7 @@ is
    --  The transitions that one occurrence asks for.
 
    function Has (Fired : Firing_List; T : Selection) return Boolean is
-     (for some I in 1 .. Fired.Count => Fired.Items (I) = T)
-   with Ghost;
+     (for some I in 1 .. Fired.Count => Fired.Items (I) = T) with Ghost;
 
    function Is_Ordered (Fired : Firing_List) return Boolean is
      (for all I in 1 .. Fired.Count =>
@@ -439,8 +400,7 @@ is
       and then Is_Ordered (Fired)
       and then (if C.Cars /= None then Has (Fired, C.Cars))
       and then (if C.Walkers /= None then Has (Fired, C.Walkers))
-      and then (if C.Top /= None then Has (Fired, C.Top)))
-   with Ghost;
+      and then (if C.Top /= None then Has (Fired, C.Top))) with Ghost;
    --  A deferral is fired alone. Otherwise what is chosen is fired, lane by
    --  lane, and nothing else; a lane inside a state that transitions leave
    --  may be overtaken by an earlier one.
@@ -462,8 +422,7 @@ is
    --  [Crossing.walkers_among_cars] the condition of `never` is false.
 
    function Never_Road_Forgotten
-     (Place : Lights_States.Configuration;
-      Data : Variables)
+     (Place : Lights_States.Configuration; Data : Variables)
      return Boolean is
      (not ((Place.Top = Lights_States.Working
         and then Place.In_Walkers in Lights_States.On_The_Road)
@@ -471,8 +430,7 @@ is
    --  [Crossing.road_forgotten] the condition of `never` is false.
 
    function Never_Request_Forgotten
-     (Place : Lights_States.Configuration;
-      Data : Variables)
+     (Place : Lights_States.Configuration; Data : Variables)
      return Boolean is
      (not ((Place.Top = Lights_States.Working
         and then Place.In_Walkers = Lights_States.Waiting)
@@ -480,8 +438,7 @@ is
    --  [Crossing.request_forgotten] the condition of `never` is false.
 
    function Data_Are_Known
-     (Place : Lights_States.Configuration;
-      Data : Variables)
+     (Place : Lights_States.Configuration; Data : Variables)
      return Boolean is
      ((if Place.Top = Lights_States.Blinking then not Data.Cars_Stopped)
       and then (if Place.Top = Lights_States.Working
@@ -513,8 +470,7 @@ is
    --  might break an invariant.
 
    function Is_Safe
-     (Place : Lights_States.Configuration;
-      Data : Variables)
+     (Place : Lights_States.Configuration; Data : Variables)
      return Boolean is
      (Never_Green_For_Both (Data)
       and then Never_Walkers_Among_Cars (Place)
@@ -528,17 +484,14 @@ is
       and then Never_Walkers_Among_Cars (Self.Place)
       and then Never_Road_Forgotten (Self.Place, Self.Data)
       and then Never_Request_Forgotten (Self.Place, Self.Data)
-      and then (if Self.Started
-            then Data_Are_Known (Self.Place, Self.Data)
+      and then (if Self.Started then Data_Are_Known (Self.Place, Self.Data)
          else Self.Data = Initial_Data));
    --  The region between steps; before the first one its data are initial.
 
    subtype Safe_Region is Region with Predicate => Is_Kept (Safe_Region);
 
    function Guards_Hold
-     (T : Firing;
-      Data : Variables;
-      Item : Event)
+     (T : Firing; Data : Variables; Item : Event)
      return Boolean is
      (case T is
         when Get_Ready => Data.Road_Free and then not Data.Requested,
@@ -609,10 +562,9 @@ is
        Self.Started
        and then Is_Kept (Self)
        and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
-       and then (((Now = Start_Of_Region) and Is_Only (Fired, Initial_Entry))
-          or ((Now /= Start_Of_Region)
-             and Follows
-                 (Fired,
+       and then ((Now = Start_Of_Region and Is_Only (Fired, Initial_Entry))
+          or (Now /= Start_Of_Region
+             and Follows (Fired,
                   Choose (Self.Place'Old, Now, Self.Data'Old, Item))));
    --  One run-to-completion step.
 end Crossing_System.Crossing.Lights;

@@ -59,8 +59,7 @@ is
 
    --  [Crossing.order] what its readers see
    package Order_Port is new Ravenchart.Port_Regions
-     (Value_Type => Crossing_System.Order,
-      Default => Crossing_System.Blink);
+     (Value_Type => Crossing_System.Order, Default => Crossing_System.Blink);
 
    subtype Order_View is Order_Port.Port;
 end Crossing_System.Crossing;

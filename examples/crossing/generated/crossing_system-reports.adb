@@ -42,15 +42,11 @@ is
       Found : Reception.Processor.Statistics;
    begin
       Reception.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Reception_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Reception_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Reception.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Reception_Processor
-            + 1
+           (Elements.Reception_Processor + 1
             + Ravenchart.Element_Id (Reception.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -61,15 +57,11 @@ is
       Found : Control.Processor.Statistics;
    begin
       Control.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Control_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Control_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Control.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Control_Processor
-            + 1
+           (Elements.Control_Processor + 1
             + Ravenchart.Element_Id (Control.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -95,12 +87,10 @@ is
       Lost := Trace.Buffer.Lost;
       Ravenchart.Hosts.Put_Lost ("trace", Lost);
       Street.Controller.Read_Counters (Street_Counters);
-      Ravenchart.Hosts.Put_Lost
-        ("street.lost_out",
+      Ravenchart.Hosts.Put_Lost ("street.lost_out",
          Street_Counters.Lost_Out);
       Ravenchart.Hosts.Put_Lost ("street.lost_in", Street_Counters.Lost_In);
-      Ravenchart.Hosts.Put_Lost
-        ("street.rejected_lines",
+      Ravenchart.Hosts.Put_Lost ("street.rejected_lines",
          Street_Counters.Rejected_Lines);
    end Put_All;
 end Crossing_System.Reports;

@@ -85,16 +85,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Button_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.School_Button,
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.School_Button,
          0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.School_Button,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.School_Button,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
       end if;
@@ -105,16 +101,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Order_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.School_Order,
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.School_Order,
          0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.School_Order,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.School_Order,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
       end if;
@@ -130,48 +122,38 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.School_Lights,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.School_Wish,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.School_Wish, 0);
          when Crossing.Ordered =>
             Lights_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.School_Lights,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.School_Ordered,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.School_Ordered, 0);
       end case;
    end Offer;
 
    procedure Send_Car_Lamp (Item : Crossing_System.Car_Light) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.School_Car_Lamp,
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.School_Car_Lamp,
          0);
       Street.Send_Car_Lamp (Item);
    end Send_Car_Lamp;
 
    procedure Send_Walk_Lamp (Item : Crossing_System.Walk_Light) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.School_Walk_Lamp,
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.School_Walk_Lamp,
          0);
       Street.Send_Walk_Lamp (Item);
    end Send_Walk_Lamp;
@@ -201,16 +183,13 @@ is
          when Crossing.Button_Port.Nothing =>
             null;
          when Crossing.Button_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.School_Button,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.School_Button, 0);
             Offer (Crossing.Event'(Name => Crossing.Wish, others => <>));
          when Crossing.Button_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.School_Button,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -226,18 +205,15 @@ is
          when Crossing.Order_Port.Nothing =>
             null;
          when Crossing.Order_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.School_Order,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.School_Order, 0);
             Offer
               (Crossing.Event'(Name => Crossing.Ordered,
                 Value_Order => Order_Port.Value));
          when Crossing.Order_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.School_Order,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -265,28 +241,23 @@ is
       if Fired.Count > 0 then
          for I in 1 .. Fired.Count loop
             if Fired.Items (I) in Crossing.Lights.Transition then
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Transition,
+               Trace.Buffer.Note (Ravenchart.Traces.Transition,
                   Elements.School_Lights,
                   Crossing.Lights.Selection'Pos (Fired.Items (I))
                   - Crossing.Lights.Selection'Pos
                       (Crossing.Lights.Transition'First));
             end if;
          end loop;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.School_Lights,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.School_Lights,
             Crossing.Lights_States.Leaf'Pos (Lights_Region.Place.Top));
          if Lights_Region.Place.Top = Crossing.Lights_States.Working then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.State,
+            Trace.Buffer.Note (Ravenchart.Traces.State,
                Elements.School_Lights_Walkers,
                Crossing.Lights_States.Walkers_Leaf'Pos
                  (Lights_Region.Place.In_Walkers));
          end if;
          if Lights_Region.Place.Top = Crossing.Lights_States.Working then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.State,
+            Trace.Buffer.Note (Ravenchart.Traces.State,
                Elements.School_Lights_Cars,
                Crossing.Lights_States.Cars_Leaf'Pos
                  (Lights_Region.Place.In_Cars));

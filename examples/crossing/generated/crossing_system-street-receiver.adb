@@ -16,7 +16,6 @@ is
    pragma Warnings (Off, "*can never be *");
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
-
    Frame : Ravenchart.Can.Any_Frames.Any_Frame :=
      Ravenchart.Can.Any_Frames.Null_Any_Frame;
 
@@ -39,21 +38,16 @@ is
            = Ravenchart.Can.Standard
       then
          Codecs.Type_Order.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Order_Item,
-            Valid);
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Order_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Street_Order_Length)
          then
             pragma Assert
               (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Order));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Order_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Order_Message, 0);
             School.Put_Order (Order_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -62,21 +56,16 @@ is
            = Ravenchart.Can.Standard
       then
          Codecs.Type_Press.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Button_Item,
-            Valid);
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Button_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Street_Button_Length)
          then
             pragma Assert
               (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Button));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Button_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Button_Message, 0);
             School.Put_Button (Button_Item);
          end if;
       end if;

@@ -50,7 +50,7 @@ is
    pragma Compile_Time_Error
      (Controller.Given_Priority
       /= Timing_Certificate.Street_Driver_Rx_Order_Priority,
-      "street " & "has another priority of its driver than its certificate");
+      "street has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Street_Bit_Rate
       and then Controller.Given_Setting.Data_Rate = 0);
@@ -70,8 +70,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Car_Lamp'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Car_Lamp'Result,
           Codecs.Frame_Car_Lamp)
        and then Ravenchart.Can.Any_Frames.Payload (Frame_Of_Car_Lamp'Result)
          = Codecs.Type_Car_Light.Pack (Item);
@@ -86,8 +85,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Walk_Lamp'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Walk_Lamp'Result,
           Codecs.Frame_Walk_Lamp)
        and then Ravenchart.Can.Any_Frames.Payload
            (Frame_Of_Walk_Lamp'Result)
@@ -103,8 +101,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Sign'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Sign'Result,
           Codecs.Frame_Sign)
        and then Ravenchart.Can.Any_Frames.Payload (Frame_Of_Sign'Result)
          = Codecs.Type_Boolean.Pack (Item);

@@ -2,7 +2,10 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+
 with System;
+with Ravenchart.Response_Times;
 
 package Crossing_System.Timing_Certificate
 with SPARK_Mode, Pure
@@ -16,13 +19,16 @@ is
    Model_Digest : constant String :=
      "550297c9ad319044d77670a4bc57183a53a3bf568f7160286b4ed43fc1e0527d";
 
+   use Ravenchart.Response_Times;
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period. A
-   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W, and equals it: where it is
-   --  more, W is too short; where it is less, a term is missing.
+   --  from the event, W the time claimed from the start of a busy period.
+   --  X_Up (W) is what X and all that goes before it ask for within W,
+   --  X_Rest (W) what X and those listed behind it at its level do. Needs
+   --  is the demand that arises within W, and equals it: where it is more,
+   --  W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_R : constant := 265_000;
@@ -43,18 +49,17 @@ is
    Board_Critical_Section : constant := 5_000;
 
    --  [reception] released by arrivals, no closer than T; it may wait for T
-   --  to be over as well. B: control may be inside school.button.mailbox.
+   --  to be over as well. B: control in school.button.mailbox.
    Reception_Priority : constant := System.Default_Priority + 2;
    Street_Receive_Budget : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
-   Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant :=
      Street_Receive_Budget + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
-   --  [control] released every T. B: main may be inside health.
+   --  [control] released every T. B: main in health.
    Control_Priority : constant := System.Default_Priority + 1;
    School_Ports_Budget : constant := 100_000;
    School_Lights_Budget : constant := 200_000;
@@ -63,142 +68,138 @@ is
    Control_D : constant := 100_000_000;
    School_Ports_Divisor : constant := 1;
    School_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (School_Ports_Divisor /= 1,
-      "school.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((School_Ports_Phase + 1) > School_Ports_Divisor,
-      "school.ports " & "has a phase beyond its divisor");
-
    School_Lights_Divisor : constant := 1;
    School_Lights_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (School_Lights_Divisor /= 1,
-      "school.Lights " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((School_Lights_Phase + 1) > School_Lights_Divisor,
-      "school.Lights " & "has a phase beyond its divisor");
-
    School_Show_Divisor : constant := 1;
    School_Show_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (School_Show_Divisor /= 1,
-      "school.show " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((School_Show_Phase + 1) > School_Show_Divisor,
-      "school.show " & "has a phase beyond its divisor");
-
+     (School_Ports_Divisor /= 1
+      or else School_Ports_Phase /= 0
+      or else School_Lights_Divisor /= 1
+      or else School_Lights_Phase /= 0
+      or else School_Show_Divisor /= 1
+      or else School_Show_Phase /= 0,
+      "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
-   Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
-     School_Ports_Budget
-     + School_Lights_Budget
-     + School_Show_Budget
+     School_Ports_Budget + School_Lights_Budget + School_Show_Budget
      + 2 * Board_Context_Switch;
    Control_B : constant := Board_Critical_Section;
 
-   --  [street.driver_rx.order] the driver's work, released by street.order,
-   --  which is J late. B: control may be inside street.transmit.
+   --  [street.driver_rx.order] the driver, released by street.order. B:
+   --  control in street.transmit.
    Street_Driver_Rx_Order_Priority : constant :=
      System.Default_Priority + 3;
    Street_Driver_Rx_Order_Budget : constant := 20_000;
    Street_Driver_Rx_Order_T : constant := 1_000_000_000;
    Street_Driver_Rx_Order_D : constant := 1_000_000_000;
    Street_Driver_Rx_Order_J : constant := Street_Order_R;
-   Street_Driver_Rx_Order_A : constant :=
-     Street_Driver_Rx_Order_J + (Street_Driver_Rx_Order_T - 1);
    Street_Driver_Rx_Order_C : constant :=
      Street_Driver_Rx_Order_Budget + 2 * Board_Context_Switch;
    Street_Driver_Rx_Order_B : constant := Board_Critical_Section;
 
-   --  [street.driver_rx.button] the driver's work, released by
-   --  street.button, which is J late. B: control may be inside
-   --  street.transmit.
+   --  [street.driver_rx.button] the driver, released by street.button. B:
+   --  control in street.transmit.
    Street_Driver_Rx_Button_Priority : constant :=
      System.Default_Priority + 3;
    Street_Driver_Rx_Button_Budget : constant := 20_000;
    Street_Driver_Rx_Button_T : constant := 50_000_000;
    Street_Driver_Rx_Button_D : constant := 50_000_000;
    Street_Driver_Rx_Button_J : constant := Street_Button_R;
-   Street_Driver_Rx_Button_A : constant :=
-     Street_Driver_Rx_Button_J + (Street_Driver_Rx_Button_T - 1);
    Street_Driver_Rx_Button_C : constant :=
      Street_Driver_Rx_Button_Budget + 2 * Board_Context_Switch;
    Street_Driver_Rx_Button_B : constant := Board_Critical_Section;
 
-   --  [street.driver_tx.car_lamp] the driver's work, released by control,
-   --  which is J late. B: control may be inside street.transmit.
+   --  [street.driver_tx.car_lamp] the driver, released by control. B:
+   --  control in street.transmit.
    Street_Driver_Tx_Car_Lamp_Priority : constant :=
      System.Default_Priority + 3;
    Street_Driver_Tx_Car_Lamp_Budget : constant := 20_000;
    Street_Driver_Tx_Car_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Car_Lamp_D : constant := 100_000_000;
    Street_Driver_Tx_Car_Lamp_J : constant := Control_R;
-   Street_Driver_Tx_Car_Lamp_A : constant :=
-     Street_Driver_Tx_Car_Lamp_J + (Street_Driver_Tx_Car_Lamp_T - 1);
    Street_Driver_Tx_Car_Lamp_C : constant :=
      Street_Driver_Tx_Car_Lamp_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Car_Lamp_B : constant := Board_Critical_Section;
 
-   --  [street.driver_tx.walk_lamp] the driver's work, released by control,
-   --  which is J late. B: control may be inside street.transmit.
+   --  [street.driver_tx.walk_lamp] the driver, released by control. B:
+   --  control in street.transmit.
    Street_Driver_Tx_Walk_Lamp_Priority : constant :=
      System.Default_Priority + 3;
    Street_Driver_Tx_Walk_Lamp_Budget : constant := 20_000;
    Street_Driver_Tx_Walk_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Walk_Lamp_D : constant := 100_000_000;
    Street_Driver_Tx_Walk_Lamp_J : constant := Control_R;
-   Street_Driver_Tx_Walk_Lamp_A : constant :=
-     Street_Driver_Tx_Walk_Lamp_J + (Street_Driver_Tx_Walk_Lamp_T - 1);
    Street_Driver_Tx_Walk_Lamp_C : constant :=
      Street_Driver_Tx_Walk_Lamp_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Walk_Lamp_B : constant := Board_Critical_Section;
 
-   --  [street.driver_tx.sign] the driver's work, released by control, which
-   --  is J late. B: control may be inside street.transmit.
+   --  [street.driver_tx.sign] the driver, released by control. B: control
+   --  in street.transmit.
    Street_Driver_Tx_Sign_Priority : constant := System.Default_Priority + 3;
    Street_Driver_Tx_Sign_Budget : constant := 20_000;
    Street_Driver_Tx_Sign_T : constant := 100_000_000;
    Street_Driver_Tx_Sign_D : constant := 100_000_000;
    Street_Driver_Tx_Sign_J : constant := Control_R;
-   Street_Driver_Tx_Sign_A : constant :=
-     Street_Driver_Tx_Sign_J + (Street_Driver_Tx_Sign_T - 1);
    Street_Driver_Tx_Sign_C : constant :=
      Street_Driver_Tx_Sign_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Sign_B : constant := Board_Critical_Section;
 
-   pragma Compile_Time_Error
-     (Street_Driver_Rx_Order_Priority /= Street_Driver_Rx_Button_Priority,
-      "street.driver_rx.order "
-      & "must have the priority of street.driver_rx.button");
-   pragma Compile_Time_Error
-     (Street_Driver_Rx_Button_Priority /= Street_Driver_Tx_Car_Lamp_Priority,
-      "street.driver_rx.button "
-      & "must have the priority of street.driver_tx.car_lamp");
-   pragma Compile_Time_Error
-     (Street_Driver_Tx_Car_Lamp_Priority
-      /= Street_Driver_Tx_Walk_Lamp_Priority,
-      "street.driver_tx.car_lamp "
-      & "must have the priority of street.driver_tx.walk_lamp");
-   pragma Compile_Time_Error
-     (Street_Driver_Tx_Walk_Lamp_Priority /= Street_Driver_Tx_Sign_Priority,
-      "street.driver_tx.walk_lamp "
-      & "must have the priority of street.driver_tx.sign");
-   pragma Compile_Time_Error
-     ((Reception_Priority + 1) > Street_Driver_Tx_Sign_Priority,
-      "street.driver_tx.sign "
-      & "must have a higher priority than reception");
-   pragma Compile_Time_Error
-     ((Control_Priority + 1) > Reception_Priority,
-      "reception " & "must have a higher priority than control");
+   function Street_Driver_Rx_Order_Up (W : Window) return Time is
+     (Demand (W, Street_Driver_Rx_Order_J, Street_Driver_Rx_Order_T,
+         Street_Driver_Rx_Order_C)) with Static;
+   function Street_Driver_Rx_Button_Up (W : Window) return Time is
+     (Demand (W, Street_Driver_Rx_Button_J, Street_Driver_Rx_Button_T,
+         Street_Driver_Rx_Button_C, Street_Driver_Rx_Order_Up (W)))
+   with Static;
+   function Street_Driver_Tx_Car_Lamp_Up (W : Window) return Time is
+     (Demand (W, Street_Driver_Tx_Car_Lamp_J, Street_Driver_Tx_Car_Lamp_T,
+         Street_Driver_Tx_Car_Lamp_C, Street_Driver_Rx_Button_Up (W)))
+   with Static;
+   function Street_Driver_Tx_Walk_Lamp_Up (W : Window) return Time is
+     (Demand (W, Street_Driver_Tx_Walk_Lamp_J, Street_Driver_Tx_Walk_Lamp_T,
+         Street_Driver_Tx_Walk_Lamp_C, Street_Driver_Tx_Car_Lamp_Up (W)))
+   with Static;
+   function Street_Driver_Tx_Sign_Up (W : Window) return Time is
+     (Demand (W, Street_Driver_Tx_Sign_J, Street_Driver_Tx_Sign_T,
+         Street_Driver_Tx_Sign_C, Street_Driver_Tx_Walk_Lamp_Up (W)))
+   with Static;
+   function Reception_Up (W : Window) return Time is
+     (Demand (W, Reception_J, Reception_T, Reception_C,
+         Street_Driver_Tx_Sign_Up (W))) with Static;
+   function Street_Driver_Tx_Sign_Rest (W : Window) return Time is
+     (Demand (W, Street_Driver_Tx_Sign_J, Street_Driver_Tx_Sign_T,
+         Street_Driver_Tx_Sign_C)) with Static;
+   function Street_Driver_Tx_Walk_Lamp_Rest (W : Window) return Time is
+     (Demand (W, Street_Driver_Tx_Walk_Lamp_J, Street_Driver_Tx_Walk_Lamp_T,
+         Street_Driver_Tx_Walk_Lamp_C, Street_Driver_Tx_Sign_Rest (W)))
+   with Static;
+   function Street_Driver_Tx_Car_Lamp_Rest (W : Window) return Time is
+     (Demand (W, Street_Driver_Tx_Car_Lamp_J, Street_Driver_Tx_Car_Lamp_T,
+         Street_Driver_Tx_Car_Lamp_C, Street_Driver_Tx_Walk_Lamp_Rest (W)))
+   with Static;
+   function Street_Driver_Rx_Button_Rest (W : Window) return Time is
+     (Demand (W, Street_Driver_Rx_Button_J, Street_Driver_Rx_Button_T,
+         Street_Driver_Rx_Button_C, Street_Driver_Tx_Car_Lamp_Rest (W)))
+   with Static;
 
-   --  [street] bits in a second, and one bit in nanoseconds, rounded up. Of
-   --  a message, Stuffed: bits that stuffing can lengthen by a quarter;
-   --  Bits: the longest frame, with 10 bits that are not stuffed and 3 to
-   --  the next frame.
+   pragma Compile_Time_Error
+     (Street_Driver_Rx_Order_Priority /= Street_Driver_Rx_Button_Priority
+      or else Street_Driver_Rx_Button_Priority
+        /= Street_Driver_Tx_Car_Lamp_Priority
+      or else Street_Driver_Tx_Car_Lamp_Priority
+        /= Street_Driver_Tx_Walk_Lamp_Priority
+      or else Street_Driver_Tx_Walk_Lamp_Priority
+        /= Street_Driver_Tx_Sign_Priority
+      or else Street_Driver_Tx_Sign_Priority <= Reception_Priority
+      or else Reception_Priority <= Control_Priority,
+      "board must keep the order of its priorities");
+
+   --  [street] bits in a second, and one bit in nanoseconds, rounded up. A
+   --  message waits for the longest frame that goes behind it and has
+   --  begun, and for those that go before it. Of a message, Stuffed: bits
+   --  that stuffing can lengthen by a quarter; Bits: the longest frame,
+   --  with 10 bits that are not stuffed and 3 to the next frame.
    Street_Bit_Rate : constant := 125_000;
    Street_Bit : constant :=
      (1_000_000_000 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
@@ -211,11 +212,10 @@ is
    Street_Order_D : constant := 1_000_000_000;
    Street_Order_Stuffed : constant := 34 + 8 * Street_Order_Length;
    Street_Order_Bits : constant :=
-     Street_Order_Stuffed + 13 + ((Street_Order_Stuffed - 1) / 4);
+     Street_Order_Stuffed + 13 + (Street_Order_Stuffed - 1) / 4;
    Street_Order_C : constant :=
-     ((Street_Order_Bits * 10**9) + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
+     (Street_Order_Bits * 10**9 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
    Street_Order_J : constant := 0;
-   Street_Order_A : constant := Street_Order_J + (Street_Order_T - 1);
 
    --  [street.button] 11-bit identifier Id, Length bytes from somebody
    --  outside
@@ -225,12 +225,10 @@ is
    Street_Button_D : constant := 50_000_000;
    Street_Button_Stuffed : constant := 34 + 8 * Street_Button_Length;
    Street_Button_Bits : constant :=
-     Street_Button_Stuffed + 13 + ((Street_Button_Stuffed - 1) / 4);
+     Street_Button_Stuffed + 13 + (Street_Button_Stuffed - 1) / 4;
    Street_Button_C : constant :=
-     ((Street_Button_Bits * 10**9) + (Street_Bit_Rate - 1))
-     / Street_Bit_Rate;
+     (Street_Button_Bits * 10**9 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
    Street_Button_J : constant := 0;
-   Street_Button_A : constant := Street_Button_J + (Street_Button_T - 1);
 
    --  [street.car_lamp] 11-bit identifier Id, Length bytes from
    --  school.car_lamp
@@ -240,13 +238,11 @@ is
    Street_Car_Lamp_D : constant := 100_000_000;
    Street_Car_Lamp_Stuffed : constant := 34 + 8 * Street_Car_Lamp_Length;
    Street_Car_Lamp_Bits : constant :=
-     Street_Car_Lamp_Stuffed + 13 + ((Street_Car_Lamp_Stuffed - 1) / 4);
+     Street_Car_Lamp_Stuffed + 13 + (Street_Car_Lamp_Stuffed - 1) / 4;
    Street_Car_Lamp_C : constant :=
-     ((Street_Car_Lamp_Bits * 10**9) + (Street_Bit_Rate - 1))
+     (Street_Car_Lamp_Bits * 10**9 + (Street_Bit_Rate - 1))
      / Street_Bit_Rate;
    Street_Car_Lamp_J : constant := Street_Driver_Tx_Car_Lamp_R;
-   Street_Car_Lamp_A : constant :=
-     Street_Car_Lamp_J + (Street_Car_Lamp_T - 1);
 
    --  [street.walk_lamp] 11-bit identifier Id, Length bytes from
    --  school.walk_lamp
@@ -256,13 +252,11 @@ is
    Street_Walk_Lamp_D : constant := 100_000_000;
    Street_Walk_Lamp_Stuffed : constant := 34 + 8 * Street_Walk_Lamp_Length;
    Street_Walk_Lamp_Bits : constant :=
-     Street_Walk_Lamp_Stuffed + 13 + ((Street_Walk_Lamp_Stuffed - 1) / 4);
+     Street_Walk_Lamp_Stuffed + 13 + (Street_Walk_Lamp_Stuffed - 1) / 4;
    Street_Walk_Lamp_C : constant :=
-     ((Street_Walk_Lamp_Bits * 10**9) + (Street_Bit_Rate - 1))
+     (Street_Walk_Lamp_Bits * 10**9 + (Street_Bit_Rate - 1))
      / Street_Bit_Rate;
    Street_Walk_Lamp_J : constant := Street_Driver_Tx_Walk_Lamp_R;
-   Street_Walk_Lamp_A : constant :=
-     Street_Walk_Lamp_J + (Street_Walk_Lamp_T - 1);
 
    --  [street.sign] 11-bit identifier Id, Length bytes from school.sign
    Street_Sign_Id : constant := 16#122#;
@@ -271,597 +265,270 @@ is
    Street_Sign_D : constant := 100_000_000;
    Street_Sign_Stuffed : constant := 34 + 8 * Street_Sign_Length;
    Street_Sign_Bits : constant :=
-     Street_Sign_Stuffed + 13 + ((Street_Sign_Stuffed - 1) / 4);
+     Street_Sign_Stuffed + 13 + (Street_Sign_Stuffed - 1) / 4;
    Street_Sign_C : constant :=
-     ((Street_Sign_Bits * 10**9) + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
+     (Street_Sign_Bits * 10**9 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
    Street_Sign_J : constant := Street_Driver_Tx_Sign_R;
-   Street_Sign_A : constant := Street_Sign_J + (Street_Sign_T - 1);
 
-   pragma Compile_Time_Error
-     (((2**19 * Street_Order_Id) + 1) > (2**19 * Street_Button_Id),
-      "street.order " & "must win the arbitration against street.button");
-   pragma Compile_Time_Error
-     (((2**19 * Street_Button_Id) + 1) > (2**19 * Street_Car_Lamp_Id),
-      "street.button " & "must win the arbitration against street.car_lamp");
-   pragma Compile_Time_Error
-     (((2**19 * Street_Car_Lamp_Id) + 1) > (2**19 * Street_Walk_Lamp_Id),
-      "street.car_lamp "
-      & "must win the arbitration against street.walk_lamp");
-   pragma Compile_Time_Error
-     (((2**19 * Street_Walk_Lamp_Id) + 1) > (2**19 * Street_Sign_Id),
-      "street.walk_lamp " & "must win the arbitration against street.sign");
-
-   --  [reception] what can delay it: jobs of the same or higher priority
+   --  [reception] what delays it
    Reception_W : constant := Reception_R - Reception_J;
    Reception_Needs : constant :=
-     Reception_C
-     + Reception_B
-     + (((Reception_W + Street_Driver_Rx_Order_A) / Street_Driver_Rx_Order_T)
-        * Street_Driver_Rx_Order_C)
-     + (((Reception_W + Street_Driver_Rx_Button_A)
-         / Street_Driver_Rx_Button_T)
-        * Street_Driver_Rx_Button_C)
-     + (((Reception_W + Street_Driver_Tx_Car_Lamp_A)
-         / Street_Driver_Tx_Car_Lamp_T)
-        * Street_Driver_Tx_Car_Lamp_C)
-     + (((Reception_W + Street_Driver_Tx_Walk_Lamp_A)
-         / Street_Driver_Tx_Walk_Lamp_T)
-        * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Reception_W + Street_Driver_Tx_Sign_A) / Street_Driver_Tx_Sign_T)
-        * Street_Driver_Tx_Sign_C);
+     Reception_C + Reception_B + Street_Driver_Tx_Sign_Up (Reception_W);
+   pragma Compile_Time_Error (Reception_W /= Reception_Needs,
+      "reception claims a wrong response time");
+   pragma Compile_Time_Error
+     (Reception_R > Time'Min (Reception_D, Reception_T),
+      "reception can miss its deadline or overlap");
+   pragma Assert
+     (Reception_Needs <= Reception_W and then Reception_R <= Reception_D);
 
-   pragma Compile_Time_Error
-     (0 > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_Needs > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_W > Reception_Needs,
-      "reception " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Reception_J + Reception_W) > Reception_T,
-      "reception " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Reception_R > Reception_D,
-      "reception " & "can miss its deadline");
-   pragma Assert (Reception_Needs <= Reception_W);
-   pragma Assert (Reception_R <= Reception_D);
-
-   --  [control] what can delay it: jobs of the same or higher priority
+   --  [control] what delays it
    Control_W : constant := Control_R - Control_J;
    Control_Needs : constant :=
-     Control_C
-     + Control_B
-     + (((Control_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Control_W + Street_Driver_Rx_Order_A) / Street_Driver_Rx_Order_T)
-        * Street_Driver_Rx_Order_C)
-     + (((Control_W + Street_Driver_Rx_Button_A) / Street_Driver_Rx_Button_T)
-        * Street_Driver_Rx_Button_C)
-     + (((Control_W + Street_Driver_Tx_Car_Lamp_A)
-         / Street_Driver_Tx_Car_Lamp_T)
-        * Street_Driver_Tx_Car_Lamp_C)
-     + (((Control_W + Street_Driver_Tx_Walk_Lamp_A)
-         / Street_Driver_Tx_Walk_Lamp_T)
-        * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Control_W + Street_Driver_Tx_Sign_A) / Street_Driver_Tx_Sign_T)
-        * Street_Driver_Tx_Sign_C);
+     Control_C + Control_B + Reception_Up (Control_W);
+   pragma Compile_Time_Error (Control_W /= Control_Needs,
+      "control claims a wrong response time");
+   pragma Compile_Time_Error (Control_R > Time'Min (Control_D, Control_T),
+      "control can miss its deadline or overlap");
+   pragma Assert
+     (Control_Needs <= Control_W and then Control_R <= Control_D);
 
-   pragma Compile_Time_Error
-     (0 > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_Needs > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_W > Control_Needs,
-      "control " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Control_J + Control_W) > Control_T,
-      "control " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Control_R > Control_D,
-      "control " & "can miss its deadline");
-   pragma Assert (Control_Needs <= Control_W);
-   pragma Assert (Control_R <= Control_D);
-
-   --  [street.driver_rx.order] what can delay it: jobs of the same or
-   --  higher priority
+   --  [street.driver_rx.order] what delays it
    Street_Driver_Rx_Order_W : constant :=
      Street_Driver_Rx_Order_R - Street_Driver_Rx_Order_J;
    Street_Driver_Rx_Order_Needs : constant :=
-     Street_Driver_Rx_Order_C
-     + Street_Driver_Rx_Order_B
-     + (((Street_Driver_Rx_Order_W + Street_Driver_Rx_Button_A)
-         / Street_Driver_Rx_Button_T)
-        * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Rx_Order_W + Street_Driver_Tx_Car_Lamp_A)
-         / Street_Driver_Tx_Car_Lamp_T)
-        * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Rx_Order_W + Street_Driver_Tx_Walk_Lamp_A)
-         / Street_Driver_Tx_Walk_Lamp_T)
-        * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Street_Driver_Rx_Order_W + Street_Driver_Tx_Sign_A)
-         / Street_Driver_Tx_Sign_T)
-        * Street_Driver_Tx_Sign_C);
+     Street_Driver_Rx_Order_C + Street_Driver_Rx_Order_B
+     + Street_Driver_Rx_Button_Rest (Street_Driver_Rx_Order_W);
+   pragma Compile_Time_Error
+     (Street_Driver_Rx_Order_W /= Street_Driver_Rx_Order_Needs,
+      "street.driver_rx.order claims a wrong response time");
+   pragma Compile_Time_Error
+     (Street_Driver_Rx_Order_R
+      > Time'Min (Street_Driver_Rx_Order_D, Street_Driver_Rx_Order_T),
+      "street.driver_rx.order can miss its deadline or overlap");
+   pragma Assert
+     (Street_Driver_Rx_Order_Needs <= Street_Driver_Rx_Order_W
+      and then Street_Driver_Rx_Order_R <= Street_Driver_Rx_Order_D);
 
-   pragma Compile_Time_Error
-     (0 > Street_Driver_Rx_Order_W,
-      "street.driver_rx.order "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Driver_Rx_Order_Needs > Street_Driver_Rx_Order_W,
-      "street.driver_rx.order "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Driver_Rx_Order_W > Street_Driver_Rx_Order_Needs,
-      "street.driver_rx.order " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Driver_Rx_Order_J + Street_Driver_Rx_Order_W)
-      > Street_Driver_Rx_Order_T,
-      "street.driver_rx.order "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Street_Driver_Rx_Order_R > Street_Driver_Rx_Order_D,
-      "street.driver_rx.order " & "can miss its deadline");
-   pragma Assert (Street_Driver_Rx_Order_Needs <= Street_Driver_Rx_Order_W);
-   pragma Assert (Street_Driver_Rx_Order_R <= Street_Driver_Rx_Order_D);
-
-   --  [street.driver_rx.button] what can delay it: jobs of the same or
-   --  higher priority
+   --  [street.driver_rx.button] what delays it
    Street_Driver_Rx_Button_W : constant :=
      Street_Driver_Rx_Button_R - Street_Driver_Rx_Button_J;
    Street_Driver_Rx_Button_Needs : constant :=
-     Street_Driver_Rx_Button_C
-     + Street_Driver_Rx_Button_B
-     + (((Street_Driver_Rx_Button_W + Street_Driver_Rx_Order_A)
-         / Street_Driver_Rx_Order_T)
-        * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Rx_Button_W + Street_Driver_Tx_Car_Lamp_A)
-         / Street_Driver_Tx_Car_Lamp_T)
-        * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Rx_Button_W + Street_Driver_Tx_Walk_Lamp_A)
-         / Street_Driver_Tx_Walk_Lamp_T)
-        * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Street_Driver_Rx_Button_W + Street_Driver_Tx_Sign_A)
-         / Street_Driver_Tx_Sign_T)
-        * Street_Driver_Tx_Sign_C);
-
+     Street_Driver_Rx_Button_C + Street_Driver_Rx_Button_B
+     + Street_Driver_Rx_Order_Up (Street_Driver_Rx_Button_W)
+     + Street_Driver_Tx_Car_Lamp_Rest (Street_Driver_Rx_Button_W);
    pragma Compile_Time_Error
-     (0 > Street_Driver_Rx_Button_W,
-      "street.driver_rx.button "
-      & "can take longer than its claimed response time");
+     (Street_Driver_Rx_Button_W /= Street_Driver_Rx_Button_Needs,
+      "street.driver_rx.button claims a wrong response time");
    pragma Compile_Time_Error
-     (Street_Driver_Rx_Button_Needs > Street_Driver_Rx_Button_W,
-      "street.driver_rx.button "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Driver_Rx_Button_W > Street_Driver_Rx_Button_Needs,
-      "street.driver_rx.button " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Driver_Rx_Button_J + Street_Driver_Rx_Button_W)
-      > Street_Driver_Rx_Button_T,
-      "street.driver_rx.button "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Street_Driver_Rx_Button_R > Street_Driver_Rx_Button_D,
-      "street.driver_rx.button " & "can miss its deadline");
+     (Street_Driver_Rx_Button_R
+      > Time'Min (Street_Driver_Rx_Button_D, Street_Driver_Rx_Button_T),
+      "street.driver_rx.button can miss its deadline or overlap");
    pragma Assert
-     (Street_Driver_Rx_Button_Needs <= Street_Driver_Rx_Button_W);
-   pragma Assert (Street_Driver_Rx_Button_R <= Street_Driver_Rx_Button_D);
+     (Street_Driver_Rx_Button_Needs <= Street_Driver_Rx_Button_W
+      and then Street_Driver_Rx_Button_R <= Street_Driver_Rx_Button_D);
 
-   --  [street.driver_tx.car_lamp] what can delay it: jobs of the same or
-   --  higher priority
+   --  [street.driver_tx.car_lamp] what delays it
    Street_Driver_Tx_Car_Lamp_W : constant :=
      Street_Driver_Tx_Car_Lamp_R - Street_Driver_Tx_Car_Lamp_J;
    Street_Driver_Tx_Car_Lamp_Needs : constant :=
-     Street_Driver_Tx_Car_Lamp_C
-     + Street_Driver_Tx_Car_Lamp_B
-     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Rx_Order_A)
-         / Street_Driver_Rx_Order_T)
-        * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Rx_Button_A)
-         / Street_Driver_Rx_Button_T)
-        * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Tx_Walk_Lamp_A)
-         / Street_Driver_Tx_Walk_Lamp_T)
-        * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Tx_Sign_A)
-         / Street_Driver_Tx_Sign_T)
-        * Street_Driver_Tx_Sign_C);
-
+     Street_Driver_Tx_Car_Lamp_C + Street_Driver_Tx_Car_Lamp_B
+     + Street_Driver_Rx_Button_Up (Street_Driver_Tx_Car_Lamp_W)
+     + Street_Driver_Tx_Walk_Lamp_Rest (Street_Driver_Tx_Car_Lamp_W);
    pragma Compile_Time_Error
-     (0 > Street_Driver_Tx_Car_Lamp_W,
-      "street.driver_tx.car_lamp "
-      & "can take longer than its claimed response time");
+     (Street_Driver_Tx_Car_Lamp_W /= Street_Driver_Tx_Car_Lamp_Needs,
+      "street.driver_tx.car_lamp claims a wrong response time");
    pragma Compile_Time_Error
-     (Street_Driver_Tx_Car_Lamp_Needs > Street_Driver_Tx_Car_Lamp_W,
-      "street.driver_tx.car_lamp "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Driver_Tx_Car_Lamp_W > Street_Driver_Tx_Car_Lamp_Needs,
-      "street.driver_tx.car_lamp " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Driver_Tx_Car_Lamp_J + Street_Driver_Tx_Car_Lamp_W)
-      > Street_Driver_Tx_Car_Lamp_T,
-      "street.driver_tx.car_lamp "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Street_Driver_Tx_Car_Lamp_R > Street_Driver_Tx_Car_Lamp_D,
-      "street.driver_tx.car_lamp " & "can miss its deadline");
+     (Street_Driver_Tx_Car_Lamp_R
+      > Time'Min (Street_Driver_Tx_Car_Lamp_D, Street_Driver_Tx_Car_Lamp_T),
+      "street.driver_tx.car_lamp can miss its deadline or overlap");
    pragma Assert
-     (Street_Driver_Tx_Car_Lamp_Needs <= Street_Driver_Tx_Car_Lamp_W);
-   pragma Assert
-     (Street_Driver_Tx_Car_Lamp_R <= Street_Driver_Tx_Car_Lamp_D);
+     (Street_Driver_Tx_Car_Lamp_Needs <= Street_Driver_Tx_Car_Lamp_W
+      and then Street_Driver_Tx_Car_Lamp_R <= Street_Driver_Tx_Car_Lamp_D);
 
-   --  [street.driver_tx.walk_lamp] what can delay it: jobs of the same or
-   --  higher priority
+   --  [street.driver_tx.walk_lamp] what delays it
    Street_Driver_Tx_Walk_Lamp_W : constant :=
      Street_Driver_Tx_Walk_Lamp_R - Street_Driver_Tx_Walk_Lamp_J;
    Street_Driver_Tx_Walk_Lamp_Needs : constant :=
-     Street_Driver_Tx_Walk_Lamp_C
-     + Street_Driver_Tx_Walk_Lamp_B
-     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Rx_Order_A)
-         / Street_Driver_Rx_Order_T)
-        * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Rx_Button_A)
-         / Street_Driver_Rx_Button_T)
-        * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Tx_Car_Lamp_A)
-         / Street_Driver_Tx_Car_Lamp_T)
-        * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Tx_Sign_A)
-         / Street_Driver_Tx_Sign_T)
-        * Street_Driver_Tx_Sign_C);
-
+     Street_Driver_Tx_Walk_Lamp_C + Street_Driver_Tx_Walk_Lamp_B
+     + Street_Driver_Tx_Car_Lamp_Up (Street_Driver_Tx_Walk_Lamp_W)
+     + Street_Driver_Tx_Sign_Rest (Street_Driver_Tx_Walk_Lamp_W);
    pragma Compile_Time_Error
-     (0 > Street_Driver_Tx_Walk_Lamp_W,
-      "street.driver_tx.walk_lamp "
-      & "can take longer than its claimed response time");
+     (Street_Driver_Tx_Walk_Lamp_W /= Street_Driver_Tx_Walk_Lamp_Needs,
+      "street.driver_tx.walk_lamp claims a wrong response time");
    pragma Compile_Time_Error
-     (Street_Driver_Tx_Walk_Lamp_Needs > Street_Driver_Tx_Walk_Lamp_W,
-      "street.driver_tx.walk_lamp "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Driver_Tx_Walk_Lamp_W > Street_Driver_Tx_Walk_Lamp_Needs,
-      "street.driver_tx.walk_lamp " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Driver_Tx_Walk_Lamp_J + Street_Driver_Tx_Walk_Lamp_W)
-      > Street_Driver_Tx_Walk_Lamp_T,
-      "street.driver_tx.walk_lamp "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Street_Driver_Tx_Walk_Lamp_R > Street_Driver_Tx_Walk_Lamp_D,
-      "street.driver_tx.walk_lamp " & "can miss its deadline");
+     (Street_Driver_Tx_Walk_Lamp_R
+      > Time'Min (Street_Driver_Tx_Walk_Lamp_D,
+           Street_Driver_Tx_Walk_Lamp_T),
+      "street.driver_tx.walk_lamp can miss its deadline or overlap");
    pragma Assert
-     (Street_Driver_Tx_Walk_Lamp_Needs <= Street_Driver_Tx_Walk_Lamp_W);
-   pragma Assert
-     (Street_Driver_Tx_Walk_Lamp_R <= Street_Driver_Tx_Walk_Lamp_D);
+     (Street_Driver_Tx_Walk_Lamp_Needs <= Street_Driver_Tx_Walk_Lamp_W
+      and then Street_Driver_Tx_Walk_Lamp_R <= Street_Driver_Tx_Walk_Lamp_D);
 
-   --  [street.driver_tx.sign] what can delay it: jobs of the same or higher
-   --  priority
+   --  [street.driver_tx.sign] what delays it
    Street_Driver_Tx_Sign_W : constant :=
      Street_Driver_Tx_Sign_R - Street_Driver_Tx_Sign_J;
    Street_Driver_Tx_Sign_Needs : constant :=
-     Street_Driver_Tx_Sign_C
-     + Street_Driver_Tx_Sign_B
-     + (((Street_Driver_Tx_Sign_W + Street_Driver_Rx_Order_A)
-         / Street_Driver_Rx_Order_T)
-        * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Tx_Sign_W + Street_Driver_Rx_Button_A)
-         / Street_Driver_Rx_Button_T)
-        * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Tx_Sign_W + Street_Driver_Tx_Car_Lamp_A)
-         / Street_Driver_Tx_Car_Lamp_T)
-        * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Tx_Sign_W + Street_Driver_Tx_Walk_Lamp_A)
-         / Street_Driver_Tx_Walk_Lamp_T)
-        * Street_Driver_Tx_Walk_Lamp_C);
+     Street_Driver_Tx_Sign_C + Street_Driver_Tx_Sign_B
+     + Street_Driver_Tx_Walk_Lamp_Up (Street_Driver_Tx_Sign_W);
+   pragma Compile_Time_Error
+     (Street_Driver_Tx_Sign_W /= Street_Driver_Tx_Sign_Needs,
+      "street.driver_tx.sign claims a wrong response time");
+   pragma Compile_Time_Error
+     (Street_Driver_Tx_Sign_R
+      > Time'Min (Street_Driver_Tx_Sign_D, Street_Driver_Tx_Sign_T),
+      "street.driver_tx.sign can miss its deadline or overlap");
+   pragma Assert
+     (Street_Driver_Tx_Sign_Needs <= Street_Driver_Tx_Sign_W
+      and then Street_Driver_Tx_Sign_R <= Street_Driver_Tx_Sign_D);
+
+   function Street_Order_Up (W : Window) return Time is
+     (Demand (W, Street_Order_J, Street_Order_T, Street_Order_C))
+   with Static;
+   function Street_Button_Up (W : Window) return Time is
+     (Demand (W, Street_Button_J, Street_Button_T, Street_Button_C,
+         Street_Order_Up (W))) with Static;
+   function Street_Car_Lamp_Up (W : Window) return Time is
+     (Demand (W, Street_Car_Lamp_R - Street_Car_Lamp_C, Street_Car_Lamp_T,
+         Street_Car_Lamp_C, Street_Button_Up (W))) with Static;
+   function Street_Walk_Lamp_Up (W : Window) return Time is
+     (Demand (W, Street_Walk_Lamp_R - Street_Walk_Lamp_C,
+         Street_Walk_Lamp_T, Street_Walk_Lamp_C, Street_Car_Lamp_Up (W)))
+   with Static;
+   function Street_Sign_Up (W : Window) return Time is
+     (Demand (W, Street_Sign_R - Street_Sign_C, Street_Sign_T,
+         Street_Sign_C, Street_Walk_Lamp_Up (W))) with Static;
+   function Street_Order_Up_Board (W : Window) return Time is
+     (Demand (W, Street_Order_J, Street_Order_T, Street_Order_C))
+   with Static;
+   function Street_Button_Up_Board (W : Window) return Time is
+     (Demand (W, Street_Button_J, Street_Button_T, Street_Button_C,
+         Street_Order_Up_Board (W))) with Static;
+   function Street_Car_Lamp_Up_Board (W : Window) return Time is
+     (Demand (W, Street_Car_Lamp_J, Street_Car_Lamp_T, Street_Car_Lamp_C,
+         Street_Button_Up_Board (W))) with Static;
+   function Street_Walk_Lamp_Up_Board (W : Window) return Time is
+     (Demand (W, Street_Walk_Lamp_J, Street_Walk_Lamp_T, Street_Walk_Lamp_C,
+         Street_Car_Lamp_Up_Board (W))) with Static;
+   function Street_Sign_Up_Board (W : Window) return Time is
+     (Demand (W, Street_Sign_J, Street_Sign_T, Street_Sign_C,
+         Street_Walk_Lamp_Up_Board (W))) with Static;
+   function Street_Sign_Rest_Board (W : Window) return Time is
+     (Demand (W, Street_Sign_J, Street_Sign_T, Street_Sign_C)) with Static;
+   function Street_Walk_Lamp_Rest_Board (W : Window) return Time is
+     (Demand (W, Street_Walk_Lamp_J, Street_Walk_Lamp_T, Street_Walk_Lamp_C,
+         Street_Sign_Rest_Board (W))) with Static;
 
    pragma Compile_Time_Error
-     (0 > Street_Driver_Tx_Sign_W,
-      "street.driver_tx.sign "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Driver_Tx_Sign_Needs > Street_Driver_Tx_Sign_W,
-      "street.driver_tx.sign "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Driver_Tx_Sign_W > Street_Driver_Tx_Sign_Needs,
-      "street.driver_tx.sign " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Driver_Tx_Sign_J + Street_Driver_Tx_Sign_W)
-      > Street_Driver_Tx_Sign_T,
-      "street.driver_tx.sign " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Street_Driver_Tx_Sign_R > Street_Driver_Tx_Sign_D,
-      "street.driver_tx.sign " & "can miss its deadline");
-   pragma Assert (Street_Driver_Tx_Sign_Needs <= Street_Driver_Tx_Sign_W);
-   pragma Assert (Street_Driver_Tx_Sign_R <= Street_Driver_Tx_Sign_D);
+     (Street_Order_Id >= Street_Button_Id
+      or else Street_Button_Id >= Street_Car_Lamp_Id
+      or else Street_Car_Lamp_Id >= Street_Walk_Lamp_Id
+      or else Street_Walk_Lamp_Id >= Street_Sign_Id,
+      "street must keep the order of its identifiers");
 
-   --  [street.order] what can delay it: frames that go before it, and one
-   --  of those that go behind it, the longest of which counts once
+   --  [street.order] what delays it
    Street_Order_Busy : constant := 1_040_000;
    Street_Order_Busy_Needs : constant :=
-     Street_Button_C
-     + (((Street_Order_Busy + Street_Order_A) / Street_Order_T)
-        * Street_Order_C);
-
+     Street_Button_C + Street_Order_Up (Street_Order_Busy);
    pragma Compile_Time_Error
-     (1 > Street_Order_Busy,
-      "street.order " & "can keep others waiting for longer than claimed");
+     (Street_Order_Busy < 1
+      or else Street_Order_Busy /= Street_Order_Busy_Needs,
+      "street.order claims a wrong busy period");
    pragma Compile_Time_Error
-     (Street_Order_Busy_Needs > Street_Order_Busy,
-      "street.order " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Street_Order_Busy > Street_Order_Busy_Needs,
-      "street.order " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Order_Busy + Street_Order_J) > Street_Order_T,
-      "street.order " & "can come again before it is sent");
-
-   Street_Order_W : constant := 520_000;
+     (Street_Order_Busy + Street_Order_J > Street_Order_T,
+      "street.order can come again before it is sent");
+   Street_Order_W : constant :=
+     Street_Order_R - Street_Order_J - Street_Order_C;
    Street_Order_Needs : constant := Street_Button_C;
-
-   pragma Compile_Time_Error
-     (0 > Street_Order_W,
-      "street.order " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Order_Needs > Street_Order_W,
-      "street.order " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Order_W > Street_Order_Needs,
-      "street.order " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Order_J + Street_Order_W + Street_Order_C) > Street_Order_R,
-      "street.order " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Order_R > (Street_Order_J + Street_Order_W + Street_Order_C),
-      "street.order " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Street_Order_R > Street_Order_D,
-      "street.order " & "can miss its deadline");
+   pragma Compile_Time_Error (Street_Order_W /= Street_Order_Needs,
+      "street.order claims a wrong response time");
+   pragma Compile_Time_Error (Street_Order_R > Street_Order_D,
+      "street.order can miss its deadline");
    pragma Assert (Street_Order_R <= Street_Order_D);
 
-   --  [street.button] what can delay it: frames that go before it, and one
-   --  of those that go behind it, the longest of which counts once
+   --  [street.button] what delays it
    Street_Button_Busy : constant := 1_560_000;
    Street_Button_Busy_Needs : constant :=
-     Street_Car_Lamp_C
-     + (((Street_Button_Busy + Street_Order_A) / Street_Order_T)
-        * Street_Order_C)
-     + (((Street_Button_Busy + Street_Button_A) / Street_Button_T)
-        * Street_Button_C);
-
+     Street_Car_Lamp_C + Street_Button_Up (Street_Button_Busy);
    pragma Compile_Time_Error
-     (1 > Street_Button_Busy,
-      "street.button " & "can keep others waiting for longer than claimed");
+     (Street_Button_Busy < 1
+      or else Street_Button_Busy /= Street_Button_Busy_Needs,
+      "street.button claims a wrong busy period");
    pragma Compile_Time_Error
-     (Street_Button_Busy_Needs > Street_Button_Busy,
-      "street.button " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Street_Button_Busy > Street_Button_Busy_Needs,
-      "street.button " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Button_Busy + Street_Button_J) > Street_Button_T,
-      "street.button " & "can come again before it is sent");
-
-   Street_Button_W : constant := 1_040_000;
+     (Street_Button_Busy + Street_Button_J > Street_Button_T,
+      "street.button can come again before it is sent");
+   Street_Button_W : constant :=
+     Street_Button_R - Street_Button_J - Street_Button_C;
    Street_Button_Needs : constant :=
-     Street_Car_Lamp_C
-     + (((Street_Button_W + Street_Bit + Street_Order_A) / Street_Order_T)
-        * Street_Order_C);
-
-   pragma Compile_Time_Error
-     (0 > Street_Button_W,
-      "street.button " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Button_Needs > Street_Button_W,
-      "street.button " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Button_W > Street_Button_Needs,
-      "street.button " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Button_J + Street_Button_W + Street_Button_C)
-      > Street_Button_R,
-      "street.button " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Button_R
-      > (Street_Button_J + Street_Button_W + Street_Button_C),
-      "street.button " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Street_Button_R > Street_Button_D,
-      "street.button " & "can miss its deadline");
+     Street_Car_Lamp_C + Street_Order_Up (Street_Button_W + Street_Bit);
+   pragma Compile_Time_Error (Street_Button_W /= Street_Button_Needs,
+      "street.button claims a wrong response time");
+   pragma Compile_Time_Error (Street_Button_R > Street_Button_D,
+      "street.button can miss its deadline");
    pragma Assert (Street_Button_R <= Street_Button_D);
 
-   --  [street.car_lamp] what can delay it: frames that go before it
+   --  [street.car_lamp] what delays it
    Street_Car_Lamp_Busy : constant := 2_600_000;
    Street_Car_Lamp_Busy_Needs : constant :=
-     0
-     + (((Street_Car_Lamp_Busy + Street_Order_A) / Street_Order_T)
-        * Street_Order_C)
-     + (((Street_Car_Lamp_Busy + Street_Button_A) / Street_Button_T)
-        * Street_Button_C)
-     + (((Street_Car_Lamp_Busy + Street_Car_Lamp_A) / Street_Car_Lamp_T)
-        * Street_Car_Lamp_C)
-     + (((Street_Car_Lamp_Busy + Street_Walk_Lamp_A) / Street_Walk_Lamp_T)
-        * Street_Walk_Lamp_C)
-     + (((Street_Car_Lamp_Busy + Street_Sign_A) / Street_Sign_T)
-        * Street_Sign_C);
-
+     Street_Sign_Up_Board (Street_Car_Lamp_Busy);
    pragma Compile_Time_Error
-     (1 > Street_Car_Lamp_Busy,
-      "street.car_lamp " & "can keep others waiting for longer than claimed");
+     (Street_Car_Lamp_Busy < 1
+      or else Street_Car_Lamp_Busy /= Street_Car_Lamp_Busy_Needs,
+      "street.car_lamp claims a wrong busy period");
    pragma Compile_Time_Error
-     (Street_Car_Lamp_Busy_Needs > Street_Car_Lamp_Busy,
-      "street.car_lamp " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Street_Car_Lamp_Busy > Street_Car_Lamp_Busy_Needs,
-      "street.car_lamp " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Car_Lamp_Busy + Street_Car_Lamp_J) > Street_Car_Lamp_T,
-      "street.car_lamp " & "can come again before it is sent");
-
-   Street_Car_Lamp_W : constant := 2_080_000;
+     (Street_Car_Lamp_Busy + Street_Car_Lamp_J > Street_Car_Lamp_T,
+      "street.car_lamp can come again before it is sent");
+   Street_Car_Lamp_W : constant :=
+     Street_Car_Lamp_R - Street_Car_Lamp_J - Street_Car_Lamp_C;
    Street_Car_Lamp_Needs : constant :=
-     0
-     + (((Street_Car_Lamp_W + Street_Bit + Street_Order_A) / Street_Order_T)
-        * Street_Order_C)
-     + (((Street_Car_Lamp_W + Street_Bit + Street_Button_A)
-         / Street_Button_T)
-        * Street_Button_C)
-     + (((Street_Car_Lamp_W + Street_Bit + Street_Walk_Lamp_A)
-         / Street_Walk_Lamp_T)
-        * Street_Walk_Lamp_C)
-     + (((Street_Car_Lamp_W + Street_Bit + Street_Sign_A) / Street_Sign_T)
-        * Street_Sign_C);
-
-   pragma Compile_Time_Error
-     (0 > Street_Car_Lamp_W,
-      "street.car_lamp " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Car_Lamp_Needs > Street_Car_Lamp_W,
-      "street.car_lamp " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Car_Lamp_W > Street_Car_Lamp_Needs,
-      "street.car_lamp " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Car_Lamp_J + Street_Car_Lamp_W + Street_Car_Lamp_C)
-      > Street_Car_Lamp_R,
-      "street.car_lamp " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Car_Lamp_R
-      > (Street_Car_Lamp_J + Street_Car_Lamp_W + Street_Car_Lamp_C),
-      "street.car_lamp " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Street_Car_Lamp_R > Street_Car_Lamp_D,
-      "street.car_lamp " & "can miss its deadline");
+     Street_Button_Up_Board (Street_Car_Lamp_W + Street_Bit)
+     + Street_Walk_Lamp_Rest_Board (Street_Car_Lamp_W + Street_Bit);
+   pragma Compile_Time_Error (Street_Car_Lamp_W /= Street_Car_Lamp_Needs,
+      "street.car_lamp claims a wrong response time");
+   pragma Compile_Time_Error (Street_Car_Lamp_R > Street_Car_Lamp_D,
+      "street.car_lamp can miss its deadline");
    pragma Assert (Street_Car_Lamp_R <= Street_Car_Lamp_D);
 
-   --  [street.walk_lamp] what can delay it: frames that go before it
+   --  [street.walk_lamp] what delays it
    Street_Walk_Lamp_Busy : constant := 2_600_000;
    Street_Walk_Lamp_Busy_Needs : constant :=
-     0
-     + (((Street_Walk_Lamp_Busy + Street_Order_A) / Street_Order_T)
-        * Street_Order_C)
-     + (((Street_Walk_Lamp_Busy + Street_Button_A) / Street_Button_T)
-        * Street_Button_C)
-     + (((Street_Walk_Lamp_Busy + Street_Car_Lamp_A) / Street_Car_Lamp_T)
-        * Street_Car_Lamp_C)
-     + (((Street_Walk_Lamp_Busy + Street_Walk_Lamp_A) / Street_Walk_Lamp_T)
-        * Street_Walk_Lamp_C)
-     + (((Street_Walk_Lamp_Busy + Street_Sign_A) / Street_Sign_T)
-        * Street_Sign_C);
-
+     Street_Sign_Up_Board (Street_Walk_Lamp_Busy);
    pragma Compile_Time_Error
-     (1 > Street_Walk_Lamp_Busy,
-      "street.walk_lamp "
-      & "can keep others waiting for longer than claimed");
+     (Street_Walk_Lamp_Busy < 1
+      or else Street_Walk_Lamp_Busy /= Street_Walk_Lamp_Busy_Needs,
+      "street.walk_lamp claims a wrong busy period");
    pragma Compile_Time_Error
-     (Street_Walk_Lamp_Busy_Needs > Street_Walk_Lamp_Busy,
-      "street.walk_lamp "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Street_Walk_Lamp_Busy > Street_Walk_Lamp_Busy_Needs,
-      "street.walk_lamp " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Walk_Lamp_Busy + Street_Walk_Lamp_J) > Street_Walk_Lamp_T,
-      "street.walk_lamp " & "can come again before it is sent");
-
-   Street_Walk_Lamp_W : constant := 2_080_000;
+     (Street_Walk_Lamp_Busy + Street_Walk_Lamp_J > Street_Walk_Lamp_T,
+      "street.walk_lamp can come again before it is sent");
+   Street_Walk_Lamp_W : constant :=
+     Street_Walk_Lamp_R - Street_Walk_Lamp_J - Street_Walk_Lamp_C;
    Street_Walk_Lamp_Needs : constant :=
-     0
-     + (((Street_Walk_Lamp_W + Street_Bit + Street_Order_A) / Street_Order_T)
-        * Street_Order_C)
-     + (((Street_Walk_Lamp_W + Street_Bit + Street_Button_A)
-         / Street_Button_T)
-        * Street_Button_C)
-     + (((Street_Walk_Lamp_W + Street_Bit + Street_Car_Lamp_A)
-         / Street_Car_Lamp_T)
-        * Street_Car_Lamp_C)
-     + (((Street_Walk_Lamp_W + Street_Bit + Street_Sign_A) / Street_Sign_T)
-        * Street_Sign_C);
-
-   pragma Compile_Time_Error
-     (0 > Street_Walk_Lamp_W,
-      "street.walk_lamp " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Walk_Lamp_Needs > Street_Walk_Lamp_W,
-      "street.walk_lamp " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Walk_Lamp_W > Street_Walk_Lamp_Needs,
-      "street.walk_lamp " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Walk_Lamp_J + Street_Walk_Lamp_W + Street_Walk_Lamp_C)
-      > Street_Walk_Lamp_R,
-      "street.walk_lamp " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Walk_Lamp_R
-      > (Street_Walk_Lamp_J + Street_Walk_Lamp_W + Street_Walk_Lamp_C),
-      "street.walk_lamp " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Street_Walk_Lamp_R > Street_Walk_Lamp_D,
-      "street.walk_lamp " & "can miss its deadline");
+     Street_Car_Lamp_Up_Board (Street_Walk_Lamp_W + Street_Bit)
+     + Street_Sign_Rest_Board (Street_Walk_Lamp_W + Street_Bit);
+   pragma Compile_Time_Error (Street_Walk_Lamp_W /= Street_Walk_Lamp_Needs,
+      "street.walk_lamp claims a wrong response time");
+   pragma Compile_Time_Error (Street_Walk_Lamp_R > Street_Walk_Lamp_D,
+      "street.walk_lamp can miss its deadline");
    pragma Assert (Street_Walk_Lamp_R <= Street_Walk_Lamp_D);
 
-   --  [street.sign] what can delay it: frames that go before it
+   --  [street.sign] what delays it
    Street_Sign_Busy : constant := 2_600_000;
    Street_Sign_Busy_Needs : constant :=
-     0
-     + (((Street_Sign_Busy + Street_Order_A) / Street_Order_T)
-        * Street_Order_C)
-     + (((Street_Sign_Busy + Street_Button_A) / Street_Button_T)
-        * Street_Button_C)
-     + (((Street_Sign_Busy + Street_Car_Lamp_A) / Street_Car_Lamp_T)
-        * Street_Car_Lamp_C)
-     + (((Street_Sign_Busy + Street_Walk_Lamp_A) / Street_Walk_Lamp_T)
-        * Street_Walk_Lamp_C)
-     + (((Street_Sign_Busy + Street_Sign_A) / Street_Sign_T) * Street_Sign_C);
-
+     Street_Sign_Up_Board (Street_Sign_Busy);
    pragma Compile_Time_Error
-     (1 > Street_Sign_Busy,
-      "street.sign " & "can keep others waiting for longer than claimed");
+     (Street_Sign_Busy < 1
+      or else Street_Sign_Busy /= Street_Sign_Busy_Needs,
+      "street.sign claims a wrong busy period");
    pragma Compile_Time_Error
-     (Street_Sign_Busy_Needs > Street_Sign_Busy,
-      "street.sign " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Street_Sign_Busy > Street_Sign_Busy_Needs,
-      "street.sign " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Sign_Busy + Street_Sign_J) > Street_Sign_T,
-      "street.sign " & "can come again before it is sent");
-
-   Street_Sign_W : constant := 2_080_000;
+     (Street_Sign_Busy + Street_Sign_J > Street_Sign_T,
+      "street.sign can come again before it is sent");
+   Street_Sign_W : constant :=
+     Street_Sign_R - Street_Sign_J - Street_Sign_C;
    Street_Sign_Needs : constant :=
-     0
-     + (((Street_Sign_W + Street_Bit + Street_Order_A) / Street_Order_T)
-        * Street_Order_C)
-     + (((Street_Sign_W + Street_Bit + Street_Button_A) / Street_Button_T)
-        * Street_Button_C)
-     + (((Street_Sign_W + Street_Bit + Street_Car_Lamp_A)
-         / Street_Car_Lamp_T)
-        * Street_Car_Lamp_C)
-     + (((Street_Sign_W + Street_Bit + Street_Walk_Lamp_A)
-         / Street_Walk_Lamp_T)
-        * Street_Walk_Lamp_C);
-
-   pragma Compile_Time_Error
-     (0 > Street_Sign_W,
-      "street.sign " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Sign_Needs > Street_Sign_W,
-      "street.sign " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Sign_W > Street_Sign_Needs,
-      "street.sign " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Street_Sign_J + Street_Sign_W + Street_Sign_C) > Street_Sign_R,
-      "street.sign " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Street_Sign_R > (Street_Sign_J + Street_Sign_W + Street_Sign_C),
-      "street.sign " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Street_Sign_R > Street_Sign_D,
-      "street.sign " & "can miss its deadline");
+     Street_Walk_Lamp_Up_Board (Street_Sign_W + Street_Bit);
+   pragma Compile_Time_Error (Street_Sign_W /= Street_Sign_Needs,
+      "street.sign claims a wrong response time");
+   pragma Compile_Time_Error (Street_Sign_R > Street_Sign_D,
+      "street.sign can miss its deadline");
    pragma Assert (Street_Sign_R <= Street_Sign_D);
 end Crossing_System.Timing_Certificate;

@@ -133,13 +133,11 @@ is
       with
         Ghost,
         Post =>
-          Ravenchart.Can.Layouts.Counted
-            (Interfaces.Unsigned_64 (Raw),
+          Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
              Signal_Low)
           in 0 .. 4_294_967_295
           and then Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
-               Signal_Low)
+              (Interfaces.Unsigned_64 (Raw), Signal_Low)
             = Ravenchart.Number (Value_Of_Type_Name_Half (Raw))
       is
       begin
@@ -147,8 +145,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Low)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Low;
@@ -168,13 +165,11 @@ is
       with
         Ghost,
         Post =>
-          Ravenchart.Can.Layouts.Counted
-            (Interfaces.Unsigned_64 (Raw),
+          Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
              Signal_High)
           in 0 .. 4_294_967_295
           and then Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
-               Signal_High)
+              (Interfaces.Unsigned_64 (Raw), Signal_High)
             = Ravenchart.Number (Value_Of_Type_Name_Half (Raw))
       is
       begin
@@ -182,8 +177,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_High)
             = Ravenchart.Number (Raw));
       end Lemma_Value_High;
@@ -258,14 +252,12 @@ is
         Pre => Raw <= 16#3FFFF#,
         Post =>
           (Raw <= 262_143)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Pgn)
              in 0 .. 262_143)
           and then (if Raw <= 262_143
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Pgn)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Pgn)
                    = Ravenchart.Number (Value_Of_Type_Pgn (Raw)))
       is
       begin
@@ -273,8 +265,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Pgn)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Pgn;
@@ -378,14 +369,12 @@ is
         Ghost,
         Post =>
           (Raw <= 3)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Kind)
              in 0 .. 3)
           and then (if Raw <= 3
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Kind)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Kind)
                    = J1939_Node.Answer_Kind'Pos
                        (Value_Of_Type_Answer_Kind (Raw)))
       is
@@ -394,8 +383,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Kind)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Kind;
@@ -416,14 +404,12 @@ is
         Ghost,
         Post =>
           (Raw >= 255)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Group_Function)
              in 255 .. 255)
           and then (if Raw >= 255
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Group_Function)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Group_Function)
                    = Ravenchart.Number
                        (Value_Of_Signal_Group_Function (Raw)))
       is
@@ -432,8 +418,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Group_Function)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Group_Function;
@@ -454,14 +439,12 @@ is
         Ghost,
         Post =>
           (Raw >= 65_535)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Spare)
              in 65_535 .. 65_535)
           and then (if Raw >= 65_535
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Spare)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Spare)
                    = Ravenchart.Number (Value_Of_Signal_Spare (Raw)))
       is
       begin
@@ -469,8 +452,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Spare)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Spare;
@@ -490,13 +472,11 @@ is
       with
         Ghost,
         Post =>
-          Ravenchart.Can.Layouts.Counted
-            (Interfaces.Unsigned_64 (Raw),
+          Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
              Signal_Addressee)
           in 0 .. 255
           and then Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
-               Signal_Addressee)
+              (Interfaces.Unsigned_64 (Raw), Signal_Addressee)
             = Ravenchart.Number (Value_Of_Type_Address (Raw))
       is
       begin
@@ -504,8 +484,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Addressee)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Addressee;
@@ -527,14 +506,12 @@ is
         Pre => Raw <= 16#FFFFFF#,
         Post =>
           (Raw <= 262_143)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Pgn)
              in 0 .. 262_143)
           and then (if Raw <= 262_143
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Pgn)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Pgn)
                    = Ravenchart.Number (Value_Of_Type_Pgn (Raw)))
       is
       begin
@@ -542,8 +519,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Pgn)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Pgn;
@@ -557,11 +533,9 @@ is
         return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Kind)
          or Interfaces.Shift_Left
-             (Interfaces.Unsigned_64 (Local_Group_Function),
-              8)
+             (Interfaces.Unsigned_64 (Local_Group_Function), 8)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Spare), 16)
-         or Interfaces.Shift_Left
-             (Interfaces.Unsigned_64 (Local_Addressee),
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Addressee),
               32)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Pgn), 40))
       with
@@ -588,12 +562,8 @@ is
          Local_Pgn : constant Interfaces.Unsigned_32 :=
            Bits_Of_Type_Pgn (Item.Pgn);
          Frame : constant Interfaces.Unsigned_64 :=
-           Word_Of
-             (Local_Kind,
-              Local_Group_Function,
-              Local_Spare,
-              Local_Addressee,
-              Local_Pgn);
+           Word_Of (Local_Kind, Local_Group_Function, Local_Spare,
+              Local_Addressee, Local_Pgn);
       begin
          Lemma_Bits_Kind (Frame);
          Lemma_Value_Kind (Local_Kind);
@@ -675,25 +645,22 @@ is
         Ghost,
         Post =>
           (Raw <= 250)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Value)
              in 0 .. 250)
           and then (if Raw <= 250
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Value)
-                   = (Ravenchart.Number
-                        (Value_Of_Type_Coolant_Temperature (Raw))
-                      - Signal_Value.Offset))
+                     (Interfaces.Unsigned_64 (Raw), Signal_Value)
+                   = Ravenchart.Number
+                       (Value_Of_Type_Coolant_Temperature (Raw))
+                     - Signal_Value.Offset)
       is
       begin
          pragma Assert
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Value)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Value;
@@ -808,14 +775,12 @@ is
         Ghost,
         Post =>
           (Raw <= 250)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Speed)
              in 0 .. 250)
           and then (if Raw <= 250
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Speed)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Speed)
                    = Ravenchart.Number (Value_Of_Type_Fan_Speed (Raw)))
       is
       begin
@@ -823,8 +788,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Speed)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Speed;
@@ -846,14 +810,12 @@ is
         Pre => Raw <= 16#F#,
         Post =>
           (Raw in 0 | 4 | 7)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_State)
              in 0 | 4 | 7)
           and then (if Raw in 0 | 4 | 7
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_State)
+                     (Interfaces.Unsigned_64 (Raw), Signal_State)
                    = Code_Of_State (Value_Of_Signal_State (Raw)))
       is
       begin
@@ -861,8 +823,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_State)
             = Ravenchart.Number (Raw));
       end Lemma_Value_State;
@@ -884,14 +845,12 @@ is
         Pre => Raw <= 16#F#,
         Post =>
           (Raw in 15 .. 15)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Spare_4)
              in 15 .. 15)
           and then (if Raw in 15 .. 15
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Spare_4)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Spare_4)
                    = Ravenchart.Number (Value_Of_Signal_Spare_4 (Raw)))
       is
       begin
@@ -899,8 +858,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Spare_4)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Spare_4;
@@ -921,14 +879,12 @@ is
         Ghost,
         Post =>
           (Raw <= 64_255)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Rpm)
              in 0 .. 64_255)
           and then (if Raw <= 64_255
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Rpm)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Rpm)
                    = Ravenchart.Number (Value_Of_Type_Fan_Rpm (Raw)))
       is
       begin
@@ -936,8 +892,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Rpm)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Rpm;
@@ -958,14 +913,12 @@ is
         Ghost,
         Post =>
           (Raw >= 4_294_967_295)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Spare_32)
              in 4_294_967_295 .. 4_294_967_295)
           and then (if Raw >= 4_294_967_295
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Spare_32)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Spare_32)
                    = Ravenchart.Number (Value_Of_Signal_Spare_32 (Raw)))
       is
       begin
@@ -973,8 +926,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Spare_32)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Spare_32;
@@ -988,12 +940,10 @@ is
         return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Speed)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_State), 8)
-         or Interfaces.Shift_Left
-             (Interfaces.Unsigned_64 (Local_Spare_4),
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Spare_4),
               12)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Rpm), 16)
-         or Interfaces.Shift_Left
-             (Interfaces.Unsigned_64 (Local_Spare_32),
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Spare_32),
               32))
       with
         Pre => Local_State <= 16#F# and then Local_Spare_4 <= 16#F#,
@@ -1018,11 +968,7 @@ is
          Local_Spare_32 : constant Interfaces.Unsigned_32 :=
            Bits_Of_Signal_Spare_32 (Item.Spare_32);
          Frame : constant Interfaces.Unsigned_64 :=
-           Word_Of
-             (Local_Speed,
-              Local_State,
-              Local_Spare_4,
-              Local_Rpm,
+           Word_Of (Local_Speed, Local_State, Local_Spare_4, Local_Rpm,
               Local_Spare_32);
       begin
          Lemma_Bits_Speed (Frame);

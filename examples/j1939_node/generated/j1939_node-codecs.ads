@@ -99,8 +99,7 @@ is
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Low)
           = Ravenchart.Number (Item.Low)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_High)
             = Ravenchart.Number (Item.High);
       --  The frame's raw values are the table's, and bits of no signal are 0.
@@ -120,8 +119,7 @@ is
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Low)
                    = Ravenchart.Number (Item.Low)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_High)
                      = Ravenchart.Number (Item.High)
              else Item = J1939_Node.Default_Name);
@@ -279,20 +277,16 @@ is
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Kind)
           = J1939_Node.Answer_Kind'Pos (Item.Kind)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Group_Function)
             = Ravenchart.Number (Item.Group_Function)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Spare)
             = Ravenchart.Number (Item.Spare)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Addressee)
             = Ravenchart.Number (Item.Addressee)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Pgn)
             = Ravenchart.Number (Item.Pgn);
       --  The frame's raw values are the table's, and bits of no signal are 0.
@@ -306,14 +300,12 @@ is
         Post =>
           Valid
           = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Kind) in 0 .. 3
-             and then Ravenchart.Can.Layouts.Number_In
-                 (Word,
+             and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Group_Function)
                in 255 .. 255
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Spare)
                in 65_535 .. 65_535
-             and then Ravenchart.Can.Layouts.Number_In
-                 (Word,
+             and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Addressee)
                in 0 .. 255
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Pgn)
@@ -321,20 +313,16 @@ is
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Kind)
                    = J1939_Node.Answer_Kind'Pos (Item.Kind)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Group_Function)
                      = Ravenchart.Number (Item.Group_Function)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Spare)
                      = Ravenchart.Number (Item.Spare)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Addressee)
                      = Ravenchart.Number (Item.Addressee)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Pgn)
                      = Ravenchart.Number (Item.Pgn)
              else Item = J1939_Node.Default_Acknowledgement);
@@ -370,7 +358,7 @@ is
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
-          = (Ravenchart.Number (Item) - Signal_Value.Offset)
+          = Ravenchart.Number (Item) - Signal_Value.Offset
           and then (Pack'Result and 16#FFFFFFFFFFFFFF00#) = 0;
       --  The frame's raw values are the table's, and bits of no signal are 0.
 
@@ -385,7 +373,7 @@ is
              in 0 .. 250)
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
-                   = (Ravenchart.Number (Item) - Signal_Value.Offset)
+                   = Ravenchart.Number (Item) - Signal_Value.Offset
              else Item = 0);
       --  Valid when all bits stand for values.
 
@@ -482,10 +470,8 @@ is
       function Value_Of_Signal_State
         (Raw : Interfaces.Unsigned_8)
         return J1939_Node.Drive_State is
-        (if Raw = 0
-            then J1939_Node.Fan_Off
-         elsif Raw = 4
-            then J1939_Node.Coolant_Too_Hot
+        (if Raw = 0 then J1939_Node.Fan_Off
+         elsif Raw = 4 then J1939_Node.Coolant_Too_Hot
          else J1939_Node.Default_Operation)
       with Pre => Raw in 0 | 4 | 7;
 
@@ -508,20 +494,16 @@ is
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Speed)
           = Ravenchart.Number (Item.Speed)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_State)
             = Code_Of_State (Item.State)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Spare_4)
             = Ravenchart.Number (Item.Spare_4)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Rpm)
             = Ravenchart.Number (Item.Rpm)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Spare_32)
             = Ravenchart.Number (Item.Spare_32);
       --  The frame's raw values are the table's, and bits of no signal are 0.
@@ -538,33 +520,27 @@ is
              in 0 .. 250
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_State)
                in 0 | 4 | 7
-             and then Ravenchart.Can.Layouts.Number_In
-                 (Word,
+             and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Spare_4)
                in 15 .. 15
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Rpm)
                in 0 .. 64_255
-             and then Ravenchart.Can.Layouts.Number_In
-                 (Word,
+             and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Spare_32)
                in 4_294_967_295 .. 4_294_967_295)
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Speed)
                    = Ravenchart.Number (Item.Speed)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_State)
                      = Code_Of_State (Item.State)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Spare_4)
                      = Ravenchart.Number (Item.Spare_4)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Rpm)
                      = Ravenchart.Number (Item.Rpm)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Spare_32)
                      = Ravenchart.Number (Item.Spare_32)
              else Item = J1939_Node.Default_Fan_Drive);

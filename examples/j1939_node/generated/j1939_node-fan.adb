@@ -135,9 +135,7 @@ is
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.Fan_Rival,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Fan_Rival,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
       end if;
@@ -148,15 +146,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Request_To_All_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Fan_Request_To_All,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+         Elements.Fan_Request_To_All, 0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Fan_Request_To_All,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -168,15 +163,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Request_To_Us_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Fan_Request_To_Us,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+         Elements.Fan_Request_To_Us, 0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Fan_Request_To_Us,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -188,15 +180,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Request_By_Null_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Fan_Request_By_Null,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+         Elements.Fan_Request_By_Null, 0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Fan_Request_By_Null,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -205,9 +194,7 @@ is
 
    procedure Put_Engine (Item : J1939_Node.Coolant_Temperature) is
       Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings
-        (GNATprove,
-         Off,
+      pragma Warnings (GNATprove, Off,
          """Status"" is set by ""Put"" but not used*",
          Reason => "a new sample replaces the old one");
    begin
@@ -225,23 +212,19 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Fan_Address,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Fan_Claimed_Too,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Fan_Claimed_Too, 0);
          when Fan_Controller.Asked_All =>
             Address_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Fan_Address,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
@@ -250,23 +233,19 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Fan_Answers,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Fan_Asked_All,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Fan_Asked_All, 0);
          when Fan_Controller.Asked_Us =>
             Address_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Fan_Address,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
@@ -275,31 +254,25 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Fan_Answers,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Fan_Asked_Us,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Fan_Asked_Us, 0);
          when Fan_Controller.Asked_By_Null =>
             Address_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Fan_Address,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Fan_Asked_By_Null,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Fan_Asked_By_Null, 0);
       end case;
    end Offer;
 
@@ -311,19 +284,15 @@ is
 
    procedure Send_Cannot_Claim (Item : J1939_Node.Name) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Fan_Cannot_Claim,
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Fan_Cannot_Claim,
          0);
       Line.Send_Cannot_Claim (Item);
    end Send_Cannot_Claim;
 
    procedure Send_Acknowledgement (Item : J1939_Node.Acknowledgement) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Fan_Acknowledgement,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Fan_Acknowledgement, 0);
       Line.Send_Acknowledgement (Item);
    end Send_Acknowledgement;
 
@@ -358,10 +327,8 @@ is
          when Fan_Controller.Rival_Port.Nothing =>
             null;
          when Fan_Controller.Rival_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Fan_Rival,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Fan_Rival, 0);
             Offer
               (Fan_Controller.Event'(Name => Fan_Controller.Claimed_Too,
                 Value_Name => Rival_Port.Value,
@@ -369,9 +336,7 @@ is
          when Fan_Controller.Rival_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
-               Elements.Fan_Rival,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Fan_Rival,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
       end case;
@@ -386,10 +351,8 @@ is
          when Fan_Controller.Request_To_All_Port.Nothing =>
             null;
          when Fan_Controller.Request_To_All_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Fan_Request_To_All,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Fan_Request_To_All, 0);
             Offer
               (Fan_Controller.Event'(Name => Fan_Controller.Asked_All,
                 Value_Pgn_Octets => Request_To_All_Port.Value,
@@ -397,8 +360,7 @@ is
          when Fan_Controller.Request_To_All_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Fan_Request_To_All,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -414,10 +376,8 @@ is
          when Fan_Controller.Request_To_Us_Port.Nothing =>
             null;
          when Fan_Controller.Request_To_Us_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Fan_Request_To_Us,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Fan_Request_To_Us, 0);
             Offer
               (Fan_Controller.Event'(Name => Fan_Controller.Asked_Us,
                 Value_Pgn_Octets => Request_To_Us_Port.Value,
@@ -425,8 +385,7 @@ is
          when Fan_Controller.Request_To_Us_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Fan_Request_To_Us,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -442,10 +401,8 @@ is
          when Fan_Controller.Request_By_Null_Port.Nothing =>
             null;
          when Fan_Controller.Request_By_Null_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Fan_Request_By_Null,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Fan_Request_By_Null, 0);
             Offer
               (Fan_Controller.Event'(Name => Fan_Controller.Asked_By_Null,
                 Value_Pgn_Octets => Request_By_Null_Port.Value,
@@ -453,8 +410,7 @@ is
          when Fan_Controller.Request_By_Null_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Fan_Request_By_Null,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -471,16 +427,12 @@ is
          when Fan_Controller.Engine_Port.Nothing =>
             null;
          when Fan_Controller.Engine_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Fan_Engine,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Fan_Engine, 0);
          when Fan_Controller.Engine_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
-               Elements.Fan_Engine,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Fan_Engine,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
       end case;
@@ -504,25 +456,17 @@ is
             Now := Fan_Controller.Address.To_Occurrence (Event);
          end if;
       end if;
-      Fan_Controller.Address.Step
-        (Address_Region,
-         Now,
-         Ins,
-         Event,
-         Box,
+      Fan_Controller.Address.Step (Address_Region, Now, Ins, Event, Box,
          Fired);
       if Fired /= Fan_Controller.Address.None then
          if Fired in Fan_Controller.Address.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Fan_Address,
                Fan_Controller.Address.Selection'Pos (Fired)
                - Fan_Controller.Address.Selection'Pos
                    (Fan_Controller.Address.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.Fan_Address,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Fan_Address,
             Fan_Controller.Address_States.Leaf'Pos (Address_Region.Leaf));
          if Box.Claim_Sent then
             Send_Claim (Box.Claim);
@@ -561,25 +505,17 @@ is
             Now := Fan_Controller.Answers.To_Occurrence (Event);
          end if;
       end if;
-      Fan_Controller.Answers.Step
-        (Answers_Region,
-         Now,
-         Ins,
-         Event,
-         Box,
+      Fan_Controller.Answers.Step (Answers_Region, Now, Ins, Event, Box,
          Fired);
       if Fired /= Fan_Controller.Answers.None then
          if Fired in Fan_Controller.Answers.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Fan_Answers,
                Fan_Controller.Answers.Selection'Pos (Fired)
                - Fan_Controller.Answers.Selection'Pos
                    (Fan_Controller.Answers.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.Fan_Answers,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Fan_Answers,
             Fan_Controller.Answers_States.Leaf'Pos (Answers_Region.Leaf));
          if Box.Acknowledgement_Sent then
             Send_Acknowledgement (Box.Acknowledgement);
@@ -623,8 +559,7 @@ is
    begin
       Engine_Board.Read (Engine_Value);
       Fan_Controller.Activities.Regulate
-        (Engine => Engine_Value,
-         Setting => Setting_Own);
+        (Engine => Engine_Value, Setting => Setting_Own);
       Setting_Board.Write (Setting_Own);
       Executed := Executed + Elements.Fan_Regulate_Row;
    end Run_Regulate;

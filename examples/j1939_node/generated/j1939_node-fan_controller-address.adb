@@ -20,8 +20,7 @@ is
         when Address_States.Before =>
            (if Now = Expiry_Of_Claim then Claim else None),
         when Address_States.Claiming =>
-           (if Now = Expiry_Of_Granted
-               then Granted
+           (if Now = Expiry_Of_Granted then Granted
             elsif Now = On_Claimed_Too
                and then (Item.Value_Name.High < Ins.Name_High
                   or else (Item.Value_Name.High = Ins.Name_High
@@ -80,22 +79,14 @@ is
    with Ghost
    is
       type Node is
-        (Nowhere,
-         Before,
-         Claiming,
-         Claimed,
-         Yielding,
-         Without_Address,
-         Contending,
-         Disorder);
+        (Nowhere, Before, Claiming, Claimed, Yielding, Without_Address,
+         Contending, Disorder);
 
       function Innermost (Leaf : Address_States.Leaf) return Node is
         (Node'Val (Address_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -132,38 +123,24 @@ is
       Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
        and then Self.Timers (1)
-         = Timer_After
-             (1,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (1))
        and then Self.Timers (2)
-         = Timer_After
-             (2,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (2, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (2))
        and then Self.Timers (3)
-         = Timer_After
-             (3,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (3, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (3))
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
       procedure Exit_Before
@@ -306,7 +283,7 @@ is
             Leave_Contending;
             Active := Chart.Moved (Active, Chart.Contending, Chart.Nowhere);
             Enter_Yielding;
-         when Defend =>
+         when Defend | Tell_All | Tell_Us | Tell_Null =>
             Box.Claim :=
               J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
             Box.Claim_Sent := True;
@@ -320,23 +297,7 @@ is
             Active :=
               Chart.Moved (Active, Chart.Nowhere, Chart.Without_Address);
             Self.Leaf := Address_States.Without_Address;
-         when Tell_All =>
-            Box.Claim :=
-              J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
-            Box.Claim_Sent := True;
-         when Tell_Us =>
-            Box.Claim :=
-              J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
-            Box.Claim_Sent := True;
-         when Tell_Null =>
-            Box.Claim :=
-              J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
-            Box.Claim_Sent := True;
-         when Tell_Lost =>
-            Active :=
-              Chart.Moved (Active, Chart.Without_Address, Chart.Nowhere);
-            Enter_Yielding;
-         when Tell_Lost_Null =>
+         when Tell_Lost | Tell_Lost_Null =>
             Active :=
               Chart.Moved (Active, Chart.Without_Address, Chart.Nowhere);
             Enter_Yielding;

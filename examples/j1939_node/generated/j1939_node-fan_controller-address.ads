@@ -19,31 +19,15 @@ is
 
    --  [Fan_Controller.Address] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_Claimed_Too,
-      On_Asked_All,
-      On_Asked_Us,
-      On_Asked_By_Null,
-      Expiry_Of_Claim,
-      Expiry_Of_Granted,
-      Expiry_Of_Give_Up,
-      Conditions);
+     (Start_Of_Region, On_Claimed_Too, On_Asked_All, On_Asked_Us,
+      On_Asked_By_Null, Expiry_Of_Claim, Expiry_Of_Granted,
+      Expiry_Of_Give_Up, Conditions);
 
    --  [Fan_Controller.Address.transitions] in order of precedence,
    --  innermost source first
    type Selection is
-     (Initial_Entry,
-      Granted,
-      Claim,
-      Yield,
-      Defend,
-      Give_Up,
-      Tell_All,
-      Tell_Us,
-      Tell_Null,
-      Tell_Lost,
-      Tell_Lost_Null,
-      None);
+     (Initial_Entry, Granted, Claim, Yield, Defend, Give_Up, Tell_All,
+      Tell_Us, Tell_Null, Tell_Lost, Tell_Lost_Null, None);
 
    subtype Firing is Selection range Initial_Entry .. Tell_Lost_Null;
    subtype Transition is Selection range Granted .. Tell_Lost_Null;
@@ -118,8 +102,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Address_States.Leaf)
+     (T : Transition; Leaf : Address_States.Leaf)
      return Boolean is
      (case T is
         when Granted => Leaf = Address_States.Claiming,
@@ -135,8 +118,7 @@ is
    --  Is its source the leaf, or around it?
 
    function Target
-     (T : Firing;
-      Leaf : Address_States.Leaf)
+     (T : Firing; Leaf : Address_States.Leaf)
      return Address_States.Leaf is
      (case T is
         when Initial_Entry => Address_States.Before,
@@ -181,15 +163,12 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Everything or else D = Beginning,
               D /= Beginning and then Before = Address_States.Before,
-              After = Address_States.Before,
-              Ravenchart.Timers.Started (20)),
+              After = Address_States.Before, Ravenchart.Timers.Started (20)),
         when 2 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_Contending
               or else D = Everything
               or else D = Beginning,
@@ -197,8 +176,7 @@ is
               After = Address_States.Claiming,
               Ravenchart.Timers.Started (25)),
         when 3 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Everything or else D = Beginning,
               D /= Beginning and then Before = Address_States.Yielding,
               After = Address_States.Yielding,
@@ -270,32 +248,18 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now, Ins, Item))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old)
              and then Self.Timers (1)
-               = Timer_After
-                   (1,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (1))
+               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (1))
              and then Self.Timers (2)
-               = Timer_After
-                   (2,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (2))
+               = Timer_After (2, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (2))
              and then Self.Timers (3)
-               = Timer_After
-                   (3,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (3)));
+               = Timer_After (3, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (3)));
    --  One run-to-completion step.
 end J1939_Node.Fan_Controller.Address;

@@ -26,8 +26,7 @@ is
            (if Now = Conditions
                and then not (Ins.Address = Address_States.Claimed)
                then Without_Address
-            elsif Now = Expiry_Of_Cyclic
-               then Cyclic
+            elsif Now = Expiry_Of_Cyclic then Cyclic
             elsif Now = On_Asked_All
                and then Item.Value_Pgn_Octets.Pgn = 65_213
                then Answer_All
@@ -51,9 +50,7 @@ is
         (Node'Val (Answers_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -86,24 +83,18 @@ is
       Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
        and then Self.Timers (1)
-         = Timer_After
-             (1,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (1))
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
       procedure Exit_Sending
@@ -146,13 +137,7 @@ is
             Exit_Sending;
             Active := Chart.Moved (Active, Chart.Nowhere, Chart.Silent);
             Self.Leaf := Answers_States.Silent;
-         when Cyclic =>
-            Self.Data.Due :=
-              (if Self.Data.Due = 255 then 0 else Self.Data.Due + 1);
-         when Answer_All =>
-            Self.Data.Due :=
-              (if Self.Data.Due = 255 then 0 else Self.Data.Due + 1);
-         when Answer =>
+         when Cyclic | Answer_All | Answer =>
             Self.Data.Due :=
               (if Self.Data.Due = 255 then 0 else Self.Data.Due + 1);
          when Refuse =>

@@ -20,23 +20,14 @@ is
 
    --  [Fan_Controller.Answers] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_Asked_All,
-      On_Asked_Us,
-      Expiry_Of_Cyclic,
+     (Start_Of_Region, On_Asked_All, On_Asked_Us, Expiry_Of_Cyclic,
       Conditions);
 
    --  [Fan_Controller.Answers.transitions] in order of precedence,
    --  innermost source first
    type Selection is
-     (Initial_Entry,
-      With_Address,
-      Without_Address,
-      Cyclic,
-      Answer_All,
-      Answer,
-      Refuse,
-      None);
+     (Initial_Entry, With_Address, Without_Address, Cyclic, Answer_All,
+      Answer, Refuse, None);
 
    subtype Firing is Selection range Initial_Entry .. Refuse;
    subtype Transition is Selection range With_Address .. Refuse;
@@ -100,8 +91,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Answers_States.Leaf)
+     (T : Transition; Leaf : Answers_States.Leaf)
      return Boolean is
      (case T is
         when With_Address => Leaf = Answers_States.Silent,
@@ -113,8 +103,7 @@ is
    --  Is its source the leaf, or around it?
 
    function Target
-     (T : Firing;
-      Leaf : Answers_States.Leaf)
+     (T : Firing; Leaf : Answers_States.Leaf)
      return Answers_States.Leaf is
      (case T is
         when Initial_Entry => Answers_States.Silent,
@@ -151,8 +140,7 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Everything or else D = Beginning,
               D /= Beginning and then Before = Answers_States.Sending,
               After = Answers_States.Sending,
@@ -219,18 +207,12 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now, Ins, Item))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old)
              and then Self.Timers (1)
-               = Timer_After
-                   (1,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (1)));
+               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (1)));
    --  One run-to-completion step.
 end J1939_Node.Fan_Controller.Answers;

@@ -46,8 +46,7 @@ is
 
    --  [Fan_Controller.rival] what its readers see
    package Rival_Port is new Ravenchart.Port_Regions
-     (Value_Type => J1939_Node.Name,
-      Default => J1939_Node.Default_Name);
+     (Value_Type => J1939_Node.Name, Default => J1939_Node.Default_Name);
 
    subtype Rival_View is Rival_Port.Port;
 
@@ -74,8 +73,7 @@ is
 
    --  [Fan_Controller.engine] what its readers see
    package Engine_Port is new Ravenchart.Port_Regions
-     (Value_Type => J1939_Node.Coolant_Temperature,
-      Default => 0);
+     (Value_Type => J1939_Node.Coolant_Temperature, Default => 0);
 
    subtype Engine_View is Engine_Port.Port;
 end J1939_Node.Fan_Controller;

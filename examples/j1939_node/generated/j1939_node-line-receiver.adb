@@ -16,7 +16,6 @@ is
    pragma Warnings (Off, "*can never be *");
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
-
    Frame : Ravenchart.Can.Any_Frames.Any_Frame :=
      Ravenchart.Can.Any_Frames.Null_Any_Frame;
 
@@ -41,24 +40,18 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Extended
       then
-         Codecs.Type_Name.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Rival_Claim_Item,
-            Valid);
+         Codecs.Type_Name.Unpack (Ravenchart.Can.Any_Frames.Payload (Frame),
+            Rival_Claim_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Line_Rival_Claim_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_Rival_Claim));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Rival_Claim_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Rival_Claim_Message, 0);
             Fan.Put_Rival (Rival_Claim_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -67,23 +60,18 @@ is
            = Ravenchart.Can.Extended
       then
          Codecs.Type_Pgn_Octets.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Request_To_All_Item,
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Request_To_All_Item,
             Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Line_Request_To_All_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_Request_To_All));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Request_To_All_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Request_To_All_Message, 0);
             Fan.Put_Request_To_All (Request_To_All_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -92,23 +80,18 @@ is
            = Ravenchart.Can.Extended
       then
          Codecs.Type_Pgn_Octets.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Request_To_Us_Item,
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Request_To_Us_Item,
             Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Line_Request_To_Us_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_Request_To_Us));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Request_To_Us_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Request_To_Us_Message, 0);
             Fan.Put_Request_To_Us (Request_To_Us_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -118,22 +101,17 @@ is
       then
          Codecs.Type_Pgn_Octets.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Request_Without_Address_Item,
-            Valid);
+            Request_Without_Address_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Line_Request_Without_Address_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_Request_Without_Address));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Request_Without_Address_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Request_Without_Address_Message, 0);
             Fan.Put_Request_By_Null (Request_Without_Address_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -143,22 +121,17 @@ is
       then
          Codecs.Type_Coolant_Temperature.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Engine_Temperature_1_Item,
-            Valid);
+            Engine_Temperature_1_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Line_Engine_Temperature_1_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_Engine_Temperature_1));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Engine_Temperature_1_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Engine_Temperature_1_Message, 0);
             Fan.Put_Engine (Engine_Temperature_1_Item);
          end if;
       end if;

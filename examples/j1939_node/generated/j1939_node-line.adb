@@ -41,9 +41,7 @@ is
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.Claim_Message,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Claim_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
       end if;
@@ -70,15 +68,12 @@ is
       pragma Assert
         (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Cannot_Claim));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Cannot_Claim_Message,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Cannot_Claim_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Cannot_Claim_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -104,19 +99,15 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       pragma Assert
-        (Ravenchart.Can.Layouts.Is_Framed
-           (Frame,
+        (Ravenchart.Can.Layouts.Is_Framed (Frame,
             Codecs.Frame_Acknowledgement));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Acknowledgement_Message,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Acknowledgement_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Acknowledgement_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -142,19 +133,15 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       pragma Assert
-        (Ravenchart.Can.Layouts.Is_Framed
-           (Frame,
+        (Ravenchart.Can.Layouts.Is_Framed (Frame,
             Codecs.Frame_Fan_Drive_State));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Fan_Drive_State_Message,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Fan_Drive_State_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Fan_Drive_State_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));

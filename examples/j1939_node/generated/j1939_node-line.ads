@@ -53,7 +53,7 @@ is
    pragma Compile_Time_Error
      (Controller.Given_Priority
       /= Timing_Certificate.Line_Driver_Tx_Claim_Priority,
-      "line " & "has another priority of its driver than its certificate");
+      "line has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Line_Bit_Rate
       and then Controller.Given_Setting.Data_Rate = 0);
@@ -63,24 +63,20 @@ is
      (Accepts (Codecs.Frame_Rival_Claim.Id, Codecs.Frame_Rival_Claim.Format)
       and then Codecs.Type_Name.Fits_In (Codecs.Frame_Rival_Claim));
    pragma Assert
-     (Accepts
-        (Codecs.Frame_Request_To_All.Id,
+     (Accepts (Codecs.Frame_Request_To_All.Id,
          Codecs.Frame_Request_To_All.Format)
       and then Codecs.Type_Pgn_Octets.Fits_In (Codecs.Frame_Request_To_All));
    pragma Assert
-     (Accepts
-        (Codecs.Frame_Request_To_Us.Id,
+     (Accepts (Codecs.Frame_Request_To_Us.Id,
          Codecs.Frame_Request_To_Us.Format)
       and then Codecs.Type_Pgn_Octets.Fits_In (Codecs.Frame_Request_To_Us));
    pragma Assert
-     (Accepts
-        (Codecs.Frame_Request_Without_Address.Id,
+     (Accepts (Codecs.Frame_Request_Without_Address.Id,
          Codecs.Frame_Request_Without_Address.Format)
       and then Codecs.Type_Pgn_Octets.Fits_In
           (Codecs.Frame_Request_Without_Address));
    pragma Assert
-     (Accepts
-        (Codecs.Frame_Engine_Temperature_1.Id,
+     (Accepts (Codecs.Frame_Engine_Temperature_1.Id,
          Codecs.Frame_Engine_Temperature_1.Format)
       and then Codecs.Type_Coolant_Temperature.Fits_In
           (Codecs.Frame_Engine_Temperature_1));
@@ -92,8 +88,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Claim'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Claim'Result,
           Codecs.Frame_Claim)
        and then Ravenchart.Can.Any_Frames.Payload (Frame_Of_Claim'Result)
          = Codecs.Type_Name.Pack (Item);
@@ -107,8 +102,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Cannot_Claim'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Cannot_Claim'Result,
           Codecs.Frame_Cannot_Claim)
        and then Ravenchart.Can.Any_Frames.Payload
            (Frame_Of_Cannot_Claim'Result)
@@ -124,8 +118,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Acknowledgement'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Acknowledgement'Result,
           Codecs.Frame_Acknowledgement)
        and then Ravenchart.Can.Any_Frames.Payload
            (Frame_Of_Acknowledgement'Result)
@@ -141,8 +134,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Fan_Drive_State'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Fan_Drive_State'Result,
           Codecs.Frame_Fan_Drive_State)
        and then Ravenchart.Can.Any_Frames.Payload
            (Frame_Of_Fan_Drive_State'Result)

@@ -22,12 +22,9 @@ is
    procedure Execute (Item : Row) is
       Executed : Ravenchart.Element_Id := 0;
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Activity,
-         Elements.Protocol_Processor
-         + 1
-         + Ravenchart.Element_Id (Row'Pos (Item)),
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Activity,
+         Elements.Protocol_Processor + 1
+         + Ravenchart.Element_Id (Row'Pos (Item)), 0);
       case Item is
          when Fan_Ports =>
             Fan.Run_Ports (Executed);
@@ -40,16 +37,14 @@ is
       end case;
       pragma Assert
         (Executed
-         = (Elements.Protocol_Processor
-            + 1
-            + Ravenchart.Element_Id (Row'Pos (Item))));
+         = Elements.Protocol_Processor + 1
+           + Ravenchart.Element_Id (Row'Pos (Item)));
    end Execute;
 
    procedure On_Deadline_Miss is
    begin
       Health_Counts.Counters.Record_Fault (Ravenchart.Health.Deadline_Miss);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Fault,
+      Trace.Buffer.Note (Ravenchart.Traces.Fault,
          Elements.Protocol_Processor,
          Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Deadline_Miss));
    end On_Deadline_Miss;

@@ -56,16 +56,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Protocol_Priority,
-      "protocol " & "has another priority than its certificate");
+      "protocol has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Protocol_T,
-      "protocol " & "has another period than its certificate");
+      "protocol has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Protocol_D,
-      "protocol " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "protocol " & "has another offset than its certificate");
+      "protocol has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "protocol has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Fan_Ports).Divisor
       = Timing_Certificate.Fan_Ports_Divisor

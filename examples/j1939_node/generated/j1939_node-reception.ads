@@ -39,11 +39,11 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Reception_Priority,
-      "reception " & "has another priority than its certificate");
+      "reception has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Separation /= Timing_Certificate.Reception_T,
-      "reception " & "has another separation than its certificate");
+      "reception has another separation than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Reception_D,
-      "reception " & "has another deadline than its certificate");
+      "reception has another deadline than its certificate");
 end J1939_Node.Reception;

@@ -2,7 +2,10 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+
 with System;
+with Ravenchart.Response_Times;
 
 package J1939_Node.Timing_Certificate
 with SPARK_Mode, Pure
@@ -16,13 +19,16 @@ is
    Model_Digest : constant String :=
      "27d9e88d5ba24da307d094a68e26e6985015a9992297e7bac05f313851a2bf00";
 
+   use Ravenchart.Response_Times;
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period. A
-   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W, and equals it: where it is
-   --  more, W is too short; where it is less, a term is missing.
+   --  from the event, W the time claimed from the start of a busy period.
+   --  X_Up (W) is what X and all that goes before it ask for within W,
+   --  X_Rest (W) what X and those listed behind it at its level do. Needs
+   --  is the demand that arises within W, and equals it: where it is more,
+   --  W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_R : constant := 665_000;
@@ -53,17 +59,16 @@ is
    Board_Critical_Section : constant := 5_000;
 
    --  [reception] released by arrivals, no closer than T; it may wait for T
-   --  to be over as well. B: protocol may be inside fan.rival.mailbox.
+   --  to be over as well. B: protocol in fan.rival.mailbox.
    Reception_Priority : constant := System.Default_Priority + 3;
    Line_Receive_Budget : constant := 40_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
-   Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant := Line_Receive_Budget + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
-   --  [protocol] released every T. B: control may be inside fan.engine.
+   --  [protocol] released every T. B: control in fan.engine.
    Protocol_Priority : constant := System.Default_Priority + 2;
    Fan_Ports_Budget : constant := 200_000;
    Fan_Address_Budget : constant := 100_000;
@@ -73,149 +78,103 @@ is
    Protocol_D : constant := 10_000_000;
    Fan_Ports_Divisor : constant := 1;
    Fan_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Fan_Ports_Divisor /= 1,
-      "fan.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Fan_Ports_Phase + 1) > Fan_Ports_Divisor,
-      "fan.ports " & "has a phase beyond its divisor");
-
    Fan_Address_Divisor : constant := 1;
    Fan_Address_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Fan_Address_Divisor /= 1,
-      "fan.Address " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Fan_Address_Phase + 1) > Fan_Address_Divisor,
-      "fan.Address " & "has a phase beyond its divisor");
-
    Fan_Answers_Divisor : constant := 1;
    Fan_Answers_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Fan_Answers_Divisor /= 1,
-      "fan.Answers " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Fan_Answers_Phase + 1) > Fan_Answers_Divisor,
-      "fan.Answers " & "has a phase beyond its divisor");
-
    Fan_Tell_Divisor : constant := 1;
    Fan_Tell_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Fan_Tell_Divisor /= 1,
-      "fan.tell " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Fan_Tell_Phase + 1) > Fan_Tell_Divisor,
-      "fan.tell " & "has a phase beyond its divisor");
-
+     (Fan_Ports_Divisor /= 1
+      or else Fan_Ports_Phase /= 0
+      or else Fan_Address_Divisor /= 1
+      or else Fan_Address_Phase /= 0
+      or else Fan_Answers_Divisor /= 1
+      or else Fan_Answers_Phase /= 0
+      or else Fan_Tell_Divisor /= 1
+      or else Fan_Tell_Phase /= 0,
+      "protocol must keep divisors and phases of its rows");
    Protocol_J : constant := 0;
-   Protocol_A : constant := Protocol_J + (Protocol_T - 1);
    Protocol_C : constant :=
-     Fan_Ports_Budget
-     + Fan_Address_Budget
-     + Fan_Answers_Budget
-     + Fan_Tell_Budget
-     + 2 * Board_Context_Switch;
+     Fan_Ports_Budget + Fan_Address_Budget + Fan_Answers_Budget
+     + Fan_Tell_Budget + 2 * Board_Context_Switch;
    Protocol_B : constant := Board_Critical_Section;
 
-   --  [control] released every T. B: main may be inside health.
+   --  [control] released every T. B: main in health.
    Control_Priority : constant := System.Default_Priority + 1;
    Fan_Regulate_Budget : constant := 100_000;
    Control_T : constant := 100_000_000;
    Control_D : constant := 100_000_000;
    Fan_Regulate_Divisor : constant := 1;
    Fan_Regulate_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Fan_Regulate_Divisor /= 1,
-      "fan.regulate " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Fan_Regulate_Phase + 1) > Fan_Regulate_Divisor,
-      "fan.regulate " & "has a phase beyond its divisor");
-
+     (Fan_Regulate_Divisor /= 1 or else Fan_Regulate_Phase /= 0,
+      "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
-   Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant := Fan_Regulate_Budget + 2 * Board_Context_Switch;
    Control_B : constant := Board_Critical_Section;
 
-   --  [line.driver_tx.claim] the driver's work, released by protocol, which
-   --  is J late. B: protocol may be inside line.transmit.
+   --  [line.driver_tx.claim] the driver, released by protocol. B: protocol
+   --  in line.transmit.
    Line_Driver_Tx_Claim_Priority : constant := System.Default_Priority + 4;
    Line_Driver_Tx_Claim_Budget : constant := 40_000;
    Line_Driver_Tx_Claim_T : constant := 10_000_000;
    Line_Driver_Tx_Claim_D : constant := 10_000_000;
    Line_Driver_Tx_Claim_J : constant := Protocol_R;
-   Line_Driver_Tx_Claim_A : constant :=
-     Line_Driver_Tx_Claim_J + (Line_Driver_Tx_Claim_T - 1);
    Line_Driver_Tx_Claim_C : constant :=
      Line_Driver_Tx_Claim_Budget + 2 * Board_Context_Switch;
    Line_Driver_Tx_Claim_B : constant := Board_Critical_Section;
 
-   --  [line.driver_rx.rival_claim] the driver's work, released by
-   --  line.rival_claim, which is J late. B: protocol may be inside
-   --  line.transmit.
+   --  [line.driver_rx.rival_claim] the driver, released by
+   --  line.rival_claim. B: protocol in line.transmit.
    Line_Driver_Rx_Rival_Claim_Priority : constant :=
      System.Default_Priority + 4;
    Line_Driver_Rx_Rival_Claim_Budget : constant := 40_000;
    Line_Driver_Rx_Rival_Claim_T : constant := 10_000_000;
    Line_Driver_Rx_Rival_Claim_D : constant := 10_000_000;
    Line_Driver_Rx_Rival_Claim_J : constant := Line_Rival_Claim_R;
-   Line_Driver_Rx_Rival_Claim_A : constant :=
-     Line_Driver_Rx_Rival_Claim_J + (Line_Driver_Rx_Rival_Claim_T - 1);
    Line_Driver_Rx_Rival_Claim_C : constant :=
      Line_Driver_Rx_Rival_Claim_Budget + 2 * Board_Context_Switch;
    Line_Driver_Rx_Rival_Claim_B : constant := Board_Critical_Section;
 
-   --  [line.driver_tx.cannot_claim] the driver's work, released by
-   --  protocol, which is J late. B: protocol may be inside line.transmit.
+   --  [line.driver_tx.cannot_claim] the driver, released by protocol. B:
+   --  protocol in line.transmit.
    Line_Driver_Tx_Cannot_Claim_Priority : constant :=
      System.Default_Priority + 4;
    Line_Driver_Tx_Cannot_Claim_Budget : constant := 40_000;
    Line_Driver_Tx_Cannot_Claim_T : constant := 10_000_000;
    Line_Driver_Tx_Cannot_Claim_D : constant := 10_000_000;
    Line_Driver_Tx_Cannot_Claim_J : constant := Protocol_R;
-   Line_Driver_Tx_Cannot_Claim_A : constant :=
-     Line_Driver_Tx_Cannot_Claim_J + (Line_Driver_Tx_Cannot_Claim_T - 1);
    Line_Driver_Tx_Cannot_Claim_C : constant :=
      Line_Driver_Tx_Cannot_Claim_Budget + 2 * Board_Context_Switch;
    Line_Driver_Tx_Cannot_Claim_B : constant := Board_Critical_Section;
 
-   --  [line.driver_rx.request_to_all] the driver's work, released by
-   --  line.request_to_all, which is J late. B: protocol may be inside
-   --  line.transmit.
+   --  [line.driver_rx.request_to_all] the driver, released by
+   --  line.request_to_all. B: protocol in line.transmit.
    Line_Driver_Rx_Request_To_All_Priority : constant :=
      System.Default_Priority + 4;
    Line_Driver_Rx_Request_To_All_Budget : constant := 40_000;
    Line_Driver_Rx_Request_To_All_T : constant := 10_000_000;
    Line_Driver_Rx_Request_To_All_D : constant := 10_000_000;
    Line_Driver_Rx_Request_To_All_J : constant := Line_Request_To_All_R;
-   Line_Driver_Rx_Request_To_All_A : constant :=
-     Line_Driver_Rx_Request_To_All_J + (Line_Driver_Rx_Request_To_All_T - 1);
    Line_Driver_Rx_Request_To_All_C : constant :=
      Line_Driver_Rx_Request_To_All_Budget + 2 * Board_Context_Switch;
    Line_Driver_Rx_Request_To_All_B : constant := Board_Critical_Section;
 
-   --  [line.driver_rx.request_to_us] the driver's work, released by
-   --  line.request_to_us, which is J late. B: protocol may be inside
-   --  line.transmit.
+   --  [line.driver_rx.request_to_us] the driver, released by
+   --  line.request_to_us. B: protocol in line.transmit.
    Line_Driver_Rx_Request_To_Us_Priority : constant :=
      System.Default_Priority + 4;
    Line_Driver_Rx_Request_To_Us_Budget : constant := 40_000;
    Line_Driver_Rx_Request_To_Us_T : constant := 10_000_000;
    Line_Driver_Rx_Request_To_Us_D : constant := 10_000_000;
    Line_Driver_Rx_Request_To_Us_J : constant := Line_Request_To_Us_R;
-   Line_Driver_Rx_Request_To_Us_A : constant :=
-     Line_Driver_Rx_Request_To_Us_J + (Line_Driver_Rx_Request_To_Us_T - 1);
    Line_Driver_Rx_Request_To_Us_C : constant :=
      Line_Driver_Rx_Request_To_Us_Budget + 2 * Board_Context_Switch;
    Line_Driver_Rx_Request_To_Us_B : constant := Board_Critical_Section;
 
-   --  [line.driver_rx.request_without_address] the driver's work, released
-   --  by line.request_without_address, which is J late. B: protocol may be
-   --  inside line.transmit.
+   --  [line.driver_rx.request_without_address] the driver, released by
+   --  line.request_without_address. B: protocol in line.transmit.
    Line_Driver_Rx_Request_Without_Address_Priority : constant :=
      System.Default_Priority + 4;
    Line_Driver_Rx_Request_Without_Address_Budget : constant := 40_000;
@@ -223,33 +182,26 @@ is
    Line_Driver_Rx_Request_Without_Address_D : constant := 10_000_000;
    Line_Driver_Rx_Request_Without_Address_J : constant :=
      Line_Request_Without_Address_R;
-   Line_Driver_Rx_Request_Without_Address_A : constant :=
-     Line_Driver_Rx_Request_Without_Address_J
-     + (Line_Driver_Rx_Request_Without_Address_T - 1);
    Line_Driver_Rx_Request_Without_Address_C : constant :=
      Line_Driver_Rx_Request_Without_Address_Budget
      + 2 * Board_Context_Switch;
    Line_Driver_Rx_Request_Without_Address_B : constant :=
      Board_Critical_Section;
 
-   --  [line.driver_tx.acknowledgement] the driver's work, released by
-   --  protocol, which is J late. B: protocol may be inside line.transmit.
+   --  [line.driver_tx.acknowledgement] the driver, released by protocol. B:
+   --  protocol in line.transmit.
    Line_Driver_Tx_Acknowledgement_Priority : constant :=
      System.Default_Priority + 4;
    Line_Driver_Tx_Acknowledgement_Budget : constant := 40_000;
    Line_Driver_Tx_Acknowledgement_T : constant := 10_000_000;
    Line_Driver_Tx_Acknowledgement_D : constant := 10_000_000;
    Line_Driver_Tx_Acknowledgement_J : constant := Protocol_R;
-   Line_Driver_Tx_Acknowledgement_A : constant :=
-     Line_Driver_Tx_Acknowledgement_J
-     + (Line_Driver_Tx_Acknowledgement_T - 1);
    Line_Driver_Tx_Acknowledgement_C : constant :=
      Line_Driver_Tx_Acknowledgement_Budget + 2 * Board_Context_Switch;
    Line_Driver_Tx_Acknowledgement_B : constant := Board_Critical_Section;
 
-   --  [line.driver_rx.engine_temperature_1] the driver's work, released by
-   --  line.engine_temperature_1, which is J late. B: protocol may be inside
-   --  line.transmit.
+   --  [line.driver_rx.engine_temperature_1] the driver, released by
+   --  line.engine_temperature_1. B: protocol in line.transmit.
    Line_Driver_Rx_Engine_Temperature_1_Priority : constant :=
      System.Default_Priority + 4;
    Line_Driver_Rx_Engine_Temperature_1_Budget : constant := 40_000;
@@ -257,99 +209,147 @@ is
    Line_Driver_Rx_Engine_Temperature_1_D : constant := 500_000_000;
    Line_Driver_Rx_Engine_Temperature_1_J : constant :=
      Line_Engine_Temperature_1_R;
-   Line_Driver_Rx_Engine_Temperature_1_A : constant :=
-     Line_Driver_Rx_Engine_Temperature_1_J
-     + (Line_Driver_Rx_Engine_Temperature_1_T - 1);
    Line_Driver_Rx_Engine_Temperature_1_C : constant :=
      Line_Driver_Rx_Engine_Temperature_1_Budget + 2 * Board_Context_Switch;
    Line_Driver_Rx_Engine_Temperature_1_B : constant :=
      Board_Critical_Section;
 
-   --  [line.driver_tx.fan_drive_state] the driver's work, released by
-   --  protocol, which is J late. B: protocol may be inside line.transmit.
+   --  [line.driver_tx.fan_drive_state] the driver, released by protocol. B:
+   --  protocol in line.transmit.
    Line_Driver_Tx_Fan_Drive_State_Priority : constant :=
      System.Default_Priority + 4;
    Line_Driver_Tx_Fan_Drive_State_Budget : constant := 40_000;
    Line_Driver_Tx_Fan_Drive_State_T : constant := 10_000_000;
    Line_Driver_Tx_Fan_Drive_State_D : constant := 10_000_000;
    Line_Driver_Tx_Fan_Drive_State_J : constant := Protocol_R;
-   Line_Driver_Tx_Fan_Drive_State_A : constant :=
-     Line_Driver_Tx_Fan_Drive_State_J
-     + (Line_Driver_Tx_Fan_Drive_State_T - 1);
    Line_Driver_Tx_Fan_Drive_State_C : constant :=
      Line_Driver_Tx_Fan_Drive_State_Budget + 2 * Board_Context_Switch;
    Line_Driver_Tx_Fan_Drive_State_B : constant := Board_Critical_Section;
 
-   --  [board.probe] released every T. B: main may be inside
-   --  board.probe.board.
+   --  [board.probe] released every T. B: main in board.probe.board.
    Board_Probe_Priority : constant := System.Default_Priority + 5;
    Board_Probe_Budget : constant := 20_000;
    Board_Probe_T : constant := 1_000_000;
    Board_Probe_D : constant := 1_000_000;
    Board_Probe_J : constant := 0;
-   Board_Probe_A : constant := Board_Probe_J + (Board_Probe_T - 1);
    Board_Probe_C : constant :=
      Board_Probe_Budget + 2 * Board_Context_Switch;
    Board_Probe_B : constant := Board_Critical_Section;
 
-   pragma Compile_Time_Error
-     ((Line_Driver_Tx_Claim_Priority + 1) > Board_Probe_Priority,
-      "board.probe "
-      & "must have a higher priority than line.driver_tx.claim");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Claim_Priority /= Line_Driver_Rx_Rival_Claim_Priority,
-      "line.driver_tx.claim "
-      & "must have the priority of line.driver_rx.rival_claim");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Rival_Claim_Priority
-      /= Line_Driver_Tx_Cannot_Claim_Priority,
-      "line.driver_rx.rival_claim "
-      & "must have the priority of line.driver_tx.cannot_claim");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Cannot_Claim_Priority
-      /= Line_Driver_Rx_Request_To_All_Priority,
-      "line.driver_tx.cannot_claim "
-      & "must have the priority of line.driver_rx.request_to_all");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Request_To_All_Priority
-      /= Line_Driver_Rx_Request_To_Us_Priority,
-      "line.driver_rx.request_to_all "
-      & "must have the priority of line.driver_rx.request_to_us");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Request_To_Us_Priority
-      /= Line_Driver_Rx_Request_Without_Address_Priority,
-      "line.driver_rx.request_to_us "
-      & "must have the priority of line.driver_rx.request_without_address");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Request_Without_Address_Priority
-      /= Line_Driver_Tx_Acknowledgement_Priority,
-      "line.driver_rx.request_without_address "
-      & "must have the priority of line.driver_tx.acknowledgement");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Acknowledgement_Priority
-      /= Line_Driver_Rx_Engine_Temperature_1_Priority,
-      "line.driver_tx.acknowledgement "
-      & "must have the priority of line.driver_rx.engine_temperature_1");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Engine_Temperature_1_Priority
-      /= Line_Driver_Tx_Fan_Drive_State_Priority,
-      "line.driver_rx.engine_temperature_1 "
-      & "must have the priority of line.driver_tx.fan_drive_state");
-   pragma Compile_Time_Error
-     ((Reception_Priority + 1) > Line_Driver_Tx_Fan_Drive_State_Priority,
-      "line.driver_tx.fan_drive_state "
-      & "must have a higher priority than reception");
-   pragma Compile_Time_Error
-     ((Protocol_Priority + 1) > Reception_Priority,
-      "reception " & "must have a higher priority than protocol");
-   pragma Compile_Time_Error
-     ((Control_Priority + 1) > Protocol_Priority,
-      "protocol " & "must have a higher priority than control");
+   function Board_Probe_Up (W : Window) return Time is
+     (Demand (W, Board_Probe_J, Board_Probe_T, Board_Probe_C)) with Static;
+   function Line_Driver_Tx_Claim_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Claim_J, Line_Driver_Tx_Claim_T,
+         Line_Driver_Tx_Claim_C, Board_Probe_Up (W))) with Static;
+   function Line_Driver_Rx_Rival_Claim_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Rival_Claim_J, Line_Driver_Rx_Rival_Claim_T,
+         Line_Driver_Rx_Rival_Claim_C, Line_Driver_Tx_Claim_Up (W)))
+   with Static;
+   function Line_Driver_Tx_Cannot_Claim_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Cannot_Claim_J,
+         Line_Driver_Tx_Cannot_Claim_T, Line_Driver_Tx_Cannot_Claim_C,
+         Line_Driver_Rx_Rival_Claim_Up (W))) with Static;
+   function Line_Driver_Rx_Request_To_All_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Request_To_All_J,
+         Line_Driver_Rx_Request_To_All_T, Line_Driver_Rx_Request_To_All_C,
+         Line_Driver_Tx_Cannot_Claim_Up (W))) with Static;
+   function Line_Driver_Rx_Request_To_Us_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Request_To_Us_J,
+         Line_Driver_Rx_Request_To_Us_T, Line_Driver_Rx_Request_To_Us_C,
+         Line_Driver_Rx_Request_To_All_Up (W))) with Static;
+   function Line_Driver_Rx_Request_Without_Address_Up
+     (W : Window)
+     return Time is
+     (Demand (W, Line_Driver_Rx_Request_Without_Address_J,
+         Line_Driver_Rx_Request_Without_Address_T,
+         Line_Driver_Rx_Request_Without_Address_C,
+         Line_Driver_Rx_Request_To_Us_Up (W))) with Static;
+   function Line_Driver_Tx_Acknowledgement_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Acknowledgement_J,
+         Line_Driver_Tx_Acknowledgement_T, Line_Driver_Tx_Acknowledgement_C,
+         Line_Driver_Rx_Request_Without_Address_Up (W))) with Static;
+   function Line_Driver_Rx_Engine_Temperature_1_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Engine_Temperature_1_J,
+         Line_Driver_Rx_Engine_Temperature_1_T,
+         Line_Driver_Rx_Engine_Temperature_1_C,
+         Line_Driver_Tx_Acknowledgement_Up (W))) with Static;
+   function Line_Driver_Tx_Fan_Drive_State_Up (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Fan_Drive_State_J,
+         Line_Driver_Tx_Fan_Drive_State_T, Line_Driver_Tx_Fan_Drive_State_C,
+         Line_Driver_Rx_Engine_Temperature_1_Up (W))) with Static;
+   function Reception_Up (W : Window) return Time is
+     (Demand (W, Reception_J, Reception_T, Reception_C,
+         Line_Driver_Tx_Fan_Drive_State_Up (W))) with Static;
+   function Protocol_Up (W : Window) return Time is
+     (Demand (W, Protocol_J, Protocol_T, Protocol_C, Reception_Up (W)))
+   with Static;
+   function Line_Driver_Tx_Fan_Drive_State_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Fan_Drive_State_J,
+         Line_Driver_Tx_Fan_Drive_State_T, Line_Driver_Tx_Fan_Drive_State_C))
+   with Static;
+   function Line_Driver_Rx_Engine_Temperature_1_Rest
+     (W : Window)
+     return Time is
+     (Demand (W, Line_Driver_Rx_Engine_Temperature_1_J,
+         Line_Driver_Rx_Engine_Temperature_1_T,
+         Line_Driver_Rx_Engine_Temperature_1_C,
+         Line_Driver_Tx_Fan_Drive_State_Rest (W))) with Static;
+   function Line_Driver_Tx_Acknowledgement_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Acknowledgement_J,
+         Line_Driver_Tx_Acknowledgement_T, Line_Driver_Tx_Acknowledgement_C,
+         Line_Driver_Rx_Engine_Temperature_1_Rest (W))) with Static;
+   function Line_Driver_Rx_Request_Without_Address_Rest
+     (W : Window)
+     return Time is
+     (Demand (W, Line_Driver_Rx_Request_Without_Address_J,
+         Line_Driver_Rx_Request_Without_Address_T,
+         Line_Driver_Rx_Request_Without_Address_C,
+         Line_Driver_Tx_Acknowledgement_Rest (W))) with Static;
+   function Line_Driver_Rx_Request_To_Us_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Request_To_Us_J,
+         Line_Driver_Rx_Request_To_Us_T, Line_Driver_Rx_Request_To_Us_C,
+         Line_Driver_Rx_Request_Without_Address_Rest (W))) with Static;
+   function Line_Driver_Rx_Request_To_All_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Request_To_All_J,
+         Line_Driver_Rx_Request_To_All_T, Line_Driver_Rx_Request_To_All_C,
+         Line_Driver_Rx_Request_To_Us_Rest (W))) with Static;
+   function Line_Driver_Tx_Cannot_Claim_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Tx_Cannot_Claim_J,
+         Line_Driver_Tx_Cannot_Claim_T, Line_Driver_Tx_Cannot_Claim_C,
+         Line_Driver_Rx_Request_To_All_Rest (W))) with Static;
+   function Line_Driver_Rx_Rival_Claim_Rest (W : Window) return Time is
+     (Demand (W, Line_Driver_Rx_Rival_Claim_J, Line_Driver_Rx_Rival_Claim_T,
+         Line_Driver_Rx_Rival_Claim_C, Line_Driver_Tx_Cannot_Claim_Rest (W)))
+   with Static;
 
-   --  [line] bits in a second, and one bit in nanoseconds, rounded up. Of a
-   --  message, Stuffed: bits that stuffing can lengthen by a quarter; Bits:
-   --  the longest frame, with 10 bits that are not stuffed and 3 to the
-   --  next frame.
+   pragma Compile_Time_Error
+     (Board_Probe_Priority <= Line_Driver_Tx_Claim_Priority
+      or else Line_Driver_Tx_Claim_Priority
+        /= Line_Driver_Rx_Rival_Claim_Priority
+      or else Line_Driver_Rx_Rival_Claim_Priority
+        /= Line_Driver_Tx_Cannot_Claim_Priority
+      or else Line_Driver_Tx_Cannot_Claim_Priority
+        /= Line_Driver_Rx_Request_To_All_Priority
+      or else Line_Driver_Rx_Request_To_All_Priority
+        /= Line_Driver_Rx_Request_To_Us_Priority
+      or else Line_Driver_Rx_Request_To_Us_Priority
+        /= Line_Driver_Rx_Request_Without_Address_Priority
+      or else Line_Driver_Rx_Request_Without_Address_Priority
+        /= Line_Driver_Tx_Acknowledgement_Priority
+      or else Line_Driver_Tx_Acknowledgement_Priority
+        /= Line_Driver_Rx_Engine_Temperature_1_Priority
+      or else Line_Driver_Rx_Engine_Temperature_1_Priority
+        /= Line_Driver_Tx_Fan_Drive_State_Priority
+      or else Line_Driver_Tx_Fan_Drive_State_Priority <= Reception_Priority
+      or else Reception_Priority <= Protocol_Priority
+      or else Protocol_Priority <= Control_Priority,
+      "board must keep the order of its priorities");
+
+   --  [line] bits in a second, and one bit in nanoseconds, rounded up. A
+   --  message waits for the longest frame that goes behind it and has
+   --  begun, and for those that go before it. Of a message, Stuffed: bits
+   --  that stuffing can lengthen by a quarter; Bits: the longest frame,
+   --  with 10 bits that are not stuffed and 3 to the next frame.
    Line_Bit_Rate : constant := 250_000;
    Line_Bit : constant :=
      (1_000_000_000 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
@@ -363,15 +363,12 @@ is
    Line_Acknowledgement_Stuffed : constant :=
      54 + 8 * Line_Acknowledgement_Length;
    Line_Acknowledgement_Bits : constant :=
-     Line_Acknowledgement_Stuffed
-     + 13
-     + ((Line_Acknowledgement_Stuffed - 1) / 4);
+     Line_Acknowledgement_Stuffed + 13
+     + (Line_Acknowledgement_Stuffed - 1) / 4;
    Line_Acknowledgement_C : constant :=
-     ((Line_Acknowledgement_Bits * 10**9) + (Line_Bit_Rate - 1))
+     (Line_Acknowledgement_Bits * 10**9 + (Line_Bit_Rate - 1))
      / Line_Bit_Rate;
    Line_Acknowledgement_J : constant := Line_Driver_Tx_Acknowledgement_R;
-   Line_Acknowledgement_A : constant :=
-     Line_Acknowledgement_J + (Line_Acknowledgement_T - 1);
 
    --  [line.request_to_us] 29-bit identifier Id, Length bytes from somebody
    --  outside
@@ -382,15 +379,10 @@ is
    Line_Request_To_Us_Stuffed : constant :=
      54 + 8 * Line_Request_To_Us_Length;
    Line_Request_To_Us_Bits : constant :=
-     Line_Request_To_Us_Stuffed
-     + 13
-     + ((Line_Request_To_Us_Stuffed - 1) / 4);
+     Line_Request_To_Us_Stuffed + 13 + (Line_Request_To_Us_Stuffed - 1) / 4;
    Line_Request_To_Us_C : constant :=
-     ((Line_Request_To_Us_Bits * 10**9) + (Line_Bit_Rate - 1))
-     / Line_Bit_Rate;
+     (Line_Request_To_Us_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
    Line_Request_To_Us_J : constant := 0;
-   Line_Request_To_Us_A : constant :=
-     Line_Request_To_Us_J + (Line_Request_To_Us_T - 1);
 
    --  [line.request_to_all] 29-bit identifier Id, Length bytes from
    --  somebody outside
@@ -401,15 +393,12 @@ is
    Line_Request_To_All_Stuffed : constant :=
      54 + 8 * Line_Request_To_All_Length;
    Line_Request_To_All_Bits : constant :=
-     Line_Request_To_All_Stuffed
-     + 13
-     + ((Line_Request_To_All_Stuffed - 1) / 4);
+     Line_Request_To_All_Stuffed + 13
+     + (Line_Request_To_All_Stuffed - 1) / 4;
    Line_Request_To_All_C : constant :=
-     ((Line_Request_To_All_Bits * 10**9) + (Line_Bit_Rate - 1))
+     (Line_Request_To_All_Bits * 10**9 + (Line_Bit_Rate - 1))
      / Line_Bit_Rate;
    Line_Request_To_All_J : constant := 0;
-   Line_Request_To_All_A : constant :=
-     Line_Request_To_All_J + (Line_Request_To_All_T - 1);
 
    --  [line.request_without_address] 29-bit identifier Id, Length bytes
    --  from somebody outside
@@ -420,15 +409,12 @@ is
    Line_Request_Without_Address_Stuffed : constant :=
      54 + 8 * Line_Request_Without_Address_Length;
    Line_Request_Without_Address_Bits : constant :=
-     Line_Request_Without_Address_Stuffed
-     + 13
-     + ((Line_Request_Without_Address_Stuffed - 1) / 4);
+     Line_Request_Without_Address_Stuffed + 13
+     + (Line_Request_Without_Address_Stuffed - 1) / 4;
    Line_Request_Without_Address_C : constant :=
-     ((Line_Request_Without_Address_Bits * 10**9) + (Line_Bit_Rate - 1))
+     (Line_Request_Without_Address_Bits * 10**9 + (Line_Bit_Rate - 1))
      / Line_Bit_Rate;
    Line_Request_Without_Address_J : constant := 0;
-   Line_Request_Without_Address_A : constant :=
-     Line_Request_Without_Address_J + (Line_Request_Without_Address_T - 1);
 
    --  [line.rival_claim] 29-bit identifier Id, Length bytes from somebody
    --  outside
@@ -438,12 +424,10 @@ is
    Line_Rival_Claim_D : constant := 10_000_000;
    Line_Rival_Claim_Stuffed : constant := 54 + 8 * Line_Rival_Claim_Length;
    Line_Rival_Claim_Bits : constant :=
-     Line_Rival_Claim_Stuffed + 13 + ((Line_Rival_Claim_Stuffed - 1) / 4);
+     Line_Rival_Claim_Stuffed + 13 + (Line_Rival_Claim_Stuffed - 1) / 4;
    Line_Rival_Claim_C : constant :=
-     ((Line_Rival_Claim_Bits * 10**9) + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     (Line_Rival_Claim_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
    Line_Rival_Claim_J : constant := 0;
-   Line_Rival_Claim_A : constant :=
-     Line_Rival_Claim_J + (Line_Rival_Claim_T - 1);
 
    --  [line.cannot_claim] 29-bit identifier Id, Length bytes from
    --  fan.cannot_claim
@@ -454,13 +438,10 @@ is
    Line_Cannot_Claim_Stuffed : constant :=
      54 + 8 * Line_Cannot_Claim_Length;
    Line_Cannot_Claim_Bits : constant :=
-     Line_Cannot_Claim_Stuffed + 13 + ((Line_Cannot_Claim_Stuffed - 1) / 4);
+     Line_Cannot_Claim_Stuffed + 13 + (Line_Cannot_Claim_Stuffed - 1) / 4;
    Line_Cannot_Claim_C : constant :=
-     ((Line_Cannot_Claim_Bits * 10**9) + (Line_Bit_Rate - 1))
-     / Line_Bit_Rate;
+     (Line_Cannot_Claim_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
    Line_Cannot_Claim_J : constant := Line_Driver_Tx_Cannot_Claim_R;
-   Line_Cannot_Claim_A : constant :=
-     Line_Cannot_Claim_J + (Line_Cannot_Claim_T - 1);
 
    --  [line.fan_drive_state] 29-bit identifier Id, Length bytes from
    --  fan.state
@@ -471,15 +452,12 @@ is
    Line_Fan_Drive_State_Stuffed : constant :=
      54 + 8 * Line_Fan_Drive_State_Length;
    Line_Fan_Drive_State_Bits : constant :=
-     Line_Fan_Drive_State_Stuffed
-     + 13
-     + ((Line_Fan_Drive_State_Stuffed - 1) / 4);
+     Line_Fan_Drive_State_Stuffed + 13
+     + (Line_Fan_Drive_State_Stuffed - 1) / 4;
    Line_Fan_Drive_State_C : constant :=
-     ((Line_Fan_Drive_State_Bits * 10**9) + (Line_Bit_Rate - 1))
+     (Line_Fan_Drive_State_Bits * 10**9 + (Line_Bit_Rate - 1))
      / Line_Bit_Rate;
    Line_Fan_Drive_State_J : constant := Line_Driver_Tx_Fan_Drive_State_R;
-   Line_Fan_Drive_State_A : constant :=
-     Line_Fan_Drive_State_J + (Line_Fan_Drive_State_T - 1);
 
    --  [line.engine_temperature_1] 29-bit identifier Id, Length bytes from
    --  somebody outside
@@ -490,15 +468,12 @@ is
    Line_Engine_Temperature_1_Stuffed : constant :=
      54 + 8 * Line_Engine_Temperature_1_Length;
    Line_Engine_Temperature_1_Bits : constant :=
-     Line_Engine_Temperature_1_Stuffed
-     + 13
-     + ((Line_Engine_Temperature_1_Stuffed - 1) / 4);
+     Line_Engine_Temperature_1_Stuffed + 13
+     + (Line_Engine_Temperature_1_Stuffed - 1) / 4;
    Line_Engine_Temperature_1_C : constant :=
-     ((Line_Engine_Temperature_1_Bits * 10**9) + (Line_Bit_Rate - 1))
+     (Line_Engine_Temperature_1_Bits * 10**9 + (Line_Bit_Rate - 1))
      / Line_Bit_Rate;
    Line_Engine_Temperature_1_J : constant := 0;
-   Line_Engine_Temperature_1_A : constant :=
-     Line_Engine_Temperature_1_J + (Line_Engine_Temperature_1_T - 1);
 
    --  [line.claim] 29-bit identifier Id, Length bytes from fan.claim
    Line_Claim_Id : constant := 16#1CEEFF80#;
@@ -507,1613 +482,558 @@ is
    Line_Claim_D : constant := 10_000_000;
    Line_Claim_Stuffed : constant := 54 + 8 * Line_Claim_Length;
    Line_Claim_Bits : constant :=
-     Line_Claim_Stuffed + 13 + ((Line_Claim_Stuffed - 1) / 4);
+     Line_Claim_Stuffed + 13 + (Line_Claim_Stuffed - 1) / 4;
    Line_Claim_C : constant :=
-     ((Line_Claim_Bits * 10**9) + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     (Line_Claim_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
    Line_Claim_J : constant := Line_Driver_Tx_Claim_R;
-   Line_Claim_A : constant := Line_Claim_J + (Line_Claim_T - 1);
 
-   pragma Compile_Time_Error
-     (((2 * Line_Acknowledgement_Id) + 1 + 1)
-      > ((2 * Line_Request_To_Us_Id) + 1),
-      "line.acknowledgement "
-      & "must win the arbitration against line.request_to_us");
-   pragma Compile_Time_Error
-     (((2 * Line_Request_To_Us_Id) + 1 + 1)
-      > ((2 * Line_Request_To_All_Id) + 1),
-      "line.request_to_us "
-      & "must win the arbitration against line.request_to_all");
-   pragma Compile_Time_Error
-     (((2 * Line_Request_To_All_Id) + 1 + 1)
-      > ((2 * Line_Request_Without_Address_Id) + 1),
-      "line.request_to_all "
-      & "must win the arbitration against line.request_without_address");
-   pragma Compile_Time_Error
-     (((2 * Line_Request_Without_Address_Id) + 1 + 1)
-      > ((2 * Line_Rival_Claim_Id) + 1),
-      "line.request_without_address "
-      & "must win the arbitration against line.rival_claim");
-   pragma Compile_Time_Error
-     (((2 * Line_Rival_Claim_Id) + 1 + 1) > ((2 * Line_Cannot_Claim_Id) + 1),
-      "line.rival_claim "
-      & "must win the arbitration against line.cannot_claim");
-   pragma Compile_Time_Error
-     (((2 * Line_Cannot_Claim_Id) + 1 + 1)
-      > ((2 * Line_Fan_Drive_State_Id) + 1),
-      "line.cannot_claim "
-      & "must win the arbitration against line.fan_drive_state");
-   pragma Compile_Time_Error
-     (((2 * Line_Fan_Drive_State_Id) + 1 + 1)
-      > ((2 * Line_Engine_Temperature_1_Id) + 1),
-      "line.fan_drive_state "
-      & "must win the arbitration against line.engine_temperature_1");
-   pragma Compile_Time_Error
-     (((2 * Line_Engine_Temperature_1_Id) + 1 + 1)
-      > ((2 * Line_Claim_Id) + 1),
-      "line.engine_temperature_1 "
-      & "must win the arbitration against line.claim");
-
-   --  [reception] what can delay it: jobs of the same or higher priority
+   --  [reception] what delays it
    Reception_W : constant := Reception_R - Reception_J;
    Reception_Needs : constant :=
-     Reception_C
-     + Reception_B
-     + (((Reception_W + Line_Driver_Tx_Claim_A) / Line_Driver_Tx_Claim_T)
-        * Line_Driver_Tx_Claim_C)
-     + (((Reception_W + Line_Driver_Rx_Rival_Claim_A)
-         / Line_Driver_Rx_Rival_Claim_T)
-        * Line_Driver_Rx_Rival_Claim_C)
-     + (((Reception_W + Line_Driver_Tx_Cannot_Claim_A)
-         / Line_Driver_Tx_Cannot_Claim_T)
-        * Line_Driver_Tx_Cannot_Claim_C)
-     + (((Reception_W + Line_Driver_Rx_Request_To_All_A)
-         / Line_Driver_Rx_Request_To_All_T)
-        * Line_Driver_Rx_Request_To_All_C)
-     + (((Reception_W + Line_Driver_Rx_Request_To_Us_A)
-         / Line_Driver_Rx_Request_To_Us_T)
-        * Line_Driver_Rx_Request_To_Us_C)
-     + (((Reception_W + Line_Driver_Rx_Request_Without_Address_A)
-         / Line_Driver_Rx_Request_Without_Address_T)
-        * Line_Driver_Rx_Request_Without_Address_C)
-     + (((Reception_W + Line_Driver_Tx_Acknowledgement_A)
-         / Line_Driver_Tx_Acknowledgement_T)
-        * Line_Driver_Tx_Acknowledgement_C)
-     + (((Reception_W + Line_Driver_Rx_Engine_Temperature_1_A)
-         / Line_Driver_Rx_Engine_Temperature_1_T)
-        * Line_Driver_Rx_Engine_Temperature_1_C)
-     + (((Reception_W + Line_Driver_Tx_Fan_Drive_State_A)
-         / Line_Driver_Tx_Fan_Drive_State_T)
-        * Line_Driver_Tx_Fan_Drive_State_C)
-     + (((Reception_W + Board_Probe_A) / Board_Probe_T) * Board_Probe_C);
+     Reception_C + Reception_B
+     + Line_Driver_Tx_Fan_Drive_State_Up (Reception_W);
+   pragma Compile_Time_Error (Reception_W /= Reception_Needs,
+      "reception claims a wrong response time");
+   pragma Compile_Time_Error
+     (Reception_R > Time'Min (Reception_D, Reception_T),
+      "reception can miss its deadline or overlap");
+   pragma Assert
+     (Reception_Needs <= Reception_W and then Reception_R <= Reception_D);
 
-   pragma Compile_Time_Error
-     (0 > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_Needs > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_W > Reception_Needs,
-      "reception " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Reception_J + Reception_W) > Reception_T,
-      "reception " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Reception_R > Reception_D,
-      "reception " & "can miss its deadline");
-   pragma Assert (Reception_Needs <= Reception_W);
-   pragma Assert (Reception_R <= Reception_D);
-
-   --  [protocol] what can delay it: jobs of the same or higher priority
+   --  [protocol] what delays it
    Protocol_W : constant := Protocol_R - Protocol_J;
    Protocol_Needs : constant :=
-     Protocol_C
-     + Protocol_B
-     + (((Protocol_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Protocol_W + Line_Driver_Tx_Claim_A) / Line_Driver_Tx_Claim_T)
-        * Line_Driver_Tx_Claim_C)
-     + (((Protocol_W + Line_Driver_Rx_Rival_Claim_A)
-         / Line_Driver_Rx_Rival_Claim_T)
-        * Line_Driver_Rx_Rival_Claim_C)
-     + (((Protocol_W + Line_Driver_Tx_Cannot_Claim_A)
-         / Line_Driver_Tx_Cannot_Claim_T)
-        * Line_Driver_Tx_Cannot_Claim_C)
-     + (((Protocol_W + Line_Driver_Rx_Request_To_All_A)
-         / Line_Driver_Rx_Request_To_All_T)
-        * Line_Driver_Rx_Request_To_All_C)
-     + (((Protocol_W + Line_Driver_Rx_Request_To_Us_A)
-         / Line_Driver_Rx_Request_To_Us_T)
-        * Line_Driver_Rx_Request_To_Us_C)
-     + (((Protocol_W + Line_Driver_Rx_Request_Without_Address_A)
-         / Line_Driver_Rx_Request_Without_Address_T)
-        * Line_Driver_Rx_Request_Without_Address_C)
-     + (((Protocol_W + Line_Driver_Tx_Acknowledgement_A)
-         / Line_Driver_Tx_Acknowledgement_T)
-        * Line_Driver_Tx_Acknowledgement_C)
-     + (((Protocol_W + Line_Driver_Rx_Engine_Temperature_1_A)
-         / Line_Driver_Rx_Engine_Temperature_1_T)
-        * Line_Driver_Rx_Engine_Temperature_1_C)
-     + (((Protocol_W + Line_Driver_Tx_Fan_Drive_State_A)
-         / Line_Driver_Tx_Fan_Drive_State_T)
-        * Line_Driver_Tx_Fan_Drive_State_C)
-     + (((Protocol_W + Board_Probe_A) / Board_Probe_T) * Board_Probe_C);
+     Protocol_C + Protocol_B + Reception_Up (Protocol_W);
+   pragma Compile_Time_Error (Protocol_W /= Protocol_Needs,
+      "protocol claims a wrong response time");
+   pragma Compile_Time_Error
+     (Protocol_R > Time'Min (Protocol_D, Protocol_T),
+      "protocol can miss its deadline or overlap");
+   pragma Assert
+     (Protocol_Needs <= Protocol_W and then Protocol_R <= Protocol_D);
 
-   pragma Compile_Time_Error
-     (0 > Protocol_W,
-      "protocol " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Protocol_Needs > Protocol_W,
-      "protocol " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Protocol_W > Protocol_Needs,
-      "protocol " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Protocol_J + Protocol_W) > Protocol_T,
-      "protocol " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Protocol_R > Protocol_D,
-      "protocol " & "can miss its deadline");
-   pragma Assert (Protocol_Needs <= Protocol_W);
-   pragma Assert (Protocol_R <= Protocol_D);
-
-   --  [control] what can delay it: jobs of the same or higher priority
+   --  [control] what delays it
    Control_W : constant := Control_R - Control_J;
    Control_Needs : constant :=
-     Control_C
-     + Control_B
-     + (((Control_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Control_W + Protocol_A) / Protocol_T) * Protocol_C)
-     + (((Control_W + Line_Driver_Tx_Claim_A) / Line_Driver_Tx_Claim_T)
-        * Line_Driver_Tx_Claim_C)
-     + (((Control_W + Line_Driver_Rx_Rival_Claim_A)
-         / Line_Driver_Rx_Rival_Claim_T)
-        * Line_Driver_Rx_Rival_Claim_C)
-     + (((Control_W + Line_Driver_Tx_Cannot_Claim_A)
-         / Line_Driver_Tx_Cannot_Claim_T)
-        * Line_Driver_Tx_Cannot_Claim_C)
-     + (((Control_W + Line_Driver_Rx_Request_To_All_A)
-         / Line_Driver_Rx_Request_To_All_T)
-        * Line_Driver_Rx_Request_To_All_C)
-     + (((Control_W + Line_Driver_Rx_Request_To_Us_A)
-         / Line_Driver_Rx_Request_To_Us_T)
-        * Line_Driver_Rx_Request_To_Us_C)
-     + (((Control_W + Line_Driver_Rx_Request_Without_Address_A)
-         / Line_Driver_Rx_Request_Without_Address_T)
-        * Line_Driver_Rx_Request_Without_Address_C)
-     + (((Control_W + Line_Driver_Tx_Acknowledgement_A)
-         / Line_Driver_Tx_Acknowledgement_T)
-        * Line_Driver_Tx_Acknowledgement_C)
-     + (((Control_W + Line_Driver_Rx_Engine_Temperature_1_A)
-         / Line_Driver_Rx_Engine_Temperature_1_T)
-        * Line_Driver_Rx_Engine_Temperature_1_C)
-     + (((Control_W + Line_Driver_Tx_Fan_Drive_State_A)
-         / Line_Driver_Tx_Fan_Drive_State_T)
-        * Line_Driver_Tx_Fan_Drive_State_C)
-     + (((Control_W + Board_Probe_A) / Board_Probe_T) * Board_Probe_C);
+     Control_C + Control_B + Protocol_Up (Control_W);
+   pragma Compile_Time_Error (Control_W /= Control_Needs,
+      "control claims a wrong response time");
+   pragma Compile_Time_Error (Control_R > Time'Min (Control_D, Control_T),
+      "control can miss its deadline or overlap");
+   pragma Assert
+     (Control_Needs <= Control_W and then Control_R <= Control_D);
 
-   pragma Compile_Time_Error
-     (0 > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_Needs > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_W > Control_Needs,
-      "control " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Control_J + Control_W) > Control_T,
-      "control " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Control_R > Control_D,
-      "control " & "can miss its deadline");
-   pragma Assert (Control_Needs <= Control_W);
-   pragma Assert (Control_R <= Control_D);
-
-   --  [line.driver_tx.claim] what can delay it: jobs of the same or higher
-   --  priority
+   --  [line.driver_tx.claim] what delays it
    Line_Driver_Tx_Claim_W : constant :=
      Line_Driver_Tx_Claim_R - Line_Driver_Tx_Claim_J;
    Line_Driver_Tx_Claim_Needs : constant :=
-     Line_Driver_Tx_Claim_C
-     + Line_Driver_Tx_Claim_B
-     + (((Line_Driver_Tx_Claim_W + Line_Driver_Rx_Rival_Claim_A)
-         / Line_Driver_Rx_Rival_Claim_T)
-        * Line_Driver_Rx_Rival_Claim_C)
-     + (((Line_Driver_Tx_Claim_W + Line_Driver_Tx_Cannot_Claim_A)
-         / Line_Driver_Tx_Cannot_Claim_T)
-        * Line_Driver_Tx_Cannot_Claim_C)
-     + (((Line_Driver_Tx_Claim_W + Line_Driver_Rx_Request_To_All_A)
-         / Line_Driver_Rx_Request_To_All_T)
-        * Line_Driver_Rx_Request_To_All_C)
-     + (((Line_Driver_Tx_Claim_W + Line_Driver_Rx_Request_To_Us_A)
-         / Line_Driver_Rx_Request_To_Us_T)
-        * Line_Driver_Rx_Request_To_Us_C)
-     + (((Line_Driver_Tx_Claim_W + Line_Driver_Rx_Request_Without_Address_A)
-         / Line_Driver_Rx_Request_Without_Address_T)
-        * Line_Driver_Rx_Request_Without_Address_C)
-     + (((Line_Driver_Tx_Claim_W + Line_Driver_Tx_Acknowledgement_A)
-         / Line_Driver_Tx_Acknowledgement_T)
-        * Line_Driver_Tx_Acknowledgement_C)
-     + (((Line_Driver_Tx_Claim_W + Line_Driver_Rx_Engine_Temperature_1_A)
-         / Line_Driver_Rx_Engine_Temperature_1_T)
-        * Line_Driver_Rx_Engine_Temperature_1_C)
-     + (((Line_Driver_Tx_Claim_W + Line_Driver_Tx_Fan_Drive_State_A)
-         / Line_Driver_Tx_Fan_Drive_State_T)
-        * Line_Driver_Tx_Fan_Drive_State_C)
-     + (((Line_Driver_Tx_Claim_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
+     Line_Driver_Tx_Claim_C + Line_Driver_Tx_Claim_B
+     + Board_Probe_Up (Line_Driver_Tx_Claim_W)
+     + Line_Driver_Rx_Rival_Claim_Rest (Line_Driver_Tx_Claim_W);
+   pragma Compile_Time_Error
+     (Line_Driver_Tx_Claim_W /= Line_Driver_Tx_Claim_Needs,
+      "line.driver_tx.claim claims a wrong response time");
+   pragma Compile_Time_Error
+     (Line_Driver_Tx_Claim_R
+      > Time'Min (Line_Driver_Tx_Claim_D, Line_Driver_Tx_Claim_T),
+      "line.driver_tx.claim can miss its deadline or overlap");
+   pragma Assert
+     (Line_Driver_Tx_Claim_Needs <= Line_Driver_Tx_Claim_W
+      and then Line_Driver_Tx_Claim_R <= Line_Driver_Tx_Claim_D);
 
-   pragma Compile_Time_Error
-     (0 > Line_Driver_Tx_Claim_W,
-      "line.driver_tx.claim "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Claim_Needs > Line_Driver_Tx_Claim_W,
-      "line.driver_tx.claim "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Claim_W > Line_Driver_Tx_Claim_Needs,
-      "line.driver_tx.claim " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Tx_Claim_J + Line_Driver_Tx_Claim_W)
-      > Line_Driver_Tx_Claim_T,
-      "line.driver_tx.claim " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Claim_R > Line_Driver_Tx_Claim_D,
-      "line.driver_tx.claim " & "can miss its deadline");
-   pragma Assert (Line_Driver_Tx_Claim_Needs <= Line_Driver_Tx_Claim_W);
-   pragma Assert (Line_Driver_Tx_Claim_R <= Line_Driver_Tx_Claim_D);
-
-   --  [line.driver_rx.rival_claim] what can delay it: jobs of the same or
-   --  higher priority
+   --  [line.driver_rx.rival_claim] what delays it
    Line_Driver_Rx_Rival_Claim_W : constant :=
      Line_Driver_Rx_Rival_Claim_R - Line_Driver_Rx_Rival_Claim_J;
    Line_Driver_Rx_Rival_Claim_Needs : constant :=
-     Line_Driver_Rx_Rival_Claim_C
-     + Line_Driver_Rx_Rival_Claim_B
-     + (((Line_Driver_Rx_Rival_Claim_W + Line_Driver_Tx_Claim_A)
-         / Line_Driver_Tx_Claim_T)
-        * Line_Driver_Tx_Claim_C)
-     + (((Line_Driver_Rx_Rival_Claim_W + Line_Driver_Tx_Cannot_Claim_A)
-         / Line_Driver_Tx_Cannot_Claim_T)
-        * Line_Driver_Tx_Cannot_Claim_C)
-     + (((Line_Driver_Rx_Rival_Claim_W + Line_Driver_Rx_Request_To_All_A)
-         / Line_Driver_Rx_Request_To_All_T)
-        * Line_Driver_Rx_Request_To_All_C)
-     + (((Line_Driver_Rx_Rival_Claim_W + Line_Driver_Rx_Request_To_Us_A)
-         / Line_Driver_Rx_Request_To_Us_T)
-        * Line_Driver_Rx_Request_To_Us_C)
-     + (((Line_Driver_Rx_Rival_Claim_W
-          + Line_Driver_Rx_Request_Without_Address_A)
-         / Line_Driver_Rx_Request_Without_Address_T)
-        * Line_Driver_Rx_Request_Without_Address_C)
-     + (((Line_Driver_Rx_Rival_Claim_W + Line_Driver_Tx_Acknowledgement_A)
-         / Line_Driver_Tx_Acknowledgement_T)
-        * Line_Driver_Tx_Acknowledgement_C)
-     + (((Line_Driver_Rx_Rival_Claim_W
-          + Line_Driver_Rx_Engine_Temperature_1_A)
-         / Line_Driver_Rx_Engine_Temperature_1_T)
-        * Line_Driver_Rx_Engine_Temperature_1_C)
-     + (((Line_Driver_Rx_Rival_Claim_W + Line_Driver_Tx_Fan_Drive_State_A)
-         / Line_Driver_Tx_Fan_Drive_State_T)
-        * Line_Driver_Tx_Fan_Drive_State_C)
-     + (((Line_Driver_Rx_Rival_Claim_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
-
+     Line_Driver_Rx_Rival_Claim_C + Line_Driver_Rx_Rival_Claim_B
+     + Line_Driver_Tx_Claim_Up (Line_Driver_Rx_Rival_Claim_W)
+     + Line_Driver_Tx_Cannot_Claim_Rest (Line_Driver_Rx_Rival_Claim_W);
    pragma Compile_Time_Error
-     (0 > Line_Driver_Rx_Rival_Claim_W,
-      "line.driver_rx.rival_claim "
-      & "can take longer than its claimed response time");
+     (Line_Driver_Rx_Rival_Claim_W /= Line_Driver_Rx_Rival_Claim_Needs,
+      "line.driver_rx.rival_claim claims a wrong response time");
    pragma Compile_Time_Error
-     (Line_Driver_Rx_Rival_Claim_Needs > Line_Driver_Rx_Rival_Claim_W,
-      "line.driver_rx.rival_claim "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Rival_Claim_W > Line_Driver_Rx_Rival_Claim_Needs,
-      "line.driver_rx.rival_claim " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Rx_Rival_Claim_J + Line_Driver_Rx_Rival_Claim_W)
-      > Line_Driver_Rx_Rival_Claim_T,
-      "line.driver_rx.rival_claim "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Rival_Claim_R > Line_Driver_Rx_Rival_Claim_D,
-      "line.driver_rx.rival_claim " & "can miss its deadline");
+     (Line_Driver_Rx_Rival_Claim_R
+      > Time'Min (Line_Driver_Rx_Rival_Claim_D,
+           Line_Driver_Rx_Rival_Claim_T),
+      "line.driver_rx.rival_claim can miss its deadline or overlap");
    pragma Assert
-     (Line_Driver_Rx_Rival_Claim_Needs <= Line_Driver_Rx_Rival_Claim_W);
-   pragma Assert
-     (Line_Driver_Rx_Rival_Claim_R <= Line_Driver_Rx_Rival_Claim_D);
+     (Line_Driver_Rx_Rival_Claim_Needs <= Line_Driver_Rx_Rival_Claim_W
+      and then Line_Driver_Rx_Rival_Claim_R <= Line_Driver_Rx_Rival_Claim_D);
 
-   --  [line.driver_tx.cannot_claim] what can delay it: jobs of the same or
-   --  higher priority
+   --  [line.driver_tx.cannot_claim] what delays it
    Line_Driver_Tx_Cannot_Claim_W : constant :=
      Line_Driver_Tx_Cannot_Claim_R - Line_Driver_Tx_Cannot_Claim_J;
    Line_Driver_Tx_Cannot_Claim_Needs : constant :=
-     Line_Driver_Tx_Cannot_Claim_C
-     + Line_Driver_Tx_Cannot_Claim_B
-     + (((Line_Driver_Tx_Cannot_Claim_W + Line_Driver_Tx_Claim_A)
-         / Line_Driver_Tx_Claim_T)
-        * Line_Driver_Tx_Claim_C)
-     + (((Line_Driver_Tx_Cannot_Claim_W + Line_Driver_Rx_Rival_Claim_A)
-         / Line_Driver_Rx_Rival_Claim_T)
-        * Line_Driver_Rx_Rival_Claim_C)
-     + (((Line_Driver_Tx_Cannot_Claim_W + Line_Driver_Rx_Request_To_All_A)
-         / Line_Driver_Rx_Request_To_All_T)
-        * Line_Driver_Rx_Request_To_All_C)
-     + (((Line_Driver_Tx_Cannot_Claim_W + Line_Driver_Rx_Request_To_Us_A)
-         / Line_Driver_Rx_Request_To_Us_T)
-        * Line_Driver_Rx_Request_To_Us_C)
-     + (((Line_Driver_Tx_Cannot_Claim_W
-          + Line_Driver_Rx_Request_Without_Address_A)
-         / Line_Driver_Rx_Request_Without_Address_T)
-        * Line_Driver_Rx_Request_Without_Address_C)
-     + (((Line_Driver_Tx_Cannot_Claim_W + Line_Driver_Tx_Acknowledgement_A)
-         / Line_Driver_Tx_Acknowledgement_T)
-        * Line_Driver_Tx_Acknowledgement_C)
-     + (((Line_Driver_Tx_Cannot_Claim_W
-          + Line_Driver_Rx_Engine_Temperature_1_A)
-         / Line_Driver_Rx_Engine_Temperature_1_T)
-        * Line_Driver_Rx_Engine_Temperature_1_C)
-     + (((Line_Driver_Tx_Cannot_Claim_W + Line_Driver_Tx_Fan_Drive_State_A)
-         / Line_Driver_Tx_Fan_Drive_State_T)
-        * Line_Driver_Tx_Fan_Drive_State_C)
-     + (((Line_Driver_Tx_Cannot_Claim_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
-
+     Line_Driver_Tx_Cannot_Claim_C + Line_Driver_Tx_Cannot_Claim_B
+     + Line_Driver_Rx_Rival_Claim_Up (Line_Driver_Tx_Cannot_Claim_W)
+     + Line_Driver_Rx_Request_To_All_Rest (Line_Driver_Tx_Cannot_Claim_W);
    pragma Compile_Time_Error
-     (0 > Line_Driver_Tx_Cannot_Claim_W,
-      "line.driver_tx.cannot_claim "
-      & "can take longer than its claimed response time");
+     (Line_Driver_Tx_Cannot_Claim_W /= Line_Driver_Tx_Cannot_Claim_Needs,
+      "line.driver_tx.cannot_claim claims a wrong response time");
    pragma Compile_Time_Error
-     (Line_Driver_Tx_Cannot_Claim_Needs > Line_Driver_Tx_Cannot_Claim_W,
-      "line.driver_tx.cannot_claim "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Cannot_Claim_W > Line_Driver_Tx_Cannot_Claim_Needs,
-      "line.driver_tx.cannot_claim "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Tx_Cannot_Claim_J + Line_Driver_Tx_Cannot_Claim_W)
-      > Line_Driver_Tx_Cannot_Claim_T,
-      "line.driver_tx.cannot_claim "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Cannot_Claim_R > Line_Driver_Tx_Cannot_Claim_D,
-      "line.driver_tx.cannot_claim " & "can miss its deadline");
+     (Line_Driver_Tx_Cannot_Claim_R
+      > Time'Min (Line_Driver_Tx_Cannot_Claim_D,
+           Line_Driver_Tx_Cannot_Claim_T),
+      "line.driver_tx.cannot_claim can miss its deadline or overlap");
    pragma Assert
-     (Line_Driver_Tx_Cannot_Claim_Needs <= Line_Driver_Tx_Cannot_Claim_W);
-   pragma Assert
-     (Line_Driver_Tx_Cannot_Claim_R <= Line_Driver_Tx_Cannot_Claim_D);
+     (Line_Driver_Tx_Cannot_Claim_Needs <= Line_Driver_Tx_Cannot_Claim_W
+      and then Line_Driver_Tx_Cannot_Claim_R
+        <= Line_Driver_Tx_Cannot_Claim_D);
 
-   --  [line.driver_rx.request_to_all] what can delay it: jobs of the same
-   --  or higher priority
+   --  [line.driver_rx.request_to_all] what delays it
    Line_Driver_Rx_Request_To_All_W : constant :=
      Line_Driver_Rx_Request_To_All_R - Line_Driver_Rx_Request_To_All_J;
    Line_Driver_Rx_Request_To_All_Needs : constant :=
-     Line_Driver_Rx_Request_To_All_C
-     + Line_Driver_Rx_Request_To_All_B
-     + (((Line_Driver_Rx_Request_To_All_W + Line_Driver_Tx_Claim_A)
-         / Line_Driver_Tx_Claim_T)
-        * Line_Driver_Tx_Claim_C)
-     + (((Line_Driver_Rx_Request_To_All_W + Line_Driver_Rx_Rival_Claim_A)
-         / Line_Driver_Rx_Rival_Claim_T)
-        * Line_Driver_Rx_Rival_Claim_C)
-     + (((Line_Driver_Rx_Request_To_All_W + Line_Driver_Tx_Cannot_Claim_A)
-         / Line_Driver_Tx_Cannot_Claim_T)
-        * Line_Driver_Tx_Cannot_Claim_C)
-     + (((Line_Driver_Rx_Request_To_All_W + Line_Driver_Rx_Request_To_Us_A)
-         / Line_Driver_Rx_Request_To_Us_T)
-        * Line_Driver_Rx_Request_To_Us_C)
-     + (((Line_Driver_Rx_Request_To_All_W
-          + Line_Driver_Rx_Request_Without_Address_A)
-         / Line_Driver_Rx_Request_Without_Address_T)
-        * Line_Driver_Rx_Request_Without_Address_C)
-     + (((Line_Driver_Rx_Request_To_All_W + Line_Driver_Tx_Acknowledgement_A)
-         / Line_Driver_Tx_Acknowledgement_T)
-        * Line_Driver_Tx_Acknowledgement_C)
-     + (((Line_Driver_Rx_Request_To_All_W
-          + Line_Driver_Rx_Engine_Temperature_1_A)
-         / Line_Driver_Rx_Engine_Temperature_1_T)
-        * Line_Driver_Rx_Engine_Temperature_1_C)
-     + (((Line_Driver_Rx_Request_To_All_W + Line_Driver_Tx_Fan_Drive_State_A)
-         / Line_Driver_Tx_Fan_Drive_State_T)
-        * Line_Driver_Tx_Fan_Drive_State_C)
-     + (((Line_Driver_Rx_Request_To_All_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
-
+     Line_Driver_Rx_Request_To_All_C + Line_Driver_Rx_Request_To_All_B
+     + Line_Driver_Tx_Cannot_Claim_Up (Line_Driver_Rx_Request_To_All_W)
+     + Line_Driver_Rx_Request_To_Us_Rest (Line_Driver_Rx_Request_To_All_W);
    pragma Compile_Time_Error
-     (0 > Line_Driver_Rx_Request_To_All_W,
-      "line.driver_rx.request_to_all "
-      & "can take longer than its claimed response time");
+     (Line_Driver_Rx_Request_To_All_W /= Line_Driver_Rx_Request_To_All_Needs,
+      "line.driver_rx.request_to_all claims a wrong response time");
    pragma Compile_Time_Error
-     (Line_Driver_Rx_Request_To_All_Needs > Line_Driver_Rx_Request_To_All_W,
-      "line.driver_rx.request_to_all "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Request_To_All_W > Line_Driver_Rx_Request_To_All_Needs,
-      "line.driver_rx.request_to_all "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Rx_Request_To_All_J + Line_Driver_Rx_Request_To_All_W)
-      > Line_Driver_Rx_Request_To_All_T,
-      "line.driver_rx.request_to_all "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Request_To_All_R > Line_Driver_Rx_Request_To_All_D,
-      "line.driver_rx.request_to_all " & "can miss its deadline");
+     (Line_Driver_Rx_Request_To_All_R
+      > Time'Min (Line_Driver_Rx_Request_To_All_D,
+           Line_Driver_Rx_Request_To_All_T),
+      "line.driver_rx.request_to_all can miss its deadline or overlap");
    pragma Assert
-     (Line_Driver_Rx_Request_To_All_Needs <= Line_Driver_Rx_Request_To_All_W);
-   pragma Assert
-     (Line_Driver_Rx_Request_To_All_R <= Line_Driver_Rx_Request_To_All_D);
+     (Line_Driver_Rx_Request_To_All_Needs <= Line_Driver_Rx_Request_To_All_W
+      and then Line_Driver_Rx_Request_To_All_R
+        <= Line_Driver_Rx_Request_To_All_D);
 
-   --  [line.driver_rx.request_to_us] what can delay it: jobs of the same or
-   --  higher priority
+   --  [line.driver_rx.request_to_us] what delays it
    Line_Driver_Rx_Request_To_Us_W : constant :=
      Line_Driver_Rx_Request_To_Us_R - Line_Driver_Rx_Request_To_Us_J;
    Line_Driver_Rx_Request_To_Us_Needs : constant :=
-     Line_Driver_Rx_Request_To_Us_C
-     + Line_Driver_Rx_Request_To_Us_B
-     + (((Line_Driver_Rx_Request_To_Us_W + Line_Driver_Tx_Claim_A)
-         / Line_Driver_Tx_Claim_T)
-        * Line_Driver_Tx_Claim_C)
-     + (((Line_Driver_Rx_Request_To_Us_W + Line_Driver_Rx_Rival_Claim_A)
-         / Line_Driver_Rx_Rival_Claim_T)
-        * Line_Driver_Rx_Rival_Claim_C)
-     + (((Line_Driver_Rx_Request_To_Us_W + Line_Driver_Tx_Cannot_Claim_A)
-         / Line_Driver_Tx_Cannot_Claim_T)
-        * Line_Driver_Tx_Cannot_Claim_C)
-     + (((Line_Driver_Rx_Request_To_Us_W + Line_Driver_Rx_Request_To_All_A)
-         / Line_Driver_Rx_Request_To_All_T)
-        * Line_Driver_Rx_Request_To_All_C)
-     + (((Line_Driver_Rx_Request_To_Us_W
-          + Line_Driver_Rx_Request_Without_Address_A)
-         / Line_Driver_Rx_Request_Without_Address_T)
-        * Line_Driver_Rx_Request_Without_Address_C)
-     + (((Line_Driver_Rx_Request_To_Us_W + Line_Driver_Tx_Acknowledgement_A)
-         / Line_Driver_Tx_Acknowledgement_T)
-        * Line_Driver_Tx_Acknowledgement_C)
-     + (((Line_Driver_Rx_Request_To_Us_W
-          + Line_Driver_Rx_Engine_Temperature_1_A)
-         / Line_Driver_Rx_Engine_Temperature_1_T)
-        * Line_Driver_Rx_Engine_Temperature_1_C)
-     + (((Line_Driver_Rx_Request_To_Us_W + Line_Driver_Tx_Fan_Drive_State_A)
-         / Line_Driver_Tx_Fan_Drive_State_T)
-        * Line_Driver_Tx_Fan_Drive_State_C)
-     + (((Line_Driver_Rx_Request_To_Us_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
-
+     Line_Driver_Rx_Request_To_Us_C + Line_Driver_Rx_Request_To_Us_B
+     + Line_Driver_Rx_Request_To_All_Up (Line_Driver_Rx_Request_To_Us_W)
+     + Line_Driver_Rx_Request_Without_Address_Rest
+         (Line_Driver_Rx_Request_To_Us_W);
    pragma Compile_Time_Error
-     (0 > Line_Driver_Rx_Request_To_Us_W,
-      "line.driver_rx.request_to_us "
-      & "can take longer than its claimed response time");
+     (Line_Driver_Rx_Request_To_Us_W /= Line_Driver_Rx_Request_To_Us_Needs,
+      "line.driver_rx.request_to_us claims a wrong response time");
    pragma Compile_Time_Error
-     (Line_Driver_Rx_Request_To_Us_Needs > Line_Driver_Rx_Request_To_Us_W,
-      "line.driver_rx.request_to_us "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Request_To_Us_W > Line_Driver_Rx_Request_To_Us_Needs,
-      "line.driver_rx.request_to_us "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Rx_Request_To_Us_J + Line_Driver_Rx_Request_To_Us_W)
-      > Line_Driver_Rx_Request_To_Us_T,
-      "line.driver_rx.request_to_us "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Request_To_Us_R > Line_Driver_Rx_Request_To_Us_D,
-      "line.driver_rx.request_to_us " & "can miss its deadline");
+     (Line_Driver_Rx_Request_To_Us_R
+      > Time'Min (Line_Driver_Rx_Request_To_Us_D,
+           Line_Driver_Rx_Request_To_Us_T),
+      "line.driver_rx.request_to_us can miss its deadline or overlap");
    pragma Assert
-     (Line_Driver_Rx_Request_To_Us_Needs <= Line_Driver_Rx_Request_To_Us_W);
-   pragma Assert
-     (Line_Driver_Rx_Request_To_Us_R <= Line_Driver_Rx_Request_To_Us_D);
+     (Line_Driver_Rx_Request_To_Us_Needs <= Line_Driver_Rx_Request_To_Us_W
+      and then Line_Driver_Rx_Request_To_Us_R
+        <= Line_Driver_Rx_Request_To_Us_D);
 
-   --  [line.driver_rx.request_without_address] what can delay it: jobs of
-   --  the same or higher priority
+   --  [line.driver_rx.request_without_address] what delays it
    Line_Driver_Rx_Request_Without_Address_W : constant :=
      Line_Driver_Rx_Request_Without_Address_R
      - Line_Driver_Rx_Request_Without_Address_J;
    Line_Driver_Rx_Request_Without_Address_Needs : constant :=
      Line_Driver_Rx_Request_Without_Address_C
      + Line_Driver_Rx_Request_Without_Address_B
-     + (((Line_Driver_Rx_Request_Without_Address_W + Line_Driver_Tx_Claim_A)
-         / Line_Driver_Tx_Claim_T)
-        * Line_Driver_Tx_Claim_C)
-     + (((Line_Driver_Rx_Request_Without_Address_W
-          + Line_Driver_Rx_Rival_Claim_A)
-         / Line_Driver_Rx_Rival_Claim_T)
-        * Line_Driver_Rx_Rival_Claim_C)
-     + (((Line_Driver_Rx_Request_Without_Address_W
-          + Line_Driver_Tx_Cannot_Claim_A)
-         / Line_Driver_Tx_Cannot_Claim_T)
-        * Line_Driver_Tx_Cannot_Claim_C)
-     + (((Line_Driver_Rx_Request_Without_Address_W
-          + Line_Driver_Rx_Request_To_All_A)
-         / Line_Driver_Rx_Request_To_All_T)
-        * Line_Driver_Rx_Request_To_All_C)
-     + (((Line_Driver_Rx_Request_Without_Address_W
-          + Line_Driver_Rx_Request_To_Us_A)
-         / Line_Driver_Rx_Request_To_Us_T)
-        * Line_Driver_Rx_Request_To_Us_C)
-     + (((Line_Driver_Rx_Request_Without_Address_W
-          + Line_Driver_Tx_Acknowledgement_A)
-         / Line_Driver_Tx_Acknowledgement_T)
-        * Line_Driver_Tx_Acknowledgement_C)
-     + (((Line_Driver_Rx_Request_Without_Address_W
-          + Line_Driver_Rx_Engine_Temperature_1_A)
-         / Line_Driver_Rx_Engine_Temperature_1_T)
-        * Line_Driver_Rx_Engine_Temperature_1_C)
-     + (((Line_Driver_Rx_Request_Without_Address_W
-          + Line_Driver_Tx_Fan_Drive_State_A)
-         / Line_Driver_Tx_Fan_Drive_State_T)
-        * Line_Driver_Tx_Fan_Drive_State_C)
-     + (((Line_Driver_Rx_Request_Without_Address_W + Board_Probe_A)
-         / Board_Probe_T)
-        * Board_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Line_Driver_Rx_Request_Without_Address_W,
-      "line.driver_rx.request_without_address "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Request_Without_Address_Needs
-      > Line_Driver_Rx_Request_Without_Address_W,
-      "line.driver_rx.request_without_address "
-      & "can take longer than its claimed response time");
+     + Line_Driver_Rx_Request_To_Us_Up
+         (Line_Driver_Rx_Request_Without_Address_W)
+     + Line_Driver_Tx_Acknowledgement_Rest
+         (Line_Driver_Rx_Request_Without_Address_W);
    pragma Compile_Time_Error
      (Line_Driver_Rx_Request_Without_Address_W
-      > Line_Driver_Rx_Request_Without_Address_Needs,
-      "line.driver_rx.request_without_address "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Rx_Request_Without_Address_J
-       + Line_Driver_Rx_Request_Without_Address_W)
-      > Line_Driver_Rx_Request_Without_Address_T,
-      "line.driver_rx.request_without_address "
-      & "can be released again before it completes");
+      /= Line_Driver_Rx_Request_Without_Address_Needs,
+      "line.driver_rx.request_without_address claims a wrong response time");
    pragma Compile_Time_Error
      (Line_Driver_Rx_Request_Without_Address_R
-      > Line_Driver_Rx_Request_Without_Address_D,
-      "line.driver_rx.request_without_address " & "can miss its deadline");
+      > Time'Min (Line_Driver_Rx_Request_Without_Address_D,
+           Line_Driver_Rx_Request_Without_Address_T),
+      "line.driver_rx.request_without_address "
+      & "can miss its deadline or overlap");
    pragma Assert
      (Line_Driver_Rx_Request_Without_Address_Needs
-      <= Line_Driver_Rx_Request_Without_Address_W);
-   pragma Assert
-     (Line_Driver_Rx_Request_Without_Address_R
-      <= Line_Driver_Rx_Request_Without_Address_D);
+      <= Line_Driver_Rx_Request_Without_Address_W
+      and then Line_Driver_Rx_Request_Without_Address_R
+        <= Line_Driver_Rx_Request_Without_Address_D);
 
-   --  [line.driver_tx.acknowledgement] what can delay it: jobs of the same
-   --  or higher priority
+   --  [line.driver_tx.acknowledgement] what delays it
    Line_Driver_Tx_Acknowledgement_W : constant :=
      Line_Driver_Tx_Acknowledgement_R - Line_Driver_Tx_Acknowledgement_J;
    Line_Driver_Tx_Acknowledgement_Needs : constant :=
-     Line_Driver_Tx_Acknowledgement_C
-     + Line_Driver_Tx_Acknowledgement_B
-     + (((Line_Driver_Tx_Acknowledgement_W + Line_Driver_Tx_Claim_A)
-         / Line_Driver_Tx_Claim_T)
-        * Line_Driver_Tx_Claim_C)
-     + (((Line_Driver_Tx_Acknowledgement_W + Line_Driver_Rx_Rival_Claim_A)
-         / Line_Driver_Rx_Rival_Claim_T)
-        * Line_Driver_Rx_Rival_Claim_C)
-     + (((Line_Driver_Tx_Acknowledgement_W + Line_Driver_Tx_Cannot_Claim_A)
-         / Line_Driver_Tx_Cannot_Claim_T)
-        * Line_Driver_Tx_Cannot_Claim_C)
-     + (((Line_Driver_Tx_Acknowledgement_W + Line_Driver_Rx_Request_To_All_A)
-         / Line_Driver_Rx_Request_To_All_T)
-        * Line_Driver_Rx_Request_To_All_C)
-     + (((Line_Driver_Tx_Acknowledgement_W + Line_Driver_Rx_Request_To_Us_A)
-         / Line_Driver_Rx_Request_To_Us_T)
-        * Line_Driver_Rx_Request_To_Us_C)
-     + (((Line_Driver_Tx_Acknowledgement_W
-          + Line_Driver_Rx_Request_Without_Address_A)
-         / Line_Driver_Rx_Request_Without_Address_T)
-        * Line_Driver_Rx_Request_Without_Address_C)
-     + (((Line_Driver_Tx_Acknowledgement_W
-          + Line_Driver_Rx_Engine_Temperature_1_A)
-         / Line_Driver_Rx_Engine_Temperature_1_T)
-        * Line_Driver_Rx_Engine_Temperature_1_C)
-     + (((Line_Driver_Tx_Acknowledgement_W
-          + Line_Driver_Tx_Fan_Drive_State_A)
-         / Line_Driver_Tx_Fan_Drive_State_T)
-        * Line_Driver_Tx_Fan_Drive_State_C)
-     + (((Line_Driver_Tx_Acknowledgement_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Line_Driver_Tx_Acknowledgement_W,
-      "line.driver_tx.acknowledgement "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Acknowledgement_Needs
-      > Line_Driver_Tx_Acknowledgement_W,
-      "line.driver_tx.acknowledgement "
-      & "can take longer than its claimed response time");
+     Line_Driver_Tx_Acknowledgement_C + Line_Driver_Tx_Acknowledgement_B
+     + Line_Driver_Rx_Request_Without_Address_Up
+         (Line_Driver_Tx_Acknowledgement_W)
+     + Line_Driver_Rx_Engine_Temperature_1_Rest
+         (Line_Driver_Tx_Acknowledgement_W);
    pragma Compile_Time_Error
      (Line_Driver_Tx_Acknowledgement_W
-      > Line_Driver_Tx_Acknowledgement_Needs,
-      "line.driver_tx.acknowledgement "
-      & "claims more than its terms add up to");
+      /= Line_Driver_Tx_Acknowledgement_Needs,
+      "line.driver_tx.acknowledgement claims a wrong response time");
    pragma Compile_Time_Error
-     ((Line_Driver_Tx_Acknowledgement_J + Line_Driver_Tx_Acknowledgement_W)
-      > Line_Driver_Tx_Acknowledgement_T,
-      "line.driver_tx.acknowledgement "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Acknowledgement_R > Line_Driver_Tx_Acknowledgement_D,
-      "line.driver_tx.acknowledgement " & "can miss its deadline");
+     (Line_Driver_Tx_Acknowledgement_R
+      > Time'Min (Line_Driver_Tx_Acknowledgement_D,
+           Line_Driver_Tx_Acknowledgement_T),
+      "line.driver_tx.acknowledgement can miss its deadline or overlap");
    pragma Assert
      (Line_Driver_Tx_Acknowledgement_Needs
-      <= Line_Driver_Tx_Acknowledgement_W);
-   pragma Assert
-     (Line_Driver_Tx_Acknowledgement_R <= Line_Driver_Tx_Acknowledgement_D);
+      <= Line_Driver_Tx_Acknowledgement_W
+      and then Line_Driver_Tx_Acknowledgement_R
+        <= Line_Driver_Tx_Acknowledgement_D);
 
-   --  [line.driver_rx.engine_temperature_1] what can delay it: jobs of the
-   --  same or higher priority
+   --  [line.driver_rx.engine_temperature_1] what delays it
    Line_Driver_Rx_Engine_Temperature_1_W : constant :=
      Line_Driver_Rx_Engine_Temperature_1_R
      - Line_Driver_Rx_Engine_Temperature_1_J;
    Line_Driver_Rx_Engine_Temperature_1_Needs : constant :=
      Line_Driver_Rx_Engine_Temperature_1_C
      + Line_Driver_Rx_Engine_Temperature_1_B
-     + (((Line_Driver_Rx_Engine_Temperature_1_W + Line_Driver_Tx_Claim_A)
-         / Line_Driver_Tx_Claim_T)
-        * Line_Driver_Tx_Claim_C)
-     + (((Line_Driver_Rx_Engine_Temperature_1_W
-          + Line_Driver_Rx_Rival_Claim_A)
-         / Line_Driver_Rx_Rival_Claim_T)
-        * Line_Driver_Rx_Rival_Claim_C)
-     + (((Line_Driver_Rx_Engine_Temperature_1_W
-          + Line_Driver_Tx_Cannot_Claim_A)
-         / Line_Driver_Tx_Cannot_Claim_T)
-        * Line_Driver_Tx_Cannot_Claim_C)
-     + (((Line_Driver_Rx_Engine_Temperature_1_W
-          + Line_Driver_Rx_Request_To_All_A)
-         / Line_Driver_Rx_Request_To_All_T)
-        * Line_Driver_Rx_Request_To_All_C)
-     + (((Line_Driver_Rx_Engine_Temperature_1_W
-          + Line_Driver_Rx_Request_To_Us_A)
-         / Line_Driver_Rx_Request_To_Us_T)
-        * Line_Driver_Rx_Request_To_Us_C)
-     + (((Line_Driver_Rx_Engine_Temperature_1_W
-          + Line_Driver_Rx_Request_Without_Address_A)
-         / Line_Driver_Rx_Request_Without_Address_T)
-        * Line_Driver_Rx_Request_Without_Address_C)
-     + (((Line_Driver_Rx_Engine_Temperature_1_W
-          + Line_Driver_Tx_Acknowledgement_A)
-         / Line_Driver_Tx_Acknowledgement_T)
-        * Line_Driver_Tx_Acknowledgement_C)
-     + (((Line_Driver_Rx_Engine_Temperature_1_W
-          + Line_Driver_Tx_Fan_Drive_State_A)
-         / Line_Driver_Tx_Fan_Drive_State_T)
-        * Line_Driver_Tx_Fan_Drive_State_C)
-     + (((Line_Driver_Rx_Engine_Temperature_1_W + Board_Probe_A)
-         / Board_Probe_T)
-        * Board_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Line_Driver_Rx_Engine_Temperature_1_W,
-      "line.driver_rx.engine_temperature_1 "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Rx_Engine_Temperature_1_Needs
-      > Line_Driver_Rx_Engine_Temperature_1_W,
-      "line.driver_rx.engine_temperature_1 "
-      & "can take longer than its claimed response time");
+     + Line_Driver_Tx_Acknowledgement_Up
+         (Line_Driver_Rx_Engine_Temperature_1_W)
+     + Line_Driver_Tx_Fan_Drive_State_Rest
+         (Line_Driver_Rx_Engine_Temperature_1_W);
    pragma Compile_Time_Error
      (Line_Driver_Rx_Engine_Temperature_1_W
-      > Line_Driver_Rx_Engine_Temperature_1_Needs,
-      "line.driver_rx.engine_temperature_1 "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Driver_Rx_Engine_Temperature_1_J
-       + Line_Driver_Rx_Engine_Temperature_1_W)
-      > Line_Driver_Rx_Engine_Temperature_1_T,
-      "line.driver_rx.engine_temperature_1 "
-      & "can be released again before it completes");
+      /= Line_Driver_Rx_Engine_Temperature_1_Needs,
+      "line.driver_rx.engine_temperature_1 claims a wrong response time");
    pragma Compile_Time_Error
      (Line_Driver_Rx_Engine_Temperature_1_R
-      > Line_Driver_Rx_Engine_Temperature_1_D,
-      "line.driver_rx.engine_temperature_1 " & "can miss its deadline");
+      > Time'Min (Line_Driver_Rx_Engine_Temperature_1_D,
+           Line_Driver_Rx_Engine_Temperature_1_T),
+      "line.driver_rx.engine_temperature_1 can miss its deadline or overlap");
    pragma Assert
      (Line_Driver_Rx_Engine_Temperature_1_Needs
-      <= Line_Driver_Rx_Engine_Temperature_1_W);
-   pragma Assert
-     (Line_Driver_Rx_Engine_Temperature_1_R
-      <= Line_Driver_Rx_Engine_Temperature_1_D);
+      <= Line_Driver_Rx_Engine_Temperature_1_W
+      and then Line_Driver_Rx_Engine_Temperature_1_R
+        <= Line_Driver_Rx_Engine_Temperature_1_D);
 
-   --  [line.driver_tx.fan_drive_state] what can delay it: jobs of the same
-   --  or higher priority
+   --  [line.driver_tx.fan_drive_state] what delays it
    Line_Driver_Tx_Fan_Drive_State_W : constant :=
      Line_Driver_Tx_Fan_Drive_State_R - Line_Driver_Tx_Fan_Drive_State_J;
    Line_Driver_Tx_Fan_Drive_State_Needs : constant :=
-     Line_Driver_Tx_Fan_Drive_State_C
-     + Line_Driver_Tx_Fan_Drive_State_B
-     + (((Line_Driver_Tx_Fan_Drive_State_W + Line_Driver_Tx_Claim_A)
-         / Line_Driver_Tx_Claim_T)
-        * Line_Driver_Tx_Claim_C)
-     + (((Line_Driver_Tx_Fan_Drive_State_W + Line_Driver_Rx_Rival_Claim_A)
-         / Line_Driver_Rx_Rival_Claim_T)
-        * Line_Driver_Rx_Rival_Claim_C)
-     + (((Line_Driver_Tx_Fan_Drive_State_W + Line_Driver_Tx_Cannot_Claim_A)
-         / Line_Driver_Tx_Cannot_Claim_T)
-        * Line_Driver_Tx_Cannot_Claim_C)
-     + (((Line_Driver_Tx_Fan_Drive_State_W + Line_Driver_Rx_Request_To_All_A)
-         / Line_Driver_Rx_Request_To_All_T)
-        * Line_Driver_Rx_Request_To_All_C)
-     + (((Line_Driver_Tx_Fan_Drive_State_W + Line_Driver_Rx_Request_To_Us_A)
-         / Line_Driver_Rx_Request_To_Us_T)
-        * Line_Driver_Rx_Request_To_Us_C)
-     + (((Line_Driver_Tx_Fan_Drive_State_W
-          + Line_Driver_Rx_Request_Without_Address_A)
-         / Line_Driver_Rx_Request_Without_Address_T)
-        * Line_Driver_Rx_Request_Without_Address_C)
-     + (((Line_Driver_Tx_Fan_Drive_State_W
-          + Line_Driver_Tx_Acknowledgement_A)
-         / Line_Driver_Tx_Acknowledgement_T)
-        * Line_Driver_Tx_Acknowledgement_C)
-     + (((Line_Driver_Tx_Fan_Drive_State_W
-          + Line_Driver_Rx_Engine_Temperature_1_A)
-         / Line_Driver_Rx_Engine_Temperature_1_T)
-        * Line_Driver_Rx_Engine_Temperature_1_C)
-     + (((Line_Driver_Tx_Fan_Drive_State_W + Board_Probe_A) / Board_Probe_T)
-        * Board_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Line_Driver_Tx_Fan_Drive_State_W,
-      "line.driver_tx.fan_drive_state "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Fan_Drive_State_Needs
-      > Line_Driver_Tx_Fan_Drive_State_W,
-      "line.driver_tx.fan_drive_state "
-      & "can take longer than its claimed response time");
+     Line_Driver_Tx_Fan_Drive_State_C + Line_Driver_Tx_Fan_Drive_State_B
+     + Line_Driver_Rx_Engine_Temperature_1_Up
+         (Line_Driver_Tx_Fan_Drive_State_W);
    pragma Compile_Time_Error
      (Line_Driver_Tx_Fan_Drive_State_W
-      > Line_Driver_Tx_Fan_Drive_State_Needs,
-      "line.driver_tx.fan_drive_state "
-      & "claims more than its terms add up to");
+      /= Line_Driver_Tx_Fan_Drive_State_Needs,
+      "line.driver_tx.fan_drive_state claims a wrong response time");
    pragma Compile_Time_Error
-     ((Line_Driver_Tx_Fan_Drive_State_J + Line_Driver_Tx_Fan_Drive_State_W)
-      > Line_Driver_Tx_Fan_Drive_State_T,
-      "line.driver_tx.fan_drive_state "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Line_Driver_Tx_Fan_Drive_State_R > Line_Driver_Tx_Fan_Drive_State_D,
-      "line.driver_tx.fan_drive_state " & "can miss its deadline");
+     (Line_Driver_Tx_Fan_Drive_State_R
+      > Time'Min (Line_Driver_Tx_Fan_Drive_State_D,
+           Line_Driver_Tx_Fan_Drive_State_T),
+      "line.driver_tx.fan_drive_state can miss its deadline or overlap");
    pragma Assert
      (Line_Driver_Tx_Fan_Drive_State_Needs
-      <= Line_Driver_Tx_Fan_Drive_State_W);
-   pragma Assert
-     (Line_Driver_Tx_Fan_Drive_State_R <= Line_Driver_Tx_Fan_Drive_State_D);
+      <= Line_Driver_Tx_Fan_Drive_State_W
+      and then Line_Driver_Tx_Fan_Drive_State_R
+        <= Line_Driver_Tx_Fan_Drive_State_D);
 
-   --  [board.probe] what can delay it: jobs of the same or higher priority
+   --  [board.probe] what delays it
    Board_Probe_W : constant := Board_Probe_R - Board_Probe_J;
    Board_Probe_Needs : constant := Board_Probe_C + Board_Probe_B;
+   pragma Compile_Time_Error (Board_Probe_W /= Board_Probe_Needs,
+      "board.probe claims a wrong response time");
+   pragma Compile_Time_Error
+     (Board_Probe_R > Time'Min (Board_Probe_D, Board_Probe_T),
+      "board.probe can miss its deadline or overlap");
+   pragma Assert
+     (Board_Probe_Needs <= Board_Probe_W
+      and then Board_Probe_R <= Board_Probe_D);
+
+   function Line_Acknowledgement_Up (W : Window) return Time is
+     (Demand (W, Line_Acknowledgement_R - Line_Acknowledgement_C,
+         Line_Acknowledgement_T, Line_Acknowledgement_C)) with Static;
+   function Line_Request_To_Us_Up (W : Window) return Time is
+     (Demand (W, Line_Request_To_Us_J, Line_Request_To_Us_T,
+         Line_Request_To_Us_C, Line_Acknowledgement_Up (W))) with Static;
+   function Line_Request_To_All_Up (W : Window) return Time is
+     (Demand (W, Line_Request_To_All_J, Line_Request_To_All_T,
+         Line_Request_To_All_C, Line_Request_To_Us_Up (W))) with Static;
+   function Line_Request_Without_Address_Up (W : Window) return Time is
+     (Demand (W, Line_Request_Without_Address_J,
+         Line_Request_Without_Address_T, Line_Request_Without_Address_C,
+         Line_Request_To_All_Up (W))) with Static;
+   function Line_Rival_Claim_Up (W : Window) return Time is
+     (Demand (W, Line_Rival_Claim_J, Line_Rival_Claim_T, Line_Rival_Claim_C,
+         Line_Request_Without_Address_Up (W))) with Static;
+   function Line_Cannot_Claim_Up (W : Window) return Time is
+     (Demand (W, Line_Cannot_Claim_R - Line_Cannot_Claim_C,
+         Line_Cannot_Claim_T, Line_Cannot_Claim_C, Line_Rival_Claim_Up (W)))
+   with Static;
+   function Line_Fan_Drive_State_Up (W : Window) return Time is
+     (Demand (W, Line_Fan_Drive_State_R - Line_Fan_Drive_State_C,
+         Line_Fan_Drive_State_T, Line_Fan_Drive_State_C,
+         Line_Cannot_Claim_Up (W))) with Static;
+   function Line_Engine_Temperature_1_Up (W : Window) return Time is
+     (Demand (W, Line_Engine_Temperature_1_J, Line_Engine_Temperature_1_T,
+         Line_Engine_Temperature_1_C, Line_Fan_Drive_State_Up (W)))
+   with Static;
+   function Line_Claim_Up (W : Window) return Time is
+     (Demand (W, Line_Claim_R - Line_Claim_C, Line_Claim_T, Line_Claim_C,
+         Line_Engine_Temperature_1_Up (W))) with Static;
+   function Line_Request_To_Us_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Request_To_Us_J, Line_Request_To_Us_T,
+         Line_Request_To_Us_C)) with Static;
+   function Line_Request_To_All_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Request_To_All_J, Line_Request_To_All_T,
+         Line_Request_To_All_C, Line_Request_To_Us_Up_Board (W)))
+   with Static;
+   function Line_Request_Without_Address_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Request_Without_Address_J,
+         Line_Request_Without_Address_T, Line_Request_Without_Address_C,
+         Line_Request_To_All_Up_Board (W))) with Static;
+   function Line_Rival_Claim_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Rival_Claim_J, Line_Rival_Claim_T, Line_Rival_Claim_C,
+         Line_Request_Without_Address_Up_Board (W))) with Static;
+   function Line_Engine_Temperature_1_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Engine_Temperature_1_J, Line_Engine_Temperature_1_T,
+         Line_Engine_Temperature_1_C, Line_Rival_Claim_Up_Board (W)))
+   with Static;
+   function Line_Acknowledgement_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Acknowledgement_J, Line_Acknowledgement_T,
+         Line_Acknowledgement_C, Line_Engine_Temperature_1_Up_Board (W)))
+   with Static;
+   function Line_Cannot_Claim_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Cannot_Claim_J, Line_Cannot_Claim_T,
+         Line_Cannot_Claim_C, Line_Acknowledgement_Up_Board (W)))
+   with Static;
+   function Line_Fan_Drive_State_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Fan_Drive_State_J, Line_Fan_Drive_State_T,
+         Line_Fan_Drive_State_C, Line_Cannot_Claim_Up_Board (W)))
+   with Static;
+   function Line_Claim_Up_Board (W : Window) return Time is
+     (Demand (W, Line_Claim_J, Line_Claim_T, Line_Claim_C,
+         Line_Fan_Drive_State_Up_Board (W))) with Static;
+   function Line_Claim_Rest_Board (W : Window) return Time is
+     (Demand (W, Line_Claim_J, Line_Claim_T, Line_Claim_C)) with Static;
+   function Line_Fan_Drive_State_Rest_Board (W : Window) return Time is
+     (Demand (W, Line_Fan_Drive_State_J, Line_Fan_Drive_State_T,
+         Line_Fan_Drive_State_C, Line_Claim_Rest_Board (W))) with Static;
+   function Line_Cannot_Claim_Rest_Board (W : Window) return Time is
+     (Demand (W, Line_Cannot_Claim_J, Line_Cannot_Claim_T,
+         Line_Cannot_Claim_C, Line_Fan_Drive_State_Rest_Board (W)))
+   with Static;
 
    pragma Compile_Time_Error
-     (0 > Board_Probe_W,
-      "board.probe " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Board_Probe_Needs > Board_Probe_W,
-      "board.probe " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Board_Probe_W > Board_Probe_Needs,
-      "board.probe " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Board_Probe_J + Board_Probe_W) > Board_Probe_T,
-      "board.probe " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Board_Probe_R > Board_Probe_D,
-      "board.probe " & "can miss its deadline");
-   pragma Assert (Board_Probe_Needs <= Board_Probe_W);
-   pragma Assert (Board_Probe_R <= Board_Probe_D);
+     (Line_Acknowledgement_Id >= Line_Request_To_Us_Id
+      or else Line_Request_To_Us_Id >= Line_Request_To_All_Id
+      or else Line_Request_To_All_Id >= Line_Request_Without_Address_Id
+      or else Line_Request_Without_Address_Id >= Line_Rival_Claim_Id
+      or else Line_Rival_Claim_Id >= Line_Cannot_Claim_Id
+      or else Line_Cannot_Claim_Id >= Line_Fan_Drive_State_Id
+      or else Line_Fan_Drive_State_Id >= Line_Engine_Temperature_1_Id
+      or else Line_Engine_Temperature_1_Id >= Line_Claim_Id,
+      "line must keep the order of its identifiers");
 
-   --  [line.acknowledgement] what can delay it: frames that go before it
+   --  [line.acknowledgement] what delays it
    Line_Acknowledgement_Busy : constant := 5_160_000;
    Line_Acknowledgement_Busy_Needs : constant :=
-     0
-     + (((Line_Acknowledgement_Busy + Line_Acknowledgement_A)
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Acknowledgement_Busy + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Acknowledgement_Busy + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Acknowledgement_Busy + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C)
-     + (((Line_Acknowledgement_Busy + Line_Rival_Claim_A)
-         / Line_Rival_Claim_T)
-        * Line_Rival_Claim_C)
-     + (((Line_Acknowledgement_Busy + Line_Cannot_Claim_A)
-         / Line_Cannot_Claim_T)
-        * Line_Cannot_Claim_C)
-     + (((Line_Acknowledgement_Busy + Line_Fan_Drive_State_A)
-         / Line_Fan_Drive_State_T)
-        * Line_Fan_Drive_State_C)
-     + (((Line_Acknowledgement_Busy + Line_Engine_Temperature_1_A)
-         / Line_Engine_Temperature_1_T)
-        * Line_Engine_Temperature_1_C)
-     + (((Line_Acknowledgement_Busy + Line_Claim_A) / Line_Claim_T)
-        * Line_Claim_C);
-
+     Line_Claim_Up_Board (Line_Acknowledgement_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Acknowledgement_Busy,
-      "line.acknowledgement "
-      & "can keep others waiting for longer than claimed");
+     (Line_Acknowledgement_Busy < 1
+      or else Line_Acknowledgement_Busy /= Line_Acknowledgement_Busy_Needs,
+      "line.acknowledgement claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Acknowledgement_Busy_Needs > Line_Acknowledgement_Busy,
-      "line.acknowledgement "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Acknowledgement_Busy > Line_Acknowledgement_Busy_Needs,
-      "line.acknowledgement " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Acknowledgement_Busy + Line_Acknowledgement_J)
+     (Line_Acknowledgement_Busy + Line_Acknowledgement_J
       > Line_Acknowledgement_T,
-      "line.acknowledgement " & "can come again before it is sent");
-
-   Line_Acknowledgement_W : constant := 4_520_000;
+      "line.acknowledgement can come again before it is sent");
+   Line_Acknowledgement_W : constant :=
+     Line_Acknowledgement_R - Line_Acknowledgement_J
+     - Line_Acknowledgement_C;
    Line_Acknowledgement_Needs : constant :=
-     0
-     + (((Line_Acknowledgement_W + Line_Bit + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Acknowledgement_W + Line_Bit + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Acknowledgement_W + Line_Bit + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C)
-     + (((Line_Acknowledgement_W + Line_Bit + Line_Rival_Claim_A)
-         / Line_Rival_Claim_T)
-        * Line_Rival_Claim_C)
-     + (((Line_Acknowledgement_W + Line_Bit + Line_Cannot_Claim_A)
-         / Line_Cannot_Claim_T)
-        * Line_Cannot_Claim_C)
-     + (((Line_Acknowledgement_W + Line_Bit + Line_Fan_Drive_State_A)
-         / Line_Fan_Drive_State_T)
-        * Line_Fan_Drive_State_C)
-     + (((Line_Acknowledgement_W + Line_Bit + Line_Engine_Temperature_1_A)
-         / Line_Engine_Temperature_1_T)
-        * Line_Engine_Temperature_1_C)
-     + (((Line_Acknowledgement_W + Line_Bit + Line_Claim_A) / Line_Claim_T)
-        * Line_Claim_C);
-
+     Line_Engine_Temperature_1_Up_Board (Line_Acknowledgement_W + Line_Bit)
+     + Line_Cannot_Claim_Rest_Board (Line_Acknowledgement_W + Line_Bit);
    pragma Compile_Time_Error
-     (0 > Line_Acknowledgement_W,
-      "line.acknowledgement "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Acknowledgement_Needs > Line_Acknowledgement_W,
-      "line.acknowledgement "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Acknowledgement_W > Line_Acknowledgement_Needs,
-      "line.acknowledgement " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Acknowledgement_J
-       + Line_Acknowledgement_W
-       + Line_Acknowledgement_C)
-      > Line_Acknowledgement_R,
-      "line.acknowledgement "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Acknowledgement_R
-      > (Line_Acknowledgement_J
-         + Line_Acknowledgement_W
-         + Line_Acknowledgement_C),
-      "line.acknowledgement " & "claims more than its terms add up to");
+     (Line_Acknowledgement_W /= Line_Acknowledgement_Needs,
+      "line.acknowledgement claims a wrong response time");
    pragma Compile_Time_Error
      (Line_Acknowledgement_R > Line_Acknowledgement_D,
-      "line.acknowledgement " & "can miss its deadline");
+      "line.acknowledgement can miss its deadline");
    pragma Assert (Line_Acknowledgement_R <= Line_Acknowledgement_D);
 
-   --  [line.request_to_us] what can delay it: frames that go before it, and
-   --  one of those that go behind it, the longest of which counts once
+   --  [line.request_to_us] what delays it
    Line_Request_To_Us_Busy : constant := 1_720_000;
    Line_Request_To_Us_Busy_Needs : constant :=
-     Line_Rival_Claim_C
-     + (((Line_Request_To_Us_Busy
-          + (Line_Acknowledgement_R - Line_Acknowledgement_C)
-          + (Line_Acknowledgement_T - 1))
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Request_To_Us_Busy + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C);
-
+     Line_Rival_Claim_C + Line_Request_To_Us_Up (Line_Request_To_Us_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Request_To_Us_Busy,
-      "line.request_to_us "
-      & "can keep others waiting for longer than claimed");
+     (Line_Request_To_Us_Busy < 1
+      or else Line_Request_To_Us_Busy /= Line_Request_To_Us_Busy_Needs,
+      "line.request_to_us claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Request_To_Us_Busy_Needs > Line_Request_To_Us_Busy,
-      "line.request_to_us "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Request_To_Us_Busy > Line_Request_To_Us_Busy_Needs,
-      "line.request_to_us " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Request_To_Us_Busy + Line_Request_To_Us_J)
-      > Line_Request_To_Us_T,
-      "line.request_to_us " & "can come again before it is sent");
-
-   Line_Request_To_Us_W : constant := 1_280_000;
+     (Line_Request_To_Us_Busy + Line_Request_To_Us_J > Line_Request_To_Us_T,
+      "line.request_to_us can come again before it is sent");
+   Line_Request_To_Us_W : constant :=
+     Line_Request_To_Us_R - Line_Request_To_Us_J - Line_Request_To_Us_C;
    Line_Request_To_Us_Needs : constant :=
      Line_Rival_Claim_C
-     + (((Line_Request_To_Us_W
-          + Line_Bit
-          + (Line_Acknowledgement_R - Line_Acknowledgement_C)
-          + (Line_Acknowledgement_T - 1))
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C);
-
+     + Line_Acknowledgement_Up (Line_Request_To_Us_W + Line_Bit);
    pragma Compile_Time_Error
-     (0 > Line_Request_To_Us_W,
-      "line.request_to_us "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Request_To_Us_Needs > Line_Request_To_Us_W,
-      "line.request_to_us "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Request_To_Us_W > Line_Request_To_Us_Needs,
-      "line.request_to_us " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Request_To_Us_J + Line_Request_To_Us_W + Line_Request_To_Us_C)
-      > Line_Request_To_Us_R,
-      "line.request_to_us "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Request_To_Us_R
-      > (Line_Request_To_Us_J + Line_Request_To_Us_W + Line_Request_To_Us_C),
-      "line.request_to_us " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Request_To_Us_R > Line_Request_To_Us_D,
-      "line.request_to_us " & "can miss its deadline");
+     (Line_Request_To_Us_W /= Line_Request_To_Us_Needs,
+      "line.request_to_us claims a wrong response time");
+   pragma Compile_Time_Error (Line_Request_To_Us_R > Line_Request_To_Us_D,
+      "line.request_to_us can miss its deadline");
    pragma Assert (Line_Request_To_Us_R <= Line_Request_To_Us_D);
 
-   --  [line.request_to_all] what can delay it: frames that go before it,
-   --  and one of those that go behind it, the longest of which counts once
+   --  [line.request_to_all] what delays it
    Line_Request_To_All_Busy : constant := 2_160_000;
    Line_Request_To_All_Busy_Needs : constant :=
-     Line_Rival_Claim_C
-     + (((Line_Request_To_All_Busy
-          + (Line_Acknowledgement_R - Line_Acknowledgement_C)
-          + (Line_Acknowledgement_T - 1))
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Request_To_All_Busy + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Request_To_All_Busy + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C);
-
+     Line_Rival_Claim_C + Line_Request_To_All_Up (Line_Request_To_All_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Request_To_All_Busy,
-      "line.request_to_all "
-      & "can keep others waiting for longer than claimed");
+     (Line_Request_To_All_Busy < 1
+      or else Line_Request_To_All_Busy /= Line_Request_To_All_Busy_Needs,
+      "line.request_to_all claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Request_To_All_Busy_Needs > Line_Request_To_All_Busy,
-      "line.request_to_all "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Request_To_All_Busy > Line_Request_To_All_Busy_Needs,
-      "line.request_to_all " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Request_To_All_Busy + Line_Request_To_All_J)
+     (Line_Request_To_All_Busy + Line_Request_To_All_J
       > Line_Request_To_All_T,
-      "line.request_to_all " & "can come again before it is sent");
-
-   Line_Request_To_All_W : constant := 1_720_000;
+      "line.request_to_all can come again before it is sent");
+   Line_Request_To_All_W : constant :=
+     Line_Request_To_All_R - Line_Request_To_All_J - Line_Request_To_All_C;
    Line_Request_To_All_Needs : constant :=
      Line_Rival_Claim_C
-     + (((Line_Request_To_All_W
-          + Line_Bit
-          + (Line_Acknowledgement_R - Line_Acknowledgement_C)
-          + (Line_Acknowledgement_T - 1))
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Request_To_All_W + Line_Bit + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C);
-
+     + Line_Request_To_Us_Up (Line_Request_To_All_W + Line_Bit);
    pragma Compile_Time_Error
-     (0 > Line_Request_To_All_W,
-      "line.request_to_all "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Request_To_All_Needs > Line_Request_To_All_W,
-      "line.request_to_all "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Request_To_All_W > Line_Request_To_All_Needs,
-      "line.request_to_all " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Request_To_All_J + Line_Request_To_All_W + Line_Request_To_All_C)
-      > Line_Request_To_All_R,
-      "line.request_to_all "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Request_To_All_R
-      > (Line_Request_To_All_J
-         + Line_Request_To_All_W
-         + Line_Request_To_All_C),
-      "line.request_to_all " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Request_To_All_R > Line_Request_To_All_D,
-      "line.request_to_all " & "can miss its deadline");
+     (Line_Request_To_All_W /= Line_Request_To_All_Needs,
+      "line.request_to_all claims a wrong response time");
+   pragma Compile_Time_Error (Line_Request_To_All_R > Line_Request_To_All_D,
+      "line.request_to_all can miss its deadline");
    pragma Assert (Line_Request_To_All_R <= Line_Request_To_All_D);
 
-   --  [line.request_without_address] what can delay it: frames that go
-   --  before it, and one of those that go behind it, the longest of which
-   --  counts once
+   --  [line.request_without_address] what delays it
    Line_Request_Without_Address_Busy : constant := 2_600_000;
    Line_Request_Without_Address_Busy_Needs : constant :=
      Line_Rival_Claim_C
-     + (((Line_Request_Without_Address_Busy
-          + (Line_Acknowledgement_R - Line_Acknowledgement_C)
-          + (Line_Acknowledgement_T - 1))
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Request_Without_Address_Busy + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Request_Without_Address_Busy + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Request_Without_Address_Busy + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C);
-
+     + Line_Request_Without_Address_Up (Line_Request_Without_Address_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Request_Without_Address_Busy,
-      "line.request_without_address "
-      & "can keep others waiting for longer than claimed");
+     (Line_Request_Without_Address_Busy < 1
+      or else Line_Request_Without_Address_Busy
+        /= Line_Request_Without_Address_Busy_Needs,
+      "line.request_without_address claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Request_Without_Address_Busy_Needs
-      > Line_Request_Without_Address_Busy,
-      "line.request_without_address "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Request_Without_Address_Busy
-      > Line_Request_Without_Address_Busy_Needs,
-      "line.request_without_address "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Request_Without_Address_Busy + Line_Request_Without_Address_J)
+     (Line_Request_Without_Address_Busy + Line_Request_Without_Address_J
       > Line_Request_Without_Address_T,
-      "line.request_without_address " & "can come again before it is sent");
-
-   Line_Request_Without_Address_W : constant := 2_160_000;
+      "line.request_without_address can come again before it is sent");
+   Line_Request_Without_Address_W : constant :=
+     Line_Request_Without_Address_R - Line_Request_Without_Address_J
+     - Line_Request_Without_Address_C;
    Line_Request_Without_Address_Needs : constant :=
      Line_Rival_Claim_C
-     + (((Line_Request_Without_Address_W
-          + Line_Bit
-          + (Line_Acknowledgement_R - Line_Acknowledgement_C)
-          + (Line_Acknowledgement_T - 1))
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Request_Without_Address_W + Line_Bit + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Request_Without_Address_W + Line_Bit + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C);
-
+     + Line_Request_To_All_Up (Line_Request_Without_Address_W + Line_Bit);
    pragma Compile_Time_Error
-     (0 > Line_Request_Without_Address_W,
-      "line.request_without_address "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Request_Without_Address_Needs > Line_Request_Without_Address_W,
-      "line.request_without_address "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Request_Without_Address_W > Line_Request_Without_Address_Needs,
-      "line.request_without_address "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Request_Without_Address_J
-       + Line_Request_Without_Address_W
-       + Line_Request_Without_Address_C)
-      > Line_Request_Without_Address_R,
-      "line.request_without_address "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Request_Without_Address_R
-      > (Line_Request_Without_Address_J
-         + Line_Request_Without_Address_W
-         + Line_Request_Without_Address_C),
-      "line.request_without_address "
-      & "claims more than its terms add up to");
+     (Line_Request_Without_Address_W /= Line_Request_Without_Address_Needs,
+      "line.request_without_address claims a wrong response time");
    pragma Compile_Time_Error
      (Line_Request_Without_Address_R > Line_Request_Without_Address_D,
-      "line.request_without_address " & "can miss its deadline");
+      "line.request_without_address can miss its deadline");
    pragma Assert
      (Line_Request_Without_Address_R <= Line_Request_Without_Address_D);
 
-   --  [line.rival_claim] what can delay it: frames that go before it, and
-   --  one of those that go behind it, the longest of which counts once
+   --  [line.rival_claim] what delays it
    Line_Rival_Claim_Busy : constant := 3_240_000;
    Line_Rival_Claim_Busy_Needs : constant :=
-     Line_Cannot_Claim_C
-     + (((Line_Rival_Claim_Busy
-          + (Line_Acknowledgement_R - Line_Acknowledgement_C)
-          + (Line_Acknowledgement_T - 1))
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Rival_Claim_Busy + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Rival_Claim_Busy + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Rival_Claim_Busy + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C)
-     + (((Line_Rival_Claim_Busy + Line_Rival_Claim_A) / Line_Rival_Claim_T)
-        * Line_Rival_Claim_C);
-
+     Line_Cannot_Claim_C + Line_Rival_Claim_Up (Line_Rival_Claim_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Rival_Claim_Busy,
-      "line.rival_claim "
-      & "can keep others waiting for longer than claimed");
+     (Line_Rival_Claim_Busy < 1
+      or else Line_Rival_Claim_Busy /= Line_Rival_Claim_Busy_Needs,
+      "line.rival_claim claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Rival_Claim_Busy_Needs > Line_Rival_Claim_Busy,
-      "line.rival_claim "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Rival_Claim_Busy > Line_Rival_Claim_Busy_Needs,
-      "line.rival_claim " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Rival_Claim_Busy + Line_Rival_Claim_J) > Line_Rival_Claim_T,
-      "line.rival_claim " & "can come again before it is sent");
-
-   Line_Rival_Claim_W : constant := 2_600_000;
+     (Line_Rival_Claim_Busy + Line_Rival_Claim_J > Line_Rival_Claim_T,
+      "line.rival_claim can come again before it is sent");
+   Line_Rival_Claim_W : constant :=
+     Line_Rival_Claim_R - Line_Rival_Claim_J - Line_Rival_Claim_C;
    Line_Rival_Claim_Needs : constant :=
      Line_Cannot_Claim_C
-     + (((Line_Rival_Claim_W
-          + Line_Bit
-          + (Line_Acknowledgement_R - Line_Acknowledgement_C)
-          + (Line_Acknowledgement_T - 1))
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Rival_Claim_W + Line_Bit + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Rival_Claim_W + Line_Bit + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Rival_Claim_W + Line_Bit + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C);
-
-   pragma Compile_Time_Error
-     (0 > Line_Rival_Claim_W,
-      "line.rival_claim " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Rival_Claim_Needs > Line_Rival_Claim_W,
-      "line.rival_claim " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Rival_Claim_W > Line_Rival_Claim_Needs,
-      "line.rival_claim " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Rival_Claim_J + Line_Rival_Claim_W + Line_Rival_Claim_C)
-      > Line_Rival_Claim_R,
-      "line.rival_claim " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Rival_Claim_R
-      > (Line_Rival_Claim_J + Line_Rival_Claim_W + Line_Rival_Claim_C),
-      "line.rival_claim " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Rival_Claim_R > Line_Rival_Claim_D,
-      "line.rival_claim " & "can miss its deadline");
+     + Line_Request_Without_Address_Up (Line_Rival_Claim_W + Line_Bit);
+   pragma Compile_Time_Error (Line_Rival_Claim_W /= Line_Rival_Claim_Needs,
+      "line.rival_claim claims a wrong response time");
+   pragma Compile_Time_Error (Line_Rival_Claim_R > Line_Rival_Claim_D,
+      "line.rival_claim can miss its deadline");
    pragma Assert (Line_Rival_Claim_R <= Line_Rival_Claim_D);
 
-   --  [line.cannot_claim] what can delay it: frames that go before it
+   --  [line.cannot_claim] what delays it
    Line_Cannot_Claim_Busy : constant := 5_160_000;
    Line_Cannot_Claim_Busy_Needs : constant :=
-     0
-     + (((Line_Cannot_Claim_Busy + Line_Acknowledgement_A)
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Cannot_Claim_Busy + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Cannot_Claim_Busy + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Cannot_Claim_Busy + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C)
-     + (((Line_Cannot_Claim_Busy + Line_Rival_Claim_A) / Line_Rival_Claim_T)
-        * Line_Rival_Claim_C)
-     + (((Line_Cannot_Claim_Busy + Line_Cannot_Claim_A)
-         / Line_Cannot_Claim_T)
-        * Line_Cannot_Claim_C)
-     + (((Line_Cannot_Claim_Busy + Line_Fan_Drive_State_A)
-         / Line_Fan_Drive_State_T)
-        * Line_Fan_Drive_State_C)
-     + (((Line_Cannot_Claim_Busy + Line_Engine_Temperature_1_A)
-         / Line_Engine_Temperature_1_T)
-        * Line_Engine_Temperature_1_C)
-     + (((Line_Cannot_Claim_Busy + Line_Claim_A) / Line_Claim_T)
-        * Line_Claim_C);
-
+     Line_Claim_Up_Board (Line_Cannot_Claim_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Cannot_Claim_Busy,
-      "line.cannot_claim "
-      & "can keep others waiting for longer than claimed");
+     (Line_Cannot_Claim_Busy < 1
+      or else Line_Cannot_Claim_Busy /= Line_Cannot_Claim_Busy_Needs,
+      "line.cannot_claim claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Cannot_Claim_Busy_Needs > Line_Cannot_Claim_Busy,
-      "line.cannot_claim "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Cannot_Claim_Busy > Line_Cannot_Claim_Busy_Needs,
-      "line.cannot_claim " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Cannot_Claim_Busy + Line_Cannot_Claim_J) > Line_Cannot_Claim_T,
-      "line.cannot_claim " & "can come again before it is sent");
-
-   Line_Cannot_Claim_W : constant := 4_520_000;
+     (Line_Cannot_Claim_Busy + Line_Cannot_Claim_J > Line_Cannot_Claim_T,
+      "line.cannot_claim can come again before it is sent");
+   Line_Cannot_Claim_W : constant :=
+     Line_Cannot_Claim_R - Line_Cannot_Claim_J - Line_Cannot_Claim_C;
    Line_Cannot_Claim_Needs : constant :=
-     0
-     + (((Line_Cannot_Claim_W + Line_Bit + Line_Acknowledgement_A)
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Cannot_Claim_W + Line_Bit + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Cannot_Claim_W + Line_Bit + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Cannot_Claim_W + Line_Bit + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C)
-     + (((Line_Cannot_Claim_W + Line_Bit + Line_Rival_Claim_A)
-         / Line_Rival_Claim_T)
-        * Line_Rival_Claim_C)
-     + (((Line_Cannot_Claim_W + Line_Bit + Line_Fan_Drive_State_A)
-         / Line_Fan_Drive_State_T)
-        * Line_Fan_Drive_State_C)
-     + (((Line_Cannot_Claim_W + Line_Bit + Line_Engine_Temperature_1_A)
-         / Line_Engine_Temperature_1_T)
-        * Line_Engine_Temperature_1_C)
-     + (((Line_Cannot_Claim_W + Line_Bit + Line_Claim_A) / Line_Claim_T)
-        * Line_Claim_C);
-
+     Line_Acknowledgement_Up_Board (Line_Cannot_Claim_W + Line_Bit)
+     + Line_Fan_Drive_State_Rest_Board (Line_Cannot_Claim_W + Line_Bit);
    pragma Compile_Time_Error
-     (0 > Line_Cannot_Claim_W,
-      "line.cannot_claim "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Cannot_Claim_Needs > Line_Cannot_Claim_W,
-      "line.cannot_claim "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Cannot_Claim_W > Line_Cannot_Claim_Needs,
-      "line.cannot_claim " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Cannot_Claim_J + Line_Cannot_Claim_W + Line_Cannot_Claim_C)
-      > Line_Cannot_Claim_R,
-      "line.cannot_claim "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Cannot_Claim_R
-      > (Line_Cannot_Claim_J + Line_Cannot_Claim_W + Line_Cannot_Claim_C),
-      "line.cannot_claim " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Cannot_Claim_R > Line_Cannot_Claim_D,
-      "line.cannot_claim " & "can miss its deadline");
+     (Line_Cannot_Claim_W /= Line_Cannot_Claim_Needs,
+      "line.cannot_claim claims a wrong response time");
+   pragma Compile_Time_Error (Line_Cannot_Claim_R > Line_Cannot_Claim_D,
+      "line.cannot_claim can miss its deadline");
    pragma Assert (Line_Cannot_Claim_R <= Line_Cannot_Claim_D);
 
-   --  [line.fan_drive_state] what can delay it: frames that go before it
+   --  [line.fan_drive_state] what delays it
    Line_Fan_Drive_State_Busy : constant := 5_160_000;
    Line_Fan_Drive_State_Busy_Needs : constant :=
-     0
-     + (((Line_Fan_Drive_State_Busy + Line_Acknowledgement_A)
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Fan_Drive_State_Busy + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Fan_Drive_State_Busy + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Fan_Drive_State_Busy + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C)
-     + (((Line_Fan_Drive_State_Busy + Line_Rival_Claim_A)
-         / Line_Rival_Claim_T)
-        * Line_Rival_Claim_C)
-     + (((Line_Fan_Drive_State_Busy + Line_Cannot_Claim_A)
-         / Line_Cannot_Claim_T)
-        * Line_Cannot_Claim_C)
-     + (((Line_Fan_Drive_State_Busy + Line_Fan_Drive_State_A)
-         / Line_Fan_Drive_State_T)
-        * Line_Fan_Drive_State_C)
-     + (((Line_Fan_Drive_State_Busy + Line_Engine_Temperature_1_A)
-         / Line_Engine_Temperature_1_T)
-        * Line_Engine_Temperature_1_C)
-     + (((Line_Fan_Drive_State_Busy + Line_Claim_A) / Line_Claim_T)
-        * Line_Claim_C);
-
+     Line_Claim_Up_Board (Line_Fan_Drive_State_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Fan_Drive_State_Busy,
-      "line.fan_drive_state "
-      & "can keep others waiting for longer than claimed");
+     (Line_Fan_Drive_State_Busy < 1
+      or else Line_Fan_Drive_State_Busy /= Line_Fan_Drive_State_Busy_Needs,
+      "line.fan_drive_state claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Fan_Drive_State_Busy_Needs > Line_Fan_Drive_State_Busy,
-      "line.fan_drive_state "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Fan_Drive_State_Busy > Line_Fan_Drive_State_Busy_Needs,
-      "line.fan_drive_state " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Fan_Drive_State_Busy + Line_Fan_Drive_State_J)
+     (Line_Fan_Drive_State_Busy + Line_Fan_Drive_State_J
       > Line_Fan_Drive_State_T,
-      "line.fan_drive_state " & "can come again before it is sent");
-
-   Line_Fan_Drive_State_W : constant := 4_520_000;
+      "line.fan_drive_state can come again before it is sent");
+   Line_Fan_Drive_State_W : constant :=
+     Line_Fan_Drive_State_R - Line_Fan_Drive_State_J
+     - Line_Fan_Drive_State_C;
    Line_Fan_Drive_State_Needs : constant :=
-     0
-     + (((Line_Fan_Drive_State_W + Line_Bit + Line_Acknowledgement_A)
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Fan_Drive_State_W + Line_Bit + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Fan_Drive_State_W + Line_Bit + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Fan_Drive_State_W + Line_Bit + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C)
-     + (((Line_Fan_Drive_State_W + Line_Bit + Line_Rival_Claim_A)
-         / Line_Rival_Claim_T)
-        * Line_Rival_Claim_C)
-     + (((Line_Fan_Drive_State_W + Line_Bit + Line_Cannot_Claim_A)
-         / Line_Cannot_Claim_T)
-        * Line_Cannot_Claim_C)
-     + (((Line_Fan_Drive_State_W + Line_Bit + Line_Engine_Temperature_1_A)
-         / Line_Engine_Temperature_1_T)
-        * Line_Engine_Temperature_1_C)
-     + (((Line_Fan_Drive_State_W + Line_Bit + Line_Claim_A) / Line_Claim_T)
-        * Line_Claim_C);
-
+     Line_Cannot_Claim_Up_Board (Line_Fan_Drive_State_W + Line_Bit)
+     + Line_Claim_Rest_Board (Line_Fan_Drive_State_W + Line_Bit);
    pragma Compile_Time_Error
-     (0 > Line_Fan_Drive_State_W,
-      "line.fan_drive_state "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Fan_Drive_State_Needs > Line_Fan_Drive_State_W,
-      "line.fan_drive_state "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Fan_Drive_State_W > Line_Fan_Drive_State_Needs,
-      "line.fan_drive_state " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Fan_Drive_State_J
-       + Line_Fan_Drive_State_W
-       + Line_Fan_Drive_State_C)
-      > Line_Fan_Drive_State_R,
-      "line.fan_drive_state "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Fan_Drive_State_R
-      > (Line_Fan_Drive_State_J
-         + Line_Fan_Drive_State_W
-         + Line_Fan_Drive_State_C),
-      "line.fan_drive_state " & "claims more than its terms add up to");
+     (Line_Fan_Drive_State_W /= Line_Fan_Drive_State_Needs,
+      "line.fan_drive_state claims a wrong response time");
    pragma Compile_Time_Error
      (Line_Fan_Drive_State_R > Line_Fan_Drive_State_D,
-      "line.fan_drive_state " & "can miss its deadline");
+      "line.fan_drive_state can miss its deadline");
    pragma Assert (Line_Fan_Drive_State_R <= Line_Fan_Drive_State_D);
 
-   --  [line.engine_temperature_1] what can delay it: frames that go before
-   --  it, and one of those that go behind it, the longest of which counts
-   --  once
+   --  [line.engine_temperature_1] what delays it
    Line_Engine_Temperature_1_Busy : constant := 7_080_000;
    Line_Engine_Temperature_1_Busy_Needs : constant :=
      Line_Claim_C
-     + (((Line_Engine_Temperature_1_Busy
-          + (Line_Acknowledgement_R - Line_Acknowledgement_C)
-          + (Line_Acknowledgement_T - 1))
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Engine_Temperature_1_Busy + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Engine_Temperature_1_Busy + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Engine_Temperature_1_Busy + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C)
-     + (((Line_Engine_Temperature_1_Busy + Line_Rival_Claim_A)
-         / Line_Rival_Claim_T)
-        * Line_Rival_Claim_C)
-     + (((Line_Engine_Temperature_1_Busy
-          + (Line_Cannot_Claim_R - Line_Cannot_Claim_C)
-          + (Line_Cannot_Claim_T - 1))
-         / Line_Cannot_Claim_T)
-        * Line_Cannot_Claim_C)
-     + (((Line_Engine_Temperature_1_Busy
-          + (Line_Fan_Drive_State_R - Line_Fan_Drive_State_C)
-          + (Line_Fan_Drive_State_T - 1))
-         / Line_Fan_Drive_State_T)
-        * Line_Fan_Drive_State_C)
-     + (((Line_Engine_Temperature_1_Busy + Line_Engine_Temperature_1_A)
-         / Line_Engine_Temperature_1_T)
-        * Line_Engine_Temperature_1_C);
-
+     + Line_Engine_Temperature_1_Up (Line_Engine_Temperature_1_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Engine_Temperature_1_Busy,
-      "line.engine_temperature_1 "
-      & "can keep others waiting for longer than claimed");
+     (Line_Engine_Temperature_1_Busy < 1
+      or else Line_Engine_Temperature_1_Busy
+        /= Line_Engine_Temperature_1_Busy_Needs,
+      "line.engine_temperature_1 claims a wrong busy period");
    pragma Compile_Time_Error
-     (Line_Engine_Temperature_1_Busy_Needs > Line_Engine_Temperature_1_Busy,
-      "line.engine_temperature_1 "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Engine_Temperature_1_Busy > Line_Engine_Temperature_1_Busy_Needs,
-      "line.engine_temperature_1 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Engine_Temperature_1_Busy + Line_Engine_Temperature_1_J)
+     (Line_Engine_Temperature_1_Busy + Line_Engine_Temperature_1_J
       > Line_Engine_Temperature_1_T,
-      "line.engine_temperature_1 " & "can come again before it is sent");
-
-   Line_Engine_Temperature_1_W : constant := 6_440_000;
+      "line.engine_temperature_1 can come again before it is sent");
+   Line_Engine_Temperature_1_W : constant :=
+     Line_Engine_Temperature_1_R - Line_Engine_Temperature_1_J
+     - Line_Engine_Temperature_1_C;
    Line_Engine_Temperature_1_Needs : constant :=
      Line_Claim_C
-     + (((Line_Engine_Temperature_1_W
-          + Line_Bit
-          + (Line_Acknowledgement_R - Line_Acknowledgement_C)
-          + (Line_Acknowledgement_T - 1))
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Engine_Temperature_1_W + Line_Bit + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Engine_Temperature_1_W + Line_Bit + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Engine_Temperature_1_W
-          + Line_Bit
-          + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C)
-     + (((Line_Engine_Temperature_1_W + Line_Bit + Line_Rival_Claim_A)
-         / Line_Rival_Claim_T)
-        * Line_Rival_Claim_C)
-     + (((Line_Engine_Temperature_1_W
-          + Line_Bit
-          + (Line_Cannot_Claim_R - Line_Cannot_Claim_C)
-          + (Line_Cannot_Claim_T - 1))
-         / Line_Cannot_Claim_T)
-        * Line_Cannot_Claim_C)
-     + (((Line_Engine_Temperature_1_W
-          + Line_Bit
-          + (Line_Fan_Drive_State_R - Line_Fan_Drive_State_C)
-          + (Line_Fan_Drive_State_T - 1))
-         / Line_Fan_Drive_State_T)
-        * Line_Fan_Drive_State_C);
-
+     + Line_Fan_Drive_State_Up (Line_Engine_Temperature_1_W + Line_Bit);
    pragma Compile_Time_Error
-     (0 > Line_Engine_Temperature_1_W,
-      "line.engine_temperature_1 "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Engine_Temperature_1_Needs > Line_Engine_Temperature_1_W,
-      "line.engine_temperature_1 "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Engine_Temperature_1_W > Line_Engine_Temperature_1_Needs,
-      "line.engine_temperature_1 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Engine_Temperature_1_J
-       + Line_Engine_Temperature_1_W
-       + Line_Engine_Temperature_1_C)
-      > Line_Engine_Temperature_1_R,
-      "line.engine_temperature_1 "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Engine_Temperature_1_R
-      > (Line_Engine_Temperature_1_J
-         + Line_Engine_Temperature_1_W
-         + Line_Engine_Temperature_1_C),
-      "line.engine_temperature_1 " & "claims more than its terms add up to");
+     (Line_Engine_Temperature_1_W /= Line_Engine_Temperature_1_Needs,
+      "line.engine_temperature_1 claims a wrong response time");
    pragma Compile_Time_Error
      (Line_Engine_Temperature_1_R > Line_Engine_Temperature_1_D,
-      "line.engine_temperature_1 " & "can miss its deadline");
+      "line.engine_temperature_1 can miss its deadline");
    pragma Assert
      (Line_Engine_Temperature_1_R <= Line_Engine_Temperature_1_D);
 
-   --  [line.claim] what can delay it: frames that go before it
+   --  [line.claim] what delays it
    Line_Claim_Busy : constant := 5_160_000;
    Line_Claim_Busy_Needs : constant :=
-     0
-     + (((Line_Claim_Busy + Line_Acknowledgement_A) / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Claim_Busy + Line_Request_To_Us_A) / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Claim_Busy + Line_Request_To_All_A) / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Claim_Busy + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C)
-     + (((Line_Claim_Busy + Line_Rival_Claim_A) / Line_Rival_Claim_T)
-        * Line_Rival_Claim_C)
-     + (((Line_Claim_Busy + Line_Cannot_Claim_A) / Line_Cannot_Claim_T)
-        * Line_Cannot_Claim_C)
-     + (((Line_Claim_Busy + Line_Fan_Drive_State_A) / Line_Fan_Drive_State_T)
-        * Line_Fan_Drive_State_C)
-     + (((Line_Claim_Busy + Line_Engine_Temperature_1_A)
-         / Line_Engine_Temperature_1_T)
-        * Line_Engine_Temperature_1_C)
-     + (((Line_Claim_Busy + Line_Claim_A) / Line_Claim_T) * Line_Claim_C);
-
+     Line_Claim_Up_Board (Line_Claim_Busy);
    pragma Compile_Time_Error
-     (1 > Line_Claim_Busy,
-      "line.claim " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Claim_Busy_Needs > Line_Claim_Busy,
-      "line.claim " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Line_Claim_Busy > Line_Claim_Busy_Needs,
-      "line.claim " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Claim_Busy + Line_Claim_J) > Line_Claim_T,
-      "line.claim " & "can come again before it is sent");
-
-   Line_Claim_W : constant := 4_520_000;
+     (Line_Claim_Busy < 1 or else Line_Claim_Busy /= Line_Claim_Busy_Needs,
+      "line.claim claims a wrong busy period");
+   pragma Compile_Time_Error (Line_Claim_Busy + Line_Claim_J > Line_Claim_T,
+      "line.claim can come again before it is sent");
+   Line_Claim_W : constant := Line_Claim_R - Line_Claim_J - Line_Claim_C;
    Line_Claim_Needs : constant :=
-     0
-     + (((Line_Claim_W + Line_Bit + Line_Acknowledgement_A)
-         / Line_Acknowledgement_T)
-        * Line_Acknowledgement_C)
-     + (((Line_Claim_W + Line_Bit + Line_Request_To_Us_A)
-         / Line_Request_To_Us_T)
-        * Line_Request_To_Us_C)
-     + (((Line_Claim_W + Line_Bit + Line_Request_To_All_A)
-         / Line_Request_To_All_T)
-        * Line_Request_To_All_C)
-     + (((Line_Claim_W + Line_Bit + Line_Request_Without_Address_A)
-         / Line_Request_Without_Address_T)
-        * Line_Request_Without_Address_C)
-     + (((Line_Claim_W + Line_Bit + Line_Rival_Claim_A) / Line_Rival_Claim_T)
-        * Line_Rival_Claim_C)
-     + (((Line_Claim_W + Line_Bit + Line_Cannot_Claim_A)
-         / Line_Cannot_Claim_T)
-        * Line_Cannot_Claim_C)
-     + (((Line_Claim_W + Line_Bit + Line_Fan_Drive_State_A)
-         / Line_Fan_Drive_State_T)
-        * Line_Fan_Drive_State_C)
-     + (((Line_Claim_W + Line_Bit + Line_Engine_Temperature_1_A)
-         / Line_Engine_Temperature_1_T)
-        * Line_Engine_Temperature_1_C);
-
-   pragma Compile_Time_Error
-     (0 > Line_Claim_W,
-      "line.claim " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Claim_Needs > Line_Claim_W,
-      "line.claim " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Claim_W > Line_Claim_Needs,
-      "line.claim " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Line_Claim_J + Line_Claim_W + Line_Claim_C) > Line_Claim_R,
-      "line.claim " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Line_Claim_R > (Line_Claim_J + Line_Claim_W + Line_Claim_C),
-      "line.claim " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Line_Claim_R > Line_Claim_D,
-      "line.claim " & "can miss its deadline");
+     Line_Fan_Drive_State_Up_Board (Line_Claim_W + Line_Bit);
+   pragma Compile_Time_Error (Line_Claim_W /= Line_Claim_Needs,
+      "line.claim claims a wrong response time");
+   pragma Compile_Time_Error (Line_Claim_R > Line_Claim_D,
+      "line.claim can miss its deadline");
    pragma Assert (Line_Claim_R <= Line_Claim_D);
 end J1939_Node.Timing_Certificate;

@@ -14,6 +14,5 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    package Buffer is new Ravenchart.Trace_Buffers
-     (Capacity => 2_048,
-      Ceiling => System.Default_Priority + 3);
+     (Capacity => 2_048, Ceiling => System.Default_Priority + 3);
 end J1939_Node.Trace;

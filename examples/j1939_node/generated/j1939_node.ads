@@ -24,10 +24,7 @@ is
    subtype Pgn is Ravenchart.Number range 0 .. 262_143;
 
    type Answer_Kind is
-     (Affirmative,
-      Negative,
-      Access_Denied,
-      Cannot_Respond);
+     (Affirmative, Negative, Access_Denied, Cannot_Respond);
 
    subtype Address is Ravenchart.Number range 0 .. 255;
    subtype Unused_8 is Ravenchart.Number range 255 .. 255;

@@ -131,9 +131,7 @@ is
 
    procedure Put_Line (Item : Infusion_System.Line) is
       Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings
-        (GNATprove,
-         Off,
+      pragma Warnings (GNATprove, Off,
          """Status"" is set by ""Put"" but not used*",
          Reason => "a new sample replaces the old one");
    begin
@@ -150,9 +148,7 @@ is
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.Bed_Panel,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Bed_Panel,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
       end if;
@@ -168,121 +164,97 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Bed_Keys,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Bed_Pressed,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Bed_Pressed, 0);
          when Pump.Sensor_Lost =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Bed_Sensor_Lost,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Bed_Sensor_Lost, 0);
          when Pump.Start =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Bed_Start,
+            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Bed_Start,
                0);
          when Pump.Stop =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Bed_Stop,
+            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Bed_Stop,
                0);
          when Pump.Silence =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Bed_Silence,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Bed_Silence, 0);
          when Pump.Resume =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Bed_Resume,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Bed_Resume, 0);
          when Pump.New_Portion =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Bed_New_Portion,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Bed_New_Portion, 0);
          when Pump.New_Volume =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Bed_New_Volume,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Bed_New_Volume, 0);
       end case;
    end Offer;
 
@@ -318,16 +290,12 @@ is
          when Pump.Line_Port.Nothing =>
             null;
          when Pump.Line_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Bed_Line,
+            Trace.Buffer.Note (Ravenchart.Traces.Handled, Elements.Bed_Line,
                0);
          when Pump.Line_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
-               Elements.Bed_Line,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Bed_Line,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
             Offer (Pump.Event'(Name => Pump.Sensor_Lost, others => <>));
@@ -343,10 +311,8 @@ is
          when Pump.Panel_Port.Nothing =>
             null;
          when Pump.Panel_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Bed_Panel,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Bed_Panel, 0);
             Offer
               (Pump.Event'(Name => Pump.Pressed,
                 Value_Press => Panel_Port.Value,
@@ -354,9 +320,7 @@ is
          when Pump.Panel_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
-               Elements.Bed_Panel,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Bed_Panel,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
       end case;
@@ -383,15 +347,12 @@ is
       Pump.Keys.Step (Keys_Region, Now, Event, Box, Fired);
       if Fired /= Pump.Keys.None then
          if Fired in Pump.Keys.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Bed_Keys,
                Pump.Keys.Selection'Pos (Fired)
                - Pump.Keys.Selection'Pos (Pump.Keys.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.Bed_Keys,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Bed_Keys,
             Pump.Keys_States.Leaf'Pos (Keys_Region.Leaf));
          for I in 1 .. Pump.Event_Lists.Count (Box.Raised) loop
             Offer (Pump.Event_Lists.Element (Box.Raised, I));
@@ -426,28 +387,23 @@ is
       if Fired.Count > 0 then
          for I in 1 .. Fired.Count loop
             if Fired.Items (I) in Pump.Infusion.Transition then
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Transition,
+               Trace.Buffer.Note (Ravenchart.Traces.Transition,
                   Elements.Bed_Infusion,
                   Pump.Infusion.Selection'Pos (Fired.Items (I))
                   - Pump.Infusion.Selection'Pos
                       (Pump.Infusion.Transition'First));
             end if;
          end loop;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.Bed_Infusion,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Bed_Infusion,
             Pump.Infusion_States.Leaf'Pos (Infusion_Region.Place.Top));
          if Infusion_Region.Place.Top = Pump.Infusion_States.Self_Test then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.State,
+            Trace.Buffer.Note (Ravenchart.Traces.State,
                Elements.Bed_Infusion_Sensor,
                Pump.Infusion_States.Sensor_Leaf'Pos
                  (Infusion_Region.Place.In_Sensor));
          end if;
          if Infusion_Region.Place.Top = Pump.Infusion_States.Self_Test then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.State,
+            Trace.Buffer.Note (Ravenchart.Traces.State,
                Elements.Bed_Infusion_Motor,
                Pump.Infusion_States.Motor_Leaf'Pos
                  (Infusion_Region.Place.In_Motor));
@@ -456,9 +412,7 @@ is
       if Infusion_Region.Lost then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.Bed_Infusion,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Bed_Infusion,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
          Infusion_Region.Lost := False;

@@ -98,14 +98,12 @@ is
         Pre => Raw <= 16#3#,
         Post =>
           (Raw <= 2)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Value)
              in 0 .. 2)
           and then (if Raw <= 2
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Value)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Value)
                    = Infusion_System.Line'Pos (Value_Of_Type_Line (Raw)))
       is
       begin
@@ -113,8 +111,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Value)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Value;
@@ -183,14 +180,12 @@ is
         Pre => Raw <= 16#1FF#,
         Post =>
           (Raw <= 500)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Value)
              in 0 .. 500)
           and then (if Raw <= 500
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Value)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Value)
                    = Ravenchart.Number (Value_Of_Type_Portion (Raw)))
       is
       begin
@@ -198,8 +193,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Value)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Value;
@@ -268,14 +262,12 @@ is
         Pre => Raw <= 16#7#,
         Post =>
           (Raw <= 5)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Key)
              in 0 .. 5)
           and then (if Raw <= 5
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Key)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Key)
                    = Infusion_System.Key'Pos (Value_Of_Type_Key (Raw)))
       is
       begin
@@ -283,8 +275,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Key)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Key;
@@ -306,14 +297,12 @@ is
         Pre => Raw <= 16#FFFFF#,
         Post =>
           (Raw <= 1_000_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Amount)
              in 0 .. 1_000_000)
           and then (if Raw <= 1_000_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Amount)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Amount)
                    = Ravenchart.Number (Value_Of_Type_Volume (Raw)))
       is
       begin
@@ -321,8 +310,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Amount)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Amount;
@@ -405,14 +393,12 @@ is
         Pre => Raw <= 16#FFFFF#,
         Post =>
           (Raw <= 1_000_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Given)
              in 0 .. 1_000_000)
           and then (if Raw <= 1_000_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Given)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Given)
                    = Ravenchart.Number (Value_Of_Type_Volume (Raw)))
       is
       begin
@@ -420,8 +406,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Given)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Given;
@@ -443,14 +428,12 @@ is
         Pre => Raw <= 16#3#,
         Post =>
           (Raw <= 2)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Lamp)
              in 0 .. 2)
           and then (if Raw <= 2
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Lamp)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Lamp)
                    = Infusion_System.Lamp'Pos (Value_Of_Type_Lamp (Raw)))
       is
       begin
@@ -458,8 +441,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Lamp)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Lamp;
@@ -481,14 +463,12 @@ is
         Pre => Raw <= 16#1#,
         Post =>
           (Raw <= 1)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Buzzer)
              in 0 .. 1)
           and then (if Raw <= 1
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Buzzer)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Buzzer)
                    = Boolean'Pos (Value_Of_Type_Boolean (Raw)))
       is
       begin
@@ -496,8 +476,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Buzzer)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Buzzer;
@@ -509,8 +488,7 @@ is
         return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Given)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Lamp), 20)
-         or Interfaces.Shift_Left
-             (Interfaces.Unsigned_64 (Local_Buzzer),
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Buzzer),
               22))
       with
         Pre =>

@@ -194,8 +194,7 @@ is
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Key)
           = Infusion_System.Key'Pos (Item.Key)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Amount)
             = Ravenchart.Number (Item.Amount)
           and then (Pack'Result and 16#FFFFFFFFFF800000#) = 0;
@@ -215,8 +214,7 @@ is
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Key)
                    = Infusion_System.Key'Pos (Item.Key)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Amount)
                      = Ravenchart.Number (Item.Amount)
              else Item = Infusion_System.Default_Press);
@@ -281,12 +279,10 @@ is
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Given)
           = Ravenchart.Number (Item.Given)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Lamp)
             = Infusion_System.Lamp'Pos (Item.Lamp)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Buzzer)
             = Boolean'Pos (Item.Buzzer)
           and then (Pack'Result and 16#FFFFFFFFFF800000#) = 0;
@@ -309,12 +305,10 @@ is
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Given)
                    = Ravenchart.Number (Item.Given)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Lamp)
                      = Infusion_System.Lamp'Pos (Item.Lamp)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Buzzer)
                      = Boolean'Pos (Item.Buzzer)
              else Item = Infusion_System.Default_View);

@@ -17,12 +17,7 @@ is
 
    --  [control.table] the activities, in the order in which they run
    type Row is
-     (Bed_Ports,
-      Bed_Keys,
-      Bed_Infusion,
-      Bed_Turn,
-      Bed_Fill,
-      Bed_Drive,
+     (Bed_Ports, Bed_Keys, Bed_Infusion, Bed_Turn, Bed_Fill, Bed_Drive,
       Bed_Show);
 
    procedure Execute (Item : Row);
@@ -72,16 +67,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Control_Priority,
-      "control " & "has another priority than its certificate");
+      "control has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Control_T,
-      "control " & "has another period than its certificate");
+      "control has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Control_D,
-      "control " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "control " & "has another offset than its certificate");
+      "control has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "control has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Bed_Ports).Divisor
       = Timing_Certificate.Bed_Ports_Divisor

@@ -11,14 +11,12 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    procedure Turn
-     (Tested     : in out Infusion_System.Turns;
-      Raise_Done : out Boolean)
+     (Tested     : in out Infusion_System.Turns; Raise_Done : out Boolean)
    with Global => null;
    --  [Pump.turn] budget 50_000 ns, every 100_000_000 ns, while in Turning
 
    procedure Fill
-     (Filled     : in out Infusion_System.Turns;
-      Raise_Done : out Boolean)
+     (Filled     : in out Infusion_System.Turns; Raise_Done : out Boolean)
    with Global => null;
    --  [Pump.fill] budget 50_000 ns, every 100_000_000 ns, while in Filling
 

@@ -31,13 +31,7 @@ is
       else None)
    with
      Post =>
-       Is_Motor_Selection
-         (Select_Motor'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
+       Is_Motor_Selection (Select_Motor'Result, Place, Now, Past, Data, Ins,
           Item);
 
    function Select_Sensor
@@ -59,14 +53,8 @@ is
       else None)
    with
      Post =>
-       Is_Sensor_Selection
-         (Select_Sensor'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
+       Is_Sensor_Selection (Select_Sensor'Result, Place, Now, Past, Data,
+          Ins, Item);
 
    function In_Where_It_Was
      (Place : Infusion_States.Configuration;
@@ -78,12 +66,9 @@ is
      return Selection is
      (if Now = Passing and then Past.Known_In_Infusing
          then Restore_Where_It_Was
-      elsif Now = Passing
-         then Default_Of_Where_It_Was
-      elsif Now = On_Stop
-         then Stop
-      elsif Now = On_Sensor_Lost
-         then Lost
+      elsif Now = Passing then Default_Of_Where_It_Was
+      elsif Now = On_Stop then Stop
+      elsif Now = On_Sensor_Lost then Lost
       elsif Now = Conditions
          and then Ins.Line.Value /= Infusion_System.Clear
          then Trouble
@@ -91,14 +76,8 @@ is
    with
      Pre => Place.Top = Infusion_States.Where_It_Was,
      Post =>
-       Is_Top_Selection
-         (In_Where_It_Was'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
+       Is_Top_Selection (In_Where_It_Was'Result, Place, Now, Past, Data,
+          Ins, Item);
 
    function In_Infusing
      (Place : Infusion_States.Configuration;
@@ -110,16 +89,11 @@ is
      return Selection is
      (case Infusion_States.Infusing'(Place.Top) is
         when Infusion_States.Filling =>
-           (if Now = Completion_Of_Filling
-               then Filled_Up
-            elsif Now = On_New_Portion
-               then Defer_New_Portion_In_Filling
-            elsif Now = Completion_Of_Running
-               then Finished
-            elsif Now = On_Stop
-               then Stop
-            elsif Now = On_Sensor_Lost
-               then Lost
+           (if Now = Completion_Of_Filling then Filled_Up
+            elsif Now = On_New_Portion then Defer_New_Portion_In_Filling
+            elsif Now = Completion_Of_Running then Finished
+            elsif Now = On_Stop then Stop
+            elsif Now = On_Sensor_Lost then Lost
             elsif Now = Conditions
                and then Ins.Line.Value /= Infusion_System.Clear
                then Trouble
@@ -127,18 +101,13 @@ is
         when Infusion_States.Loading =>
            (if Now = Conditions and then Data.Given >= Ins.Loading
                then Loaded
-            elsif Now = On_New_Portion
-               then Defer_New_Portion_In_Loading
-            elsif Now = Expiry_Of_Beat
-               then Beat
+            elsif Now = On_New_Portion then Defer_New_Portion_In_Loading
+            elsif Now = Expiry_Of_Beat then Beat
             elsif Now = Conditions and then Data.Given >= Data.Volume
                then Enough
-            elsif Now = Completion_Of_Running
-               then Finished
-            elsif Now = On_Stop
-               then Stop
-            elsif Now = On_Sensor_Lost
-               then Lost
+            elsif Now = Completion_Of_Running then Finished
+            elsif Now = On_Stop then Stop
+            elsif Now = On_Sensor_Lost then Lost
             elsif Now = Conditions
                and then Ins.Line.Value /= Infusion_System.Clear
                then Trouble
@@ -146,36 +115,27 @@ is
         when Infusion_States.Maintaining =>
            (if Now = On_New_Portion and then Item.Value_Portion > 0
                then Change
-            elsif Now = Expiry_Of_Beat
-               then Beat
+            elsif Now = Expiry_Of_Beat then Beat
             elsif Now = Conditions and then Data.Given >= Data.Volume
                then Enough
-            elsif Now = Completion_Of_Running
-               then Finished
-            elsif Now = On_Stop
-               then Stop
-            elsif Now = On_Sensor_Lost
-               then Lost
+            elsif Now = Completion_Of_Running then Finished
+            elsif Now = On_Stop then Stop
+            elsif Now = On_Sensor_Lost then Lost
             elsif Now = Conditions
                and then Ins.Line.Value /= Infusion_System.Clear
                then Trouble
             else None),
         when Infusion_States.All_Given =>
-           (if Now = Completion_Of_Running
-               then Finished
-            elsif Now = On_Stop
-               then Stop
-            elsif Now = On_Sensor_Lost
-               then Lost
+           (if Now = Completion_Of_Running then Finished
+            elsif Now = On_Stop then Stop
+            elsif Now = On_Sensor_Lost then Lost
             elsif Now = Conditions
                and then Ins.Line.Value /= Infusion_System.Clear
                then Trouble
             else None),
         when Infusion_States.Trickling =>
-           (if Now = On_Stop
-               then Stop
-            elsif Now = On_Sensor_Lost
-               then Lost
+           (if Now = On_Stop then Stop
+            elsif Now = On_Sensor_Lost then Lost
             elsif Now = Conditions
                and then Ins.Line.Value /= Infusion_System.Clear
                then Trouble
@@ -185,13 +145,7 @@ is
    with
      Pre => Place.Top in Infusion_States.Infusing,
      Post =>
-       Is_Top_Selection
-         (In_Infusing'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
+       Is_Top_Selection (In_Infusing'Result, Place, Now, Past, Data, Ins,
           Item);
 
    function In_Alarm
@@ -204,24 +158,16 @@ is
      return Selection is
      (case Infusion_States.Alarm'(Place.Top) is
         when Infusion_States.Sounding =>
-           (if Now = On_Silence
-               then Hush
-            elsif Now = On_Resume
-               then Resume
-            elsif Now = On_Stop
-               then Give_Up
-            elsif Now = On_New_Portion
-               then Defer_New_Portion_In_Alarm
+           (if Now = On_Silence then Hush
+            elsif Now = On_Resume then Resume
+            elsif Now = On_Stop then Give_Up
+            elsif Now = On_New_Portion then Defer_New_Portion_In_Alarm
             else None),
         when Infusion_States.Silent =>
-           (if Now = Expiry_Of_Remind
-               then Remind
-            elsif Now = On_Resume
-               then Resume
-            elsif Now = On_Stop
-               then Give_Up
-            elsif Now = On_New_Portion
-               then Defer_New_Portion_In_Alarm
+           (if Now = Expiry_Of_Remind then Remind
+            elsif Now = On_Resume then Resume
+            elsif Now = On_Stop then Give_Up
+            elsif Now = On_New_Portion then Defer_New_Portion_In_Alarm
             else None))
    with
      Pre => Place.Top in Infusion_States.Alarm,
@@ -240,19 +186,12 @@ is
          and then Ins.Line.State = Ravenchart.Fresh
          and then Ins.Line.Value = Infusion_System.Clear
          then Go_On
-      elsif Now = Passing
-         then Not_Yet
+      elsif Now = Passing then Not_Yet
       else None)
    with
      Pre => Place.Top = Infusion_States.May_Go_On,
      Post =>
-       Is_Top_Selection
-         (In_May_Go_On'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
+       Is_Top_Selection (In_May_Go_On'Result, Place, Now, Past, Data, Ins,
           Item);
 
    function Select_Top
@@ -265,20 +204,14 @@ is
      return Selection is
      (case Place.Top is
         when Infusion_States.Self_Test =>
-           (if Now = Completion_Of_Self_Test
-               then Ready
-            elsif Now = Expiry_Of_Again
-               then Again
-            elsif Now = On_New_Portion
-               then Defer_New_Portion_In_Self_Test
-            elsif Now = On_New_Volume
-               then Defer_New_Volume_In_Self_Test
+           (if Now = Completion_Of_Self_Test then Ready
+            elsif Now = Expiry_Of_Again then Again
+            elsif Now = On_New_Portion then Defer_New_Portion_In_Self_Test
+            elsif Now = On_New_Volume then Defer_New_Volume_In_Self_Test
             else None),
         when Infusion_States.Programming =>
-           (if Now = On_New_Portion
-               then Order_Portion
-            elsif Now = On_New_Volume
-               then Order_Volume
+           (if Now = On_New_Portion then Order_Portion
+            elsif Now = On_New_Volume then Order_Volume
             elsif Now = On_Start
                and then Data.Portion > 0
                and then Data.Volume > 0
@@ -292,13 +225,7 @@ is
            In_May_Go_On (Place, Now, Past, Data, Ins, Item))
    with
      Post =>
-       Is_Top_Selection
-         (Select_Top'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
+       Is_Top_Selection (Select_Top'Result, Place, Now, Past, Data, Ins,
           Item);
 
    function Select_Segment
@@ -314,13 +241,7 @@ is
    with
      Pre => Segments_Left (Place) > 0,
      Post =>
-       Enabled
-         (Select_Segment'Result,
-          Place,
-          Passing,
-          Past,
-          Data,
-          Ins,
+       Enabled (Select_Segment'Result, Place, Passing, Past, Data, Ins,
           Item)
        and then Is_Segment (Select_Segment'Result);
 
@@ -346,27 +267,10 @@ is
    with Ghost
    is
       type Node is
-        (Nowhere,
-         Turning,
-         Motor_Good,
-         Listening,
-         Sensor_Good,
-         Self_Test,
-         Programming,
-         Filling,
-         Loading,
-         Maintaining,
-         All_Given,
-         Trickling,
-         Where_It_Was,
-         Sounding,
-         Silent,
-         May_Go_On,
-         Infusing,
-         Running,
-         Giving,
-         Alarm,
-         Disorder);
+        (Nowhere, Turning, Motor_Good, Listening, Sensor_Good, Self_Test,
+         Programming, Filling, Loading, Maintaining, All_Given, Trickling,
+         Where_It_Was, Sounding, Silent, May_Go_On, Infusing, Running,
+         Giving, Alarm, Disorder);
 
       function Innermost_Motor
         (Place : Infusion_States.Configuration)
@@ -390,16 +294,13 @@ is
         (Node'Val (Infusion_States.Leaf'Pos (Place.Top) + 5));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
 
    procedure Notice_Turning
-     (Self : in out Region;
-      Visit : Ravenchart.Event_Count) is
+     (Self : in out Region; Visit : Ravenchart.Event_Count) is
    begin
       if Self.Started
          and then Visit = Self.Visits_Turning
@@ -413,8 +314,7 @@ is
    end Notice_Turning;
 
    procedure Notice_Filling
-     (Self : in out Region;
-      Visit : Ravenchart.Event_Count) is
+     (Self : in out Region; Visit : Ravenchart.Event_Count) is
    begin
       if Self.Started
          and then Visit = Self.Visits_Filling
@@ -432,9 +332,7 @@ is
    end Tick;
 
    procedure Poll
-     (Self : in out Region;
-      Now  : out Occurrence;
-      Item : out Event) is
+     (Self : in out Region; Now  : out Occurrence; Item : out Event) is
       Due : Natural;
       Released : Natural;
    begin
@@ -469,11 +367,8 @@ is
                   pragma Loop_Invariant
                     (Released = 0
                      and then (for all J in 1 .. I - 1 =>
-                           not Is_Due
-                             (Self.Deferred,
-                              Self.Place,
-                              Self.Freed,
-                              J)));
+                           not Is_Due (Self.Deferred, Self.Place,
+                              Self.Freed, J)));
                   if Is_Due (Self.Deferred, Self.Place, Self.Freed, I) then
                      Released := I;
                      exit;
@@ -481,10 +376,7 @@ is
                end loop;
                if Released > 0 then
                   pragma Assert
-                    (Is_Released
-                       (Self.Deferred,
-                        Self.Place,
-                        Self.Freed,
+                    (Is_Released (Self.Deferred, Self.Place, Self.Freed,
                         Released));
                   Now :=
                     To_Occurrence
@@ -514,68 +406,46 @@ is
        Self.Started
        and then Self.Place = Target (Chosen, Self.Place'Old, Self.Past'Old)
        and then Self.Timers (1)
-         = Timer_After
-             (1,
-              Domain_Of (Chosen),
-              Self.Place'Old,
-              Self.Place,
+         = Timer_After (1, Domain_Of (Chosen), Self.Place'Old, Self.Place,
               Self.Timers'Old (1))
        and then Self.Timers (2)
-         = Timer_After
-             (2,
-              Domain_Of (Chosen),
-              Self.Place'Old,
-              Self.Place,
+         = Timer_After (2, Domain_Of (Chosen), Self.Place'Old, Self.Place,
               Self.Timers'Old (2))
        and then Self.Timers (3)
-         = Timer_After
-             (3,
-              Domain_Of (Chosen),
-              Self.Place'Old,
-              Self.Place,
+         = Timer_After (3, Domain_Of (Chosen), Self.Place'Old, Self.Place,
               Self.Timers'Old (3))
        and then ((Self.Started'Old
-           and (Self.Past
-              = Remembered
-                  (Domain_Of (Chosen),
-                   Self.Place'Old,
-                   Self.Past'Old)))
-          or (not Self.Started'Old and (Self.Past = Self.Past'Old)))
+           and Self.Past
+             = Remembered (Domain_Of (Chosen), Self.Place'Old,
+                  Self.Past'Old))
+          or (not Self.Started'Old and Self.Past = Self.Past'Old))
        and then Self.Freed
-         = Freed_After
-             (Domain_Of (Chosen),
-              Self.Place'Old,
-              Deferrals.Count (Self.Deferred'Old),
-              Self.Freed'Old)
+         = Freed_After (Domain_Of (Chosen), Self.Place'Old,
+              Deferrals.Count (Self.Deferred'Old), Self.Freed'Old)
        and then (if Chosen
              in Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
                | Defer_New_Portion_In_Self_Test
                | Defer_New_Volume_In_Self_Test | Defer_New_Portion_In_Alarm
-             then Deferrals.Is_Appended
-                  (Self.Deferred'Old,
-                   Item,
+             then Deferrals.Is_Appended (Self.Deferred'Old, Item,
                    Self.Deferred)
                 and then Self.Lost
                   = (Self.Lost'Old
-                     or (Deferrals.Count (Self.Deferred'Old) = 4))
+                     or Deferrals.Count (Self.Deferred'Old) = 4)
           else Self.Deferred = Self.Deferred'Old
              and then Self.Lost = Self.Lost'Old)
        and then Is_Safe (Self.Place, Self.Data)
    is
       use type Chart.Node;
       Active_Motor : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost_Motor (Self.Place)
+        (if Self.Started then Chart.Innermost_Motor (Self.Place)
          else Chart.Nowhere)
       with Ghost;
       Active_Sensor : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost_Sensor (Self.Place)
+        (if Self.Started then Chart.Innermost_Sensor (Self.Place)
          else Chart.Nowhere)
       with Ghost;
       Active_Top : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost_Top (Self.Place)
+        (if Self.Started then Chart.Innermost_Top (Self.Place)
          else Chart.Nowhere)
       with Ghost;
       Past : constant Memory := Self.Past;
@@ -583,8 +453,7 @@ is
       function Is_Agreed return Boolean is
         (Active_Motor = Chart.Innermost_Motor (Self.Place)
          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
-         and then Active_Top = Chart.Innermost_Top (Self.Place))
-      with Ghost;
+         and then Active_Top = Chart.Innermost_Top (Self.Place)) with Ghost;
       function Is_Timed
         (D      : Domain;
          Before : Infusion_States.Configuration;
@@ -596,15 +465,53 @@ is
          and then Self.Timers (3)
            = Timer_After (3, D, Before, Self.Place, Was (3)))
       with Ghost, Pre => Was'First = 1 and then Was'Last = 3;
+      function Is_Fired (Before : Region; Chosen : Firing) return Boolean is
+        (Self.Started
+         and then Self.Place = Target (Chosen, Before.Place, Before.Past)
+         and then Is_Timed (Domain_Of (Chosen), Before.Place, Before.Timers)
+         and then ((Before.Started
+             and Self.Past
+               = Remembered (Domain_Of (Chosen), Before.Place, Before.Past))
+            or (not Before.Started and Self.Past = Before.Past))
+         and then Self.Freed
+           = Freed_After (Domain_Of (Chosen), Before.Place,
+                Deferrals.Count (Before.Deferred), Before.Freed)
+         and then (if Chosen
+               in Defer_New_Portion_In_Loading
+                 | Defer_New_Portion_In_Filling
+                 | Defer_New_Portion_In_Self_Test
+                 | Defer_New_Volume_In_Self_Test
+                 | Defer_New_Portion_In_Alarm
+               then Deferrals.Is_Appended (Before.Deferred, Item,
+                     Self.Deferred)
+                  and then Self.Lost
+                    = (Before.Lost or Deferrals.Count (Before.Deferred) = 4)
+            else Self.Deferred = Before.Deferred
+               and then Self.Lost = Before.Lost)) with Ghost;
+      pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+      function Lasts (Before : Region) return Boolean is
+        (Self.Timers = Before.Timers
+         and then Self.Past = Before.Past
+         and then Self.Freed = Before.Freed
+         and then Self.Started = Before.Started
+         and then (if Before.Deferred = Kept then Self.Deferred = Kept)
+         and then Deferrals.Count (Self.Deferred)
+           = Deferrals.Count (Before.Deferred)
+         and then Self.Lost = Before.Lost) with Ghost;
+      pragma Annotate (GNATprove, Inline_For_Proof, Lasts);
+      function Keeps (Before : Region) return Boolean is
+        (Self.Started = Before.Started
+         and then (if Before.Deferred = Kept then Self.Deferred = Kept)
+         and then Deferrals.Count (Self.Deferred)
+           = Deferrals.Count (Before.Deferred)
+         and then Self.Lost = Before.Lost) with Ghost;
+      pragma Annotate (GNATprove, Inline_For_Proof, Keeps);
       function Data_After_Exit_Turning (Data : Variables) return Variables is
-        ((Data with delta Speed => 0))
-      with Ghost;
+        ((Data with delta Speed => 0)) with Ghost;
       function Data_After_Exit_Infusing (Data : Variables) return Variables is
-        ((Data with delta Speed => 0))
-      with Ghost;
+        ((Data with delta Speed => 0)) with Ghost;
       function Data_After_Exit_Alarm (Data : Variables) return Variables is
-        ((Data with delta Buzzer => False))
-      with Ghost;
+        ((Data with delta Buzzer => False)) with Ghost;
       function Data_After_Leave_Motor (Data : Variables) return Variables is
         (case Self.Place.In_Motor is
            when Infusion_States.Turning => Data_After_Exit_Turning (Data),
@@ -613,22 +520,17 @@ is
       function Data_After_Enter_Self_Test
         (Data : Variables)
         return Variables is
-        ((Data with delta Lamp => Infusion_System.Flashing))
-      with Ghost;
+        ((Data with delta Lamp => Infusion_System.Flashing)) with Ghost;
       function Data_After_Enter_Turning (Data : Variables) return Variables is
-        ((Data with delta Speed => 10))
-      with Ghost;
+        ((Data with delta Speed => 10)) with Ghost;
       function Data_After_Enter_Programming
         (Data : Variables)
         return Variables is
-        ((Data with delta Lamp => Infusion_System.Dark))
-      with Ghost;
+        ((Data with delta Lamp => Infusion_System.Dark)) with Ghost;
       function Data_After_Enter_Infusing (Data : Variables) return Variables is
-        ((Data with delta Lamp => Infusion_System.Steady))
-      with Ghost;
+        ((Data with delta Lamp => Infusion_System.Steady)) with Ghost;
       function Data_After_Enter_Filling (Data : Variables) return Variables is
-        ((Data with delta Speed => 100))
-      with Ghost;
+        ((Data with delta Speed => 100)) with Ghost;
       function Data_After_Enter_Loading (Data : Variables) return Variables is
         ((Data with delta
             Speed => Infusion_System.Unit_Ul'Min (2 * Data.Portion, 500)))
@@ -636,22 +538,17 @@ is
       function Data_After_Enter_Maintaining
         (Data : Variables)
         return Variables is
-        ((Data with delta Speed => Data.Portion))
-      with Ghost;
+        ((Data with delta Speed => Data.Portion)) with Ghost;
       function Data_After_Enter_Trickling
         (Data : Variables)
         return Variables is
-        ((Data with delta Speed => Ins.Trickle))
-      with Ghost;
+        ((Data with delta Speed => Ins.Trickle)) with Ghost;
       function Data_After_Enter_Alarm (Data : Variables) return Variables is
-        ((Data with delta Lamp => Infusion_System.Flashing))
-      with Ghost;
+        ((Data with delta Lamp => Infusion_System.Flashing)) with Ghost;
       function Data_After_Enter_Sounding (Data : Variables) return Variables is
-        ((Data with delta Buzzer => True))
-      with Ghost;
+        ((Data with delta Buzzer => True)) with Ghost;
       function Data_After_Enter_Silent (Data : Variables) return Variables is
-        ((Data with delta Buzzer => False))
-      with Ghost;
+        ((Data with delta Buzzer => False)) with Ghost;
       procedure Exit_Self_Test
       with
         Post =>
@@ -659,9 +556,7 @@ is
           and then Active_Top
             = (if Active_Motor = Chart.Nowhere
                   and then Active_Sensor = Chart.Nowhere
-                  then Chart.Moved
-                       (Active_Top'Old,
-                        Chart.Self_Test,
+                  then Chart.Moved (Active_Top'Old, Chart.Self_Test,
                         Chart.Nowhere)
                else Chart.Disorder)
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
@@ -671,11 +566,7 @@ is
           and then Self.Freed
             = (New_Portion => Deferrals.Count (Self.Deferred),
                New_Volume => Deferrals.Count (Self.Deferred))
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -695,14 +586,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Motor
             = Chart.Moved (Active_Motor'Old, Chart.Turning, Chart.Nowhere)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Exit_Turning (Self.Data'Old)
       is
       begin
@@ -717,14 +601,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Infusing, Chart.Nowhere)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Exit_Infusing (Self.Data'Old)
       is
       begin
@@ -738,14 +615,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Infusing)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -766,11 +636,7 @@ is
           and then Self.Freed
             = (New_Portion => Deferrals.Count (Self.Deferred),
                New_Volume => Self.Freed'Old.New_Volume)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -792,11 +658,7 @@ is
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -817,11 +679,7 @@ is
           and then Self.Freed
             = (New_Portion => Deferrals.Count (Self.Deferred),
                New_Volume => Self.Freed'Old.New_Volume)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -842,11 +700,7 @@ is
             = (Last_In_Infusing => Infusion_States.Maintaining,
                Known_In_Infusing => True)
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -866,11 +720,7 @@ is
             = (Last_In_Infusing => Infusion_States.All_Given,
                Known_In_Infusing => True)
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -890,11 +740,7 @@ is
             = (Last_In_Infusing => Infusion_States.Trickling,
                Known_In_Infusing => True)
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -914,11 +760,7 @@ is
           and then Self.Freed
             = (New_Portion => Deferrals.Count (Self.Deferred),
                New_Volume => Self.Freed'Old.New_Volume)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Data_After_Exit_Alarm (Self.Data'Old)
       is
       begin
@@ -937,11 +779,7 @@ is
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -965,16 +803,9 @@ is
           and then Self.Past
             = Remembered (Inside_Alarm, Self.Place'Old, Self.Past'Old)
           and then Self.Freed
-            = Freed_After
-                (Inside_Alarm,
-                 Self.Place'Old,
-                 Deferrals.Count (Self.Deferred),
-                 Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+            = Freed_After (Inside_Alarm, Self.Place'Old,
+                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -998,16 +829,9 @@ is
           and then Self.Past
             = Remembered (Inside_Giving, Self.Place'Old, Self.Past'Old)
           and then Self.Freed
-            = Freed_After
-                (Inside_Giving,
-                 Self.Place'Old,
-                 Deferrals.Count (Self.Deferred),
-                 Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+            = Freed_After (Inside_Giving, Self.Place'Old,
+                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -1035,16 +859,9 @@ is
           and then Self.Past
             = Remembered (Inside_Running, Self.Place'Old, Self.Past'Old)
           and then Self.Freed
-            = Freed_After
-                (Inside_Running,
-                 Self.Place'Old,
-                 Deferrals.Count (Self.Deferred),
-                 Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+            = Freed_After (Inside_Running, Self.Place'Old,
+                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -1075,16 +892,9 @@ is
           and then Self.Past
             = Remembered (Inside_Infusing, Self.Place'Old, Self.Past'Old)
           and then Self.Freed
-            = Freed_After
-                (Inside_Infusing,
-                 Self.Place'Old,
-                 Deferrals.Count (Self.Deferred),
-                 Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+            = Freed_After (Inside_Infusing, Self.Place'Old,
+                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -1096,9 +906,7 @@ is
                Exit_Trickling;
             when Infusion_States.Where_It_Was =>
                Active_Top :=
-                 Chart.Moved
-                   (Active_Top,
-                    Chart.Where_It_Was,
+                 Chart.Moved (Active_Top, Chart.Where_It_Was,
                     Chart.Infusing);
          end case;
       end Leave_Infusing;
@@ -1114,16 +922,9 @@ is
           and then Self.Past
             = Remembered (Inside_Motor, Self.Place'Old, Self.Past'Old)
           and then Self.Freed
-            = Freed_After
-                (Inside_Motor,
-                 Self.Place'Old,
-                 Deferrals.Count (Self.Deferred),
-                 Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+            = Freed_After (Inside_Motor, Self.Place'Old,
+                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
+          and then Keeps (Self'Old)
           and then Self.Data = Data_After_Leave_Motor (Self.Data'Old)
       is
       begin
@@ -1147,16 +948,9 @@ is
           and then Self.Past
             = Remembered (Inside_Sensor, Self.Place'Old, Self.Past'Old)
           and then Self.Freed
-            = Freed_After
-                (Inside_Sensor,
-                 Self.Place'Old,
-                 Deferrals.Count (Self.Deferred),
-                 Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+            = Freed_After (Inside_Sensor, Self.Place'Old,
+                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -1166,9 +960,7 @@ is
                  Chart.Moved (Active_Sensor, Chart.Listening, Chart.Nowhere);
             when Infusion_States.Sensor_Good =>
                Active_Sensor :=
-                 Chart.Moved
-                   (Active_Sensor,
-                    Chart.Sensor_Good,
+                 Chart.Moved (Active_Sensor, Chart.Sensor_Good,
                     Chart.Nowhere);
          end case;
       end Leave_Sensor;
@@ -1182,9 +974,7 @@ is
           and then Active_Top
             = (if Active_Motor = Chart.Nowhere
                   and then Active_Sensor = Chart.Nowhere
-                  then Chart.Moved
-                       (Active_Top'Old,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Top'Old, Chart.Nowhere,
                         Chart.Self_Test)
                else Chart.Disorder)
           and then Self.Timers (1) = Ravenchart.Timers.Started (100)
@@ -1192,11 +982,7 @@ is
                 (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Data_After_Enter_Self_Test (Self.Data'Old)
       is
       begin
@@ -1218,19 +1004,10 @@ is
           = (Self.Place'Old with delta In_Motor => Infusion_States.Turning)
           and then Active_Motor
             = (if Active_Top = Chart.Self_Test
-                  then Chart.Moved
-                       (Active_Motor'Old,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Motor'Old, Chart.Nowhere,
                         Chart.Turning)
                else Chart.Disorder)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Turning (Self.Data'Old)
       is
       begin
@@ -1251,28 +1028,17 @@ is
                In_Motor => Infusion_States.Motor_Good)
           and then Active_Motor
             = (if Active_Top = Chart.Self_Test
-                  then Chart.Moved
-                       (Active_Motor'Old,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Motor'Old, Chart.Nowhere,
                         Chart.Motor_Good)
                else Chart.Disorder)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
          Self.Place.In_Motor := Infusion_States.Motor_Good;
          Active_Motor :=
            (if Active_Top = Chart.Self_Test
-               then Chart.Moved
-                    (Active_Motor,
-                     Chart.Nowhere,
+               then Chart.Moved (Active_Motor, Chart.Nowhere,
                      Chart.Motor_Good)
             else Chart.Disorder);
          if Self.Place.In_Sensor = Infusion_States.Sensor_Good then
@@ -1287,28 +1053,17 @@ is
                In_Sensor => Infusion_States.Sensor_Good)
           and then Active_Sensor
             = (if Active_Top = Chart.Self_Test
-                  then Chart.Moved
-                       (Active_Sensor'Old,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Sensor'Old, Chart.Nowhere,
                         Chart.Sensor_Good)
                else Chart.Disorder)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
          Self.Place.In_Sensor := Infusion_States.Sensor_Good;
          Active_Sensor :=
            (if Active_Top = Chart.Self_Test
-               then Chart.Moved
-                    (Active_Sensor,
-                     Chart.Nowhere,
+               then Chart.Moved (Active_Sensor, Chart.Nowhere,
                      Chart.Sensor_Good)
             else Chart.Disorder);
          if Self.Place.In_Motor = Infusion_States.Motor_Good then
@@ -1322,14 +1077,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Programming)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Programming)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Programming (Self.Data'Old)
       is
       begin
@@ -1344,14 +1092,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Infusing)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Infusing (Self.Data'Old)
       is
       begin
@@ -1366,14 +1107,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Filling)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Filling)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Filling (Self.Data'Old)
       is
       begin
@@ -1395,11 +1129,7 @@ is
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -1414,14 +1144,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Loading)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Loading)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Loading (Self.Data'Old)
       is
       begin
@@ -1438,14 +1161,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Maintaining)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Maintaining)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Maintaining (Self.Data'Old)
       is
       begin
@@ -1461,14 +1177,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.All_Given)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Running, Chart.All_Given)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -1484,14 +1193,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Trickling)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Infusing, Chart.Trickling)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Trickling (Self.Data'Old)
       is
       begin
@@ -1506,14 +1208,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Alarm)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Alarm (Self.Data'Old)
       is
       begin
@@ -1527,14 +1222,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Sounding)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Alarm, Chart.Sounding)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Sounding (Self.Data'Old)
       is
       begin
@@ -1555,11 +1243,7 @@ is
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Data_After_Enter_Silent (Self.Data'Old)
       is
       begin
@@ -1580,41 +1264,7 @@ is
           and then Self.Deferred = Kept
           and then Is_Agreed,
         Post =>
-          Self.Started
-          and then Self.Place
-            = Target (Chosen, Self.Place'Old, Self.Past'Old)
-          and then Is_Timed
-              (Domain_Of (Chosen),
-               Self.Place'Old,
-               Self.Timers'Old)
-          and then ((Self.Started'Old
-              and (Self.Past
-                 = Remembered
-                     (Domain_Of (Chosen),
-                      Self.Place'Old,
-                      Self.Past'Old)))
-             or (not Self.Started'Old and (Self.Past = Self.Past'Old)))
-          and then Self.Freed
-            = Freed_After
-                (Domain_Of (Chosen),
-                 Self.Place'Old,
-                 Deferrals.Count (Self.Deferred'Old),
-                 Self.Freed'Old)
-          and then (if Chosen
-                in Defer_New_Portion_In_Loading
-                  | Defer_New_Portion_In_Filling
-                  | Defer_New_Portion_In_Self_Test
-                  | Defer_New_Volume_In_Self_Test
-                  | Defer_New_Portion_In_Alarm
-                then Deferrals.Is_Appended
-                     (Self.Deferred'Old,
-                      Item,
-                      Self.Deferred)
-                   and then Self.Lost
-                     = (Self.Lost'Old
-                        or (Deferrals.Count (Self.Deferred'Old) = 4))
-             else Self.Deferred = Self.Deferred'Old
-                and then Self.Lost = Self.Lost'Old)
+          Is_Fired (Self'Old, Chosen)
           and then Is_Safe (Self.Place, Self.Data)
           and then Is_Agreed
       is
@@ -1644,7 +1294,8 @@ is
                   and then Active_Sensor
                     = Chart.Innermost_Sensor (Self.Place));
                Enter_Maintaining;
-            when Defer_New_Portion_In_Loading =>
+            when Defer_New_Portion_In_Loading
+               | Defer_New_Portion_In_Filling =>
                if Deferrals.Count (Self.Deferred) = 4 then
                   Self.Lost := True;
                else
@@ -1657,18 +1308,11 @@ is
             when Beat =>
                Self.Data.Given :=
                  Infusion_System.Unit_Ul'Min
-                   (Self.Data.Given + Self.Data.Speed,
-                    Self.Data.Volume);
+                   (Self.Data.Given + Self.Data.Speed, Self.Data.Volume);
             when Enough =>
                Leave_Giving;
                Exit_Giving;
                Enter_All_Given;
-            when Defer_New_Portion_In_Filling =>
-               if Deferrals.Count (Self.Deferred) = 4 then
-                  Self.Lost := True;
-               else
-                  Deferrals.Append (Self.Deferred, Item);
-               end if;
             when Finished =>
                Leave_Running;
                Exit_Running;
@@ -1682,51 +1326,31 @@ is
                Enter_Sounding;
             when Restore_Where_It_Was =>
                Active_Top :=
-                 Chart.Moved
-                   (Active_Top,
-                    Chart.Where_It_Was,
+                 Chart.Moved (Active_Top, Chart.Where_It_Was,
                     Chart.Infusing);
                if Past.Known_In_Infusing then
                   case Past.Last_In_Infusing is
-                     when Infusion_States.Filling =>
+                     when Infusion_States.Filling
+                        | Infusion_States.All_Given
+                        | Infusion_States.Where_It_Was =>
                         Active_Top :=
-                          Chart.Moved
-                            (Active_Top,
-                             Chart.Infusing,
+                          Chart.Moved (Active_Top, Chart.Infusing,
                              Chart.Running);
                         Enter_Filling;
                      when Infusion_States.Loading =>
                         Active_Top :=
-                          Chart.Moved
-                            (Active_Top,
-                             Chart.Infusing,
+                          Chart.Moved (Active_Top, Chart.Infusing,
                              Chart.Running);
                         Enter_Giving;
                         Enter_Loading;
                      when Infusion_States.Maintaining =>
                         Active_Top :=
-                          Chart.Moved
-                            (Active_Top,
-                             Chart.Infusing,
+                          Chart.Moved (Active_Top, Chart.Infusing,
                              Chart.Running);
                         Enter_Giving;
                         Enter_Maintaining;
-                     when Infusion_States.All_Given =>
-                        Active_Top :=
-                          Chart.Moved
-                            (Active_Top,
-                             Chart.Infusing,
-                             Chart.Running);
-                        Enter_Filling;
                      when Infusion_States.Trickling =>
                         Enter_Trickling;
-                     when Infusion_States.Where_It_Was =>
-                        Active_Top :=
-                          Chart.Moved
-                            (Active_Top,
-                             Chart.Infusing,
-                             Chart.Running);
-                        Enter_Filling;
                   end case;
                else
                   Active_Top :=
@@ -1750,9 +1374,7 @@ is
                Enter_Turning;
                Active_Sensor :=
                  (if Active_Top = Chart.Self_Test
-                     then Chart.Moved
-                          (Active_Sensor,
-                           Chart.Nowhere,
+                     then Chart.Moved (Active_Sensor, Chart.Nowhere,
                            Chart.Listening)
                   else Chart.Disorder);
                Self.Place.In_Sensor := Infusion_States.Listening;
@@ -1780,12 +1402,7 @@ is
                Leave_Infusing;
                Exit_Infusing;
                Enter_Programming;
-            when Lost =>
-               Leave_Infusing;
-               Exit_Infusing;
-               Enter_Alarm;
-               Enter_Sounding;
-            when Trouble =>
+            when Lost | Trouble =>
                Leave_Infusing;
                Exit_Infusing;
                Enter_Alarm;
@@ -1818,59 +1435,15 @@ is
           and then Self.Deferred = Kept
           and then Is_Agreed,
         Post =>
-          Self.Started
-          and then Self.Place
-            = Target (Chosen, Self.Place'Old, Self.Past'Old)
-          and then Is_Timed
-              (Domain_Of (Chosen),
-               Self.Place'Old,
-               Self.Timers'Old)
-          and then ((Self.Started'Old
-              and (Self.Past
-                 = Remembered
-                     (Domain_Of (Chosen),
-                      Self.Place'Old,
-                      Self.Past'Old)))
-             or (not Self.Started'Old and (Self.Past = Self.Past'Old)))
-          and then Self.Freed
-            = Freed_After
-                (Domain_Of (Chosen),
-                 Self.Place'Old,
-                 Deferrals.Count (Self.Deferred'Old),
-                 Self.Freed'Old)
-          and then (if Chosen
-                in Defer_New_Portion_In_Loading
-                  | Defer_New_Portion_In_Filling
-                  | Defer_New_Portion_In_Self_Test
-                  | Defer_New_Volume_In_Self_Test
-                  | Defer_New_Portion_In_Alarm
-                then Deferrals.Is_Appended
-                     (Self.Deferred'Old,
-                      Item,
-                      Self.Deferred)
-                   and then Self.Lost
-                     = (Self.Lost'Old
-                        or (Deferrals.Count (Self.Deferred'Old) = 4))
-             else Self.Deferred = Self.Deferred'Old
-                and then Self.Lost = Self.Lost'Old)
+          Is_Fired (Self'Old, Chosen)
           and then Is_Safe (Self.Place, Self.Data)
           and then Is_Agreed
       is
       begin
          case Chosen is
-            when Defer_New_Portion_In_Self_Test =>
-               if Deferrals.Count (Self.Deferred) = 4 then
-                  Self.Lost := True;
-               else
-                  Deferrals.Append (Self.Deferred, Item);
-               end if;
-            when Defer_New_Volume_In_Self_Test =>
-               if Deferrals.Count (Self.Deferred) = 4 then
-                  Self.Lost := True;
-               else
-                  Deferrals.Append (Self.Deferred, Item);
-               end if;
-            when Defer_New_Portion_In_Alarm =>
+            when Defer_New_Portion_In_Self_Test
+               | Defer_New_Volume_In_Self_Test
+               | Defer_New_Portion_In_Alarm =>
                if Deferrals.Count (Self.Deferred) = 4 then
                   Self.Lost := True;
                else
@@ -1881,9 +1454,7 @@ is
                  Chart.Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
                Enter_Infusing;
                Active_Top :=
-                 Chart.Moved
-                   (Active_Top,
-                    Chart.Infusing,
+                 Chart.Moved (Active_Top, Chart.Infusing,
                     Chart.Where_It_Was);
                Self.Place.Top := Infusion_States.Where_It_Was;
             when Not_Yet =>
@@ -1901,9 +1472,7 @@ is
             Enter_Turning;
             Active_Sensor :=
               (if Active_Top = Chart.Self_Test
-                  then Chart.Moved
-                       (Active_Sensor,
-                        Chart.Nowhere,
+                  then Chart.Moved (Active_Sensor, Chart.Nowhere,
                         Chart.Listening)
                else Chart.Disorder);
             Self.Place.In_Sensor := Infusion_States.Listening;
@@ -1961,7 +1530,7 @@ is
                      Fired.Items (J) = Before.Items (J))
                and then (for all J in Before.Count + 2 .. Fired.Count =>
                      Is_Segment (Fired.Items (J)))
-               and then Segments_Left (Self.Place) <= (3 - I)
+               and then Segments_Left (Self.Place) <= 3 - I
                and then Is_Safe (Self.Place, Self.Data));
             if Segments_Left (Self.Place) = 0 then
                exit;
@@ -2009,10 +1578,8 @@ is
                         and then (Fired.Items (I) = C.Motor
                            or else Fired.Items (I) = C.Sensor)))
                and then Is_Ordered (Fired)
-               and then (if C.Motor /= None
-                     then Has (Fired, C.Motor)
-                  elsif C.Sensor /= None
-                     then Has (Fired, C.Sensor)));
+               and then (if C.Motor /= None then Has (Fired, C.Motor)
+                  elsif C.Sensor /= None then Has (Fired, C.Sensor)));
             if C.Top /= None and then In_Source (C.Top, Self.Place) then
                Fire_Whole (C.Top);
             end if;
@@ -2023,12 +1590,9 @@ is
                       or else Fired.Items (I) = C.Sensor
                       or else Fired.Items (I) = C.Top))
                and then Is_Ordered (Fired)
-               and then (if C.Motor /= None
-                     then Has (Fired, C.Motor)
-                  elsif C.Sensor /= None
-                     then Has (Fired, C.Sensor)
-                  elsif C.Top /= None
-                     then Has (Fired, C.Top)));
+               and then (if C.Motor /= None then Has (Fired, C.Motor)
+                  elsif C.Sensor /= None then Has (Fired, C.Sensor)
+                  elsif C.Top /= None then Has (Fired, C.Top)));
          end if;
       end if;
    end Step;

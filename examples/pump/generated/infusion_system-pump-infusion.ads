@@ -26,58 +26,23 @@ is
 
    --  [Pump.Infusion] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      Completion_Of_Self_Test,
-      Completion_Of_Turning,
-      Completion_Of_Running,
-      Completion_Of_Filling,
-      On_New_Portion,
-      On_New_Volume,
-      On_Start,
-      On_Stop,
-      On_Sensor_Lost,
-      On_Silence,
-      On_Resume,
-      Expiry_Of_Again,
-      Expiry_Of_Beat,
-      Expiry_Of_Remind,
-      Passing,
+     (Start_Of_Region, Completion_Of_Self_Test, Completion_Of_Turning,
+      Completion_Of_Running, Completion_Of_Filling, On_New_Portion,
+      On_New_Volume, On_Start, On_Stop, On_Sensor_Lost, On_Silence,
+      On_Resume, Expiry_Of_Again, Expiry_Of_Beat, Expiry_Of_Remind, Passing,
       Conditions);
 
    --  [Pump.Infusion.transitions] in order of precedence, innermost source
    --  first
    type Selection is
-     (Initial_Entry,
-      Turned,
-      Heard,
-      Loaded,
-      Change,
-      Defer_New_Portion_In_Loading,
-      Filled_Up,
-      Beat,
-      Enough,
-      Defer_New_Portion_In_Filling,
-      Finished,
-      Hush,
-      Remind,
-      Restore_Where_It_Was,
-      Default_Of_Where_It_Was,
-      Ready,
-      Again,
-      Order_Portion,
-      Order_Volume,
-      Start,
-      Stop,
-      Lost,
-      Trouble,
-      Resume,
-      Give_Up,
-      Defer_New_Portion_In_Self_Test,
-      Defer_New_Volume_In_Self_Test,
-      Defer_New_Portion_In_Alarm,
-      Go_On,
-      Not_Yet,
-      None);
+     (Initial_Entry, Turned, Heard, Loaded, Change,
+      Defer_New_Portion_In_Loading, Filled_Up, Beat, Enough,
+      Defer_New_Portion_In_Filling, Finished, Hush, Remind,
+      Restore_Where_It_Was, Default_Of_Where_It_Was, Ready, Again,
+      Order_Portion, Order_Volume, Start, Stop, Lost, Trouble, Resume,
+      Give_Up, Defer_New_Portion_In_Self_Test,
+      Defer_New_Volume_In_Self_Test, Defer_New_Portion_In_Alarm, Go_On,
+      Not_Yet, None);
 
    subtype Firing is Selection range Initial_Entry .. Not_Yet;
    subtype Transition is Selection range Turned .. Not_Yet;
@@ -117,9 +82,7 @@ is
    end record;
 
    package Deferrals is new Ravenchart.Event_Lists
-     (Event => Pump.Event,
-      Null_Event => Pump.No_Event,
-      Capacity => 4);
+     (Event => Pump.Event, Null_Event => Pump.No_Event, Capacity => 4);
 
    use type Deferrals.List;
 
@@ -265,8 +228,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Place : Infusion_States.Configuration)
+     (T : Transition; Place : Infusion_States.Configuration)
      return Boolean is
      (case T is
         when Turned =>
@@ -325,9 +287,7 @@ is
    --  The leaf that deep history enters in Infusing.
 
    function Target
-     (T     : Firing;
-      Place : Infusion_States.Configuration;
-      Past  : Memory)
+     (T     : Firing; Place : Infusion_States.Configuration; Past  : Memory)
      return Infusion_States.Configuration is
      (case T is
         when Initial_Entry =>
@@ -376,15 +336,8 @@ is
    --  The innermost region that holds all that a transition leaves and
    --  enters.
    type Domain is
-     (Nothing,
-      Inside_Motor,
-      Inside_Sensor,
-      Inside_Infusing,
-      Inside_Running,
-      Inside_Giving,
-      Inside_Alarm,
-      Everything,
-      Beginning);
+     (Nothing, Inside_Motor, Inside_Sensor, Inside_Infusing, Inside_Running,
+      Inside_Giving, Inside_Alarm, Everything, Beginning);
 
    function Domain_Of (T : Firing) return Domain is
      (case T is
@@ -430,15 +383,13 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Everything or else D = Beginning,
               D /= Beginning and then Before.Top = Infusion_States.Self_Test,
               After.Top = Infusion_States.Self_Test,
               Ravenchart.Timers.Started (100)),
         when 2 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_Running
               or else D = Inside_Infusing
               or else D = Everything
@@ -447,8 +398,7 @@ is
               After.Top in Infusion_States.Giving,
               Ravenchart.Timers.Started (20, 20)),
         when 3 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Inside_Alarm or else D = Everything or else D = Beginning,
               D /= Beginning and then Before.Top = Infusion_States.Silent,
               After.Top = Infusion_States.Silent,
@@ -458,9 +408,7 @@ is
    --  entered.
 
    function Remembered
-     (D     : Domain;
-      Place : Infusion_States.Configuration;
-      Past  : Memory)
+     (D     : Domain; Place : Infusion_States.Configuration; Past  : Memory)
      return Memory is
      ((Last_In_Infusing =>
          (if (D = Inside_Running
@@ -574,33 +522,23 @@ is
       Item  : Event)
      return Boolean is
      (Is_Motor_Selection (C.Motor, Place, Now, Past, Data, Ins, Item)
-      and then Is_Sensor_Selection
-          (C.Sensor,
-           Place,
-           Now,
-           Past,
-           Data,
-           Ins,
+      and then Is_Sensor_Selection (C.Sensor, Place, Now, Past, Data, Ins,
            Item)
       and then (if C.Motor = None and then C.Sensor = None
             then Is_Top_Selection (C.Top, Place, Now, Past, Data, Ins, Item)
-         else C.Top = None))
-   with Ghost;
+         else C.Top = None)) with Ghost;
    --  Each lane's first; none where a lane inside it has one.
 
    function Segments_Left
      (Place : Infusion_States.Configuration)
      return Natural is
-     (if Place.Top = Infusion_States.May_Go_On
-         then 2
-      elsif Place.Top = Infusion_States.Where_It_Was
-         then 1
+     (if Place.Top = Infusion_States.May_Go_On then 2
+      elsif Place.Top = Infusion_States.Where_It_Was then 1
       else 0);
    --  How many segments follow at most; none but in a choice or history.
 
    function Is_Deferred
-     (Item : Event;
-      Place : Infusion_States.Configuration)
+     (Item : Event; Place : Infusion_States.Configuration)
      return Boolean is
      (case Item.Name is
         when New_Portion =>
@@ -639,21 +577,17 @@ is
      return Boolean is
      (Is_Due (Kept, Place, Freed, I)
       and then (for all J in 1 .. I - 1 =>
-            not Is_Due (Kept, Place, Freed, J)))
-   with Ghost;
+            not Is_Due (Kept, Place, Freed, J))) with Ghost;
    --  Is it the oldest that is due?
 
    function Freed_Without
-     (I : Positive;
-      Freed : Freed_Events)
+     (I : Positive; Freed : Freed_Events)
      return Freed_Events is
      ((New_Portion =>
-         (if I <= Freed.New_Portion
-             then Freed.New_Portion - 1
+         (if I <= Freed.New_Portion then Freed.New_Portion - 1
           else Freed.New_Portion),
        New_Volume =>
-         (if I <= Freed.New_Volume
-             then Freed.New_Volume - 1
+         (if I <= Freed.New_Volume then Freed.New_Volume - 1
           else Freed.New_Volume)));
    --  What is freed when the event in this place is taken out.
 
@@ -675,8 +609,7 @@ is
      (Fired.Count > 0
       and then Fired.Items (1) = T
       and then (for all I in 2 .. Fired.Count =>
-            Is_Segment (Fired.Items (I))))
-   with Ghost;
+            Is_Segment (Fired.Items (I)))) with Ghost;
    --  Is that fired, with the segments of its way, and nothing else?
 
    function Choose
@@ -691,38 +624,29 @@ is
    --  The transitions that one occurrence asks for.
 
    function Has (Fired : Firing_List; T : Selection) return Boolean is
-     (for some I in 1 .. Fired.Count => Fired.Items (I) = T)
-   with Ghost;
+     (for some I in 1 .. Fired.Count => Fired.Items (I) = T) with Ghost;
 
    function Is_Ordered (Fired : Firing_List) return Boolean is
      (for all I in 1 .. Fired.Count =>
          Is_Segment (Fired.Items (I))
          or else (for all J in 1 .. I - 1 =>
                Is_Segment (Fired.Items (J))
-               or else Fired.Items (J) < Fired.Items (I)))
-   with Ghost;
+               or else Fired.Items (J) < Fired.Items (I))) with Ghost;
    --  Do the lanes fire in their order?
 
    function Follows (Fired : Firing_List; C : Choice) return Boolean is
-     (if Is_Deferral (C.Motor)
-         then Is_Only (Fired, C.Motor)
-      elsif Is_Deferral (C.Sensor)
-         then Is_Only (Fired, C.Sensor)
-      elsif Is_Deferral (C.Top)
-         then Is_Only (Fired, C.Top)
+     (if Is_Deferral (C.Motor) then Is_Only (Fired, C.Motor)
+      elsif Is_Deferral (C.Sensor) then Is_Only (Fired, C.Sensor)
+      elsif Is_Deferral (C.Top) then Is_Only (Fired, C.Top)
       else (for all I in 1 .. Fired.Count =>
              Is_Segment (Fired.Items (I))
              or else (Fired.Items (I) = C.Motor
                 or else Fired.Items (I) = C.Sensor
                 or else Fired.Items (I) = C.Top))
          and then Is_Ordered (Fired)
-         and then (if C.Motor /= None
-               then Has (Fired, C.Motor)
-            elsif C.Sensor /= None
-               then Has (Fired, C.Sensor)
-            elsif C.Top /= None
-               then Has (Fired, C.Top)))
-   with Ghost;
+         and then (if C.Motor /= None then Has (Fired, C.Motor)
+            elsif C.Sensor /= None then Has (Fired, C.Sensor)
+            elsif C.Top /= None then Has (Fired, C.Top))) with Ghost;
    --  A deferral is fired alone. Otherwise what is chosen is fired, lane by
    --  lane, and nothing else; a lane inside a state that transitions leave
    --  may be overtaken by an earlier one.
@@ -730,38 +654,33 @@ is
    Initial_Data : constant Variables := (others => <>);
 
    function Never_Alarm_While_Running
-     (Place : Infusion_States.Configuration;
-      Data : Variables)
+     (Place : Infusion_States.Configuration; Data : Variables)
      return Boolean is
      (not (Place.Top in Infusion_States.Alarm and then Data.Speed > 0));
    --  [Pump.alarm_while_running] the condition of `never` is false.
 
    function Never_Alarm_Without_Sound
-     (Place : Infusion_States.Configuration;
-      Data : Variables)
+     (Place : Infusion_States.Configuration; Data : Variables)
      return Boolean is
      (not (Place.Top = Infusion_States.Sounding and then not Data.Buzzer));
    --  [Pump.alarm_without_sound] the condition of `never` is false.
 
    function Never_Overdose
-     (Place : Infusion_States.Configuration;
-      Data : Variables)
+     (Place : Infusion_States.Configuration; Data : Variables)
      return Boolean is
      (not (not (Place.Top = Infusion_States.Programming)
        and then Data.Given > Data.Volume));
    --  [Pump.overdose] the condition of `never` is false.
 
    function Data_Are_Known
-     (Place : Infusion_States.Configuration;
-      Data : Variables)
+     (Place : Infusion_States.Configuration; Data : Variables)
      return Boolean is
      (if Place.Top = Infusion_States.May_Go_On then Data.Speed = 0);
    --  What holds of data while a leaf is active: without it a transition
    --  might break an invariant.
 
    function Is_Safe
-     (Place : Infusion_States.Configuration;
-      Data : Variables)
+     (Place : Infusion_States.Configuration; Data : Variables)
      return Boolean is
      (Never_Alarm_While_Running (Place, Data)
       and then Never_Alarm_Without_Sound (Place, Data)
@@ -773,18 +692,14 @@ is
      (Never_Alarm_While_Running (Self.Place, Self.Data)
       and then Never_Alarm_Without_Sound (Self.Place, Self.Data)
       and then Never_Overdose (Self.Place, Self.Data)
-      and then (if Self.Started
-            then Data_Are_Known (Self.Place, Self.Data)
+      and then (if Self.Started then Data_Are_Known (Self.Place, Self.Data)
          else Self.Data = Initial_Data));
    --  The region between steps; before the first one its data are initial.
 
    subtype Safe_Region is Region with Predicate => Is_Kept (Safe_Region);
 
    function Guards_Hold
-     (T : Firing;
-      Data : Variables;
-      Ins : Inputs;
-      Item : Event)
+     (T : Firing; Data : Variables; Ins : Inputs; Item : Event)
      return Boolean is
      (case T is
         when Loaded => Data.Given >= Ins.Loading,
@@ -811,8 +726,7 @@ is
    --  One more execution: the time-outs come nearer.
 
    procedure Notice_Turning
-     (Self : in out Region;
-      Visit : Ravenchart.Event_Count)
+     (Self : in out Region; Visit : Ravenchart.Event_Count)
    with
      Post =>
        Self.Place = Self.Place'Old
@@ -821,8 +735,7 @@ is
    --  A do activity of Turning was done in that visit.
 
    procedure Notice_Filling
-     (Self : in out Region;
-      Visit : Ravenchart.Event_Count)
+     (Self : in out Region; Visit : Ravenchart.Event_Count)
    with
      Post =>
        Self.Place = Self.Place'Old
@@ -842,9 +755,7 @@ is
         when others => Conditions);
 
    procedure Poll
-     (Self : in out Region;
-      Now  : out Occurrence;
-      Item : out Event)
+     (Self : in out Region; Now  : out Occurrence; Item : out Event)
    with
      Post =>
        (Self.Place = Self.Place'Old
@@ -881,25 +792,17 @@ is
                         Ravenchart.Timers.Is_Due (Self.Timers'Old (I)))
                     then Now in Expiry_Of_Again .. Expiry_Of_Remind
                  elsif (for some I in 1 .. 4 =>
-                        Is_Released
-                          (Self.Deferred'Old,
-                           Self.Place,
-                           Self.Freed'Old,
-                           I))
+                        Is_Released (Self.Deferred'Old, Self.Place,
+                           Self.Freed'Old, I))
                     then (for all I in 1 .. 4 =>
-                           (if Is_Released
-                                 (Self.Deferred'Old,
-                                  Self.Place,
-                                  Self.Freed'Old,
-                                  I)
+                           (if Is_Released (Self.Deferred'Old, Self.Place,
+                                  Self.Freed'Old, I)
                                then Now
                                   = To_Occurrence
-                                      (Deferrals.Element
-                                         (Self.Deferred'Old,
+                                      (Deferrals.Element (Self.Deferred'Old,
                                           I))
                                   and then Item
-                                    = Deferrals.Element
-                                        (Self.Deferred'Old,
+                                    = Deferrals.Element (Self.Deferred'Old,
                                          I)
                                   and then Self.Freed
                                     = Freed_Without (I, Self.Freed'Old)))
@@ -922,16 +825,10 @@ is
        and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
        and then (if Segments_Left (Self.Place'Old) = 0
              then Segments_Left (Self.Place) = 0)
-       and then (((Now = Start_Of_Region) and Is_Only (Fired, Initial_Entry))
-          or ((Now /= Start_Of_Region)
-             and Follows
-                 (Fired,
-                  Choose
-                    (Self.Place'Old,
-                     Now,
-                     Self.Past'Old,
-                     Self.Data'Old,
-                     Ins,
-                     Item))));
+       and then ((Now = Start_Of_Region and Is_Only (Fired, Initial_Entry))
+          or (Now /= Start_Of_Region
+             and Follows (Fired,
+                  Choose (Self.Place'Old, Now, Self.Past'Old, Self.Data'Old,
+                     Ins, Item))));
    --  One run-to-completion step.
 end Infusion_System.Pump.Infusion;

@@ -11,8 +11,7 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    function Select_Transition
-     (Leaf : Keys_States.Leaf;
-      Now : Occurrence)
+     (Leaf : Keys_States.Leaf; Now : Occurrence)
      return Selection is
      (case Leaf is
         when Keys_States.Listening =>
@@ -28,9 +27,7 @@ is
         (Node'Val (Keys_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -51,16 +48,14 @@ is
       Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
    begin
@@ -71,38 +66,31 @@ is
             Self.Leaf := Keys_States.Listening;
          when Pressed =>
             if Item.Value_Press.Key = Infusion_System.Start_Key then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Pump.Event'(Name => Pump.Start, others => <>));
             end if;
             if Item.Value_Press.Key = Infusion_System.Stop_Key then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Pump.Event'(Name => Pump.Stop, others => <>));
             end if;
             if Item.Value_Press.Key = Infusion_System.Silence_Key then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Pump.Event'(Name => Pump.Silence, others => <>));
             end if;
             if Item.Value_Press.Key = Infusion_System.Resume_Key then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Pump.Event'(Name => Pump.Resume, others => <>));
             end if;
             if Item.Value_Press.Key = Infusion_System.Portion_Key then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Pump.Event'(Name => Pump.New_Portion,
                    Value_Portion =>
-                     Infusion_System.Unit_Ul'Min
-                       (Item.Value_Press.Amount,
+                     Infusion_System.Unit_Ul'Min (Item.Value_Press.Amount,
                         500),
                    others => <>));
             end if;
             if Item.Value_Press.Key = Infusion_System.Volume_Key then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Pump.Event'(Name => Pump.New_Volume,
                    Value_Volume => Item.Value_Press.Amount,
                    others => <>));

@@ -34,9 +34,7 @@ is
    end record;
 
    function Enabled
-     (T : Transition;
-      Leaf : Keys_States.Leaf;
-      Now : Occurrence)
+     (T : Transition; Leaf : Keys_States.Leaf; Now : Occurrence)
      return Boolean is
      (case T is
         when Pressed =>
@@ -44,16 +42,14 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Keys_States.Leaf)
+     (T : Transition; Leaf : Keys_States.Leaf)
      return Boolean is
      (case T is
         when Pressed => Leaf = Keys_States.Listening);
    --  Is its source the leaf, or around it?
 
    function Target
-     (T : Firing;
-      Leaf : Keys_States.Leaf)
+     (T : Firing; Leaf : Keys_States.Leaf)
      return Keys_States.Leaf is
      (case T is
         when Initial_Entry => Keys_States.Listening,
@@ -61,15 +57,12 @@ is
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
-     (Chosen : Selection;
-      Leaf   : Keys_States.Leaf;
-      Now    : Occurrence)
+     (Chosen : Selection; Leaf   : Keys_States.Leaf; Now    : Occurrence)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition and then Enabled (Chosen, Leaf, Now)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now))))
-   with Ghost;
+            (if T < Chosen then not Enabled (T, Leaf, Now)))) with Ghost;
    --  The first transition that is enabled, or None when none is.
 
    function To_Occurrence (Item : Event) return Occurrence is
@@ -95,11 +88,9 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old));
    --  One run-to-completion step.
 end Infusion_System.Pump.Keys;

@@ -15,13 +15,7 @@ is
 
    --  [Pump.events]
    type Event_Name is
-     (Pressed,
-      Sensor_Lost,
-      Start,
-      Stop,
-      Silence,
-      Resume,
-      New_Portion,
+     (Pressed, Sensor_Lost, Start, Stop, Silence, Resume, New_Portion,
       New_Volume);
 
    --  An event with its value; components that it does not use keep their
@@ -37,24 +31,13 @@ is
    No_Event : constant Event := (others => <>);
 
    package Event_Lists is new Ravenchart.Event_Lists
-     (Event => Pump.Event,
-      Null_Event => Pump.No_Event,
-      Capacity => 16);
+     (Event => Pump.Event, Null_Event => Pump.No_Event, Capacity => 16);
 
    --  [Pump.Infusion.states]
    package Infusion_States is
       type Leaf is
-        (Self_Test,
-         Programming,
-         Filling,
-         Loading,
-         Maintaining,
-         All_Given,
-         Trickling,
-         Where_It_Was,
-         Sounding,
-         Silent,
-         May_Go_On);
+        (Self_Test, Programming, Filling, Loading, Maintaining, All_Given,
+         Trickling, Where_It_Was, Sounding, Silent, May_Go_On);
 
       type Sensor_Leaf is (Listening, Sensor_Good);
 
@@ -79,8 +62,7 @@ is
 
    --  [Pump.line] what its readers see
    package Line_Port is new Ravenchart.Port_Regions
-     (Value_Type => Infusion_System.Line,
-      Default => Infusion_System.Clear);
+     (Value_Type => Infusion_System.Line, Default => Infusion_System.Clear);
 
    subtype Line_View is Line_Port.Port;
 

@@ -42,15 +42,11 @@ is
       Found : Reception.Processor.Statistics;
    begin
       Reception.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Reception_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Reception_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Reception.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Reception_Processor
-            + 1
+           (Elements.Reception_Processor + 1
             + Ravenchart.Element_Id (Reception.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -61,15 +57,11 @@ is
       Found : Control.Processor.Statistics;
    begin
       Control.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Control_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Control_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Control.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Control_Processor
-            + 1
+           (Elements.Control_Processor + 1
             + Ravenchart.Element_Id (Control.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -97,8 +89,7 @@ is
       Ward.Controller.Read_Counters (Ward_Counters);
       Ravenchart.Hosts.Put_Lost ("ward.lost_out", Ward_Counters.Lost_Out);
       Ravenchart.Hosts.Put_Lost ("ward.lost_in", Ward_Counters.Lost_In);
-      Ravenchart.Hosts.Put_Lost
-        ("ward.rejected_lines",
+      Ravenchart.Hosts.Put_Lost ("ward.rejected_lines",
          Ward_Counters.Rejected_Lines);
    end Put_All;
 end Infusion_System.Reports;

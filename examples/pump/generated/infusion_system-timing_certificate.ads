@@ -2,7 +2,10 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+
 with System;
+with Ravenchart.Response_Times;
 
 package Infusion_System.Timing_Certificate
 with SPARK_Mode, Pure
@@ -16,13 +19,16 @@ is
    Model_Digest : constant String :=
      "ccfea17c75a712f378c2271f967cce71f77a767905b41c23956d898daa2f0eb2";
 
+   use Ravenchart.Response_Times;
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period. A
-   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W, and equals it: where it is
-   --  more, W is too short; where it is less, a term is missing.
+   --  from the event, W the time claimed from the start of a busy period.
+   --  X_Up (W) is what X and all that goes before it ask for within W,
+   --  X_Rest (W) what X and those listed behind it at its level do. Needs
+   --  is the demand that arises within W, and equals it: where it is more,
+   --  W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_R : constant := 225_000;
@@ -41,19 +47,18 @@ is
    Board_Critical_Section : constant := 5_000;
 
    --  [reception] released by arrivals, no closer than T; it may wait for T
-   --  to be over as well. B: control may be inside bed.line.mailbox.
+   --  to be over as well. B: control in bed.line.mailbox.
    Reception_Priority : constant := System.Default_Priority + 2;
    Ward_Receive_Budget : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
-   Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant := Ward_Receive_Budget + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
-   --  [control] released every T. B: main may be inside health. C: what
-   --  every release executes; C_2: rows of every 2th release, C_4: rows of
-   --  every 4th release.
+   --  [control] released every T. B: main in health. C: what every release
+   --  executes; C_2: rows of every 2th release, C_4: rows of every 4th
+   --  release.
    Control_Priority : constant := System.Default_Priority + 1;
    Bed_Ports_Budget : constant := 100_000;
    Bed_Keys_Budget : constant := 50_000;
@@ -66,163 +71,127 @@ is
    Control_D : constant := 50_000_000;
    Bed_Ports_Divisor : constant := 1;
    Bed_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Bed_Ports_Divisor /= 1,
-      "bed.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Bed_Ports_Phase + 1) > Bed_Ports_Divisor,
-      "bed.ports " & "has a phase beyond its divisor");
-
    Bed_Keys_Divisor : constant := 1;
    Bed_Keys_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Bed_Keys_Divisor /= 1,
-      "bed.Keys " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Bed_Keys_Phase + 1) > Bed_Keys_Divisor,
-      "bed.Keys " & "has a phase beyond its divisor");
-
    Bed_Infusion_Divisor : constant := 1;
    Bed_Infusion_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Bed_Infusion_Divisor /= 1,
-      "bed.Infusion " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Bed_Infusion_Phase + 1) > Bed_Infusion_Divisor,
-      "bed.Infusion " & "has a phase beyond its divisor");
-
    Bed_Turn_Divisor : constant := 2;
    Bed_Turn_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Bed_Turn_Divisor /= 2,
-      "bed.turn " & "is in the sum C_2, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Bed_Turn_Phase + 1) > Bed_Turn_Divisor,
-      "bed.turn " & "has a phase beyond its divisor");
-
    Bed_Fill_Divisor : constant := 2;
    Bed_Fill_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Bed_Fill_Divisor /= 2,
-      "bed.fill " & "is in the sum C_2, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Bed_Fill_Phase + 1) > Bed_Fill_Divisor,
-      "bed.fill " & "has a phase beyond its divisor");
-
    Bed_Drive_Divisor : constant := 1;
    Bed_Drive_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Bed_Drive_Divisor /= 1,
-      "bed.drive " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Bed_Drive_Phase + 1) > Bed_Drive_Divisor,
-      "bed.drive " & "has a phase beyond its divisor");
-
    Bed_Show_Divisor : constant := 4;
    Bed_Show_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Bed_Show_Divisor /= 4,
-      "bed.show " & "is in the sum C_4, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Bed_Show_Phase + 1) > Bed_Show_Divisor,
-      "bed.show " & "has a phase beyond its divisor");
-
+     (Bed_Ports_Divisor /= 1
+      or else Bed_Ports_Phase /= 0
+      or else Bed_Keys_Divisor /= 1
+      or else Bed_Keys_Phase /= 0
+      or else Bed_Infusion_Divisor /= 1
+      or else Bed_Infusion_Phase /= 0
+      or else Bed_Turn_Divisor /= 2
+      or else Bed_Turn_Phase >= Bed_Turn_Divisor
+      or else Bed_Fill_Divisor /= 2
+      or else Bed_Fill_Phase >= Bed_Fill_Divisor
+      or else Bed_Drive_Divisor /= 1
+      or else Bed_Drive_Phase /= 0
+      or else Bed_Show_Divisor /= 4
+      or else Bed_Show_Phase >= Bed_Show_Divisor,
+      "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
-   Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
-     Bed_Ports_Budget
-     + Bed_Keys_Budget
-     + Bed_Infusion_Budget
-     + Bed_Drive_Budget
-     + 2 * Board_Context_Switch;
+     Bed_Ports_Budget + Bed_Keys_Budget + Bed_Infusion_Budget
+     + Bed_Drive_Budget + 2 * Board_Context_Switch;
    Control_C_2 : constant := Bed_Turn_Budget + Bed_Fill_Budget;
    Control_C_4 : constant := Bed_Show_Budget;
    Control_B : constant := Board_Critical_Section;
 
-   --  [ward.driver_rx.line] the driver's work, released by ward.line, which
-   --  is J late. B: control may be inside ward.transmit.
+   --  [ward.driver_rx.line] the driver, released by ward.line. B: control
+   --  in ward.transmit.
    Ward_Driver_Rx_Line_Priority : constant := System.Default_Priority + 3;
    Ward_Driver_Rx_Line_Budget : constant := 20_000;
    Ward_Driver_Rx_Line_T : constant := 1_000_000_000;
    Ward_Driver_Rx_Line_D : constant := 1_000_000_000;
    Ward_Driver_Rx_Line_J : constant := Ward_Line_R;
-   Ward_Driver_Rx_Line_A : constant :=
-     Ward_Driver_Rx_Line_J + (Ward_Driver_Rx_Line_T - 1);
    Ward_Driver_Rx_Line_C : constant :=
      Ward_Driver_Rx_Line_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Rx_Line_B : constant := Board_Critical_Section;
 
-   --  [ward.driver_tx.motor] the driver's work, released by control, which
-   --  is J late. B: control may be inside ward.transmit.
+   --  [ward.driver_tx.motor] the driver, released by control. B: control in
+   --  ward.transmit.
    Ward_Driver_Tx_Motor_Priority : constant := System.Default_Priority + 3;
    Ward_Driver_Tx_Motor_Budget : constant := 20_000;
    Ward_Driver_Tx_Motor_T : constant := 50_000_000;
    Ward_Driver_Tx_Motor_D : constant := 50_000_000;
    Ward_Driver_Tx_Motor_J : constant := Control_R;
-   Ward_Driver_Tx_Motor_A : constant :=
-     Ward_Driver_Tx_Motor_J + (Ward_Driver_Tx_Motor_T - 1);
    Ward_Driver_Tx_Motor_C : constant :=
      Ward_Driver_Tx_Motor_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Tx_Motor_B : constant := Board_Critical_Section;
 
-   --  [ward.driver_rx.panel] the driver's work, released by ward.panel,
-   --  which is J late. B: control may be inside ward.transmit.
+   --  [ward.driver_rx.panel] the driver, released by ward.panel. B: control
+   --  in ward.transmit.
    Ward_Driver_Rx_Panel_Priority : constant := System.Default_Priority + 3;
    Ward_Driver_Rx_Panel_Budget : constant := 20_000;
    Ward_Driver_Rx_Panel_T : constant := 50_000_000;
    Ward_Driver_Rx_Panel_D : constant := 50_000_000;
    Ward_Driver_Rx_Panel_J : constant := Ward_Panel_R;
-   Ward_Driver_Rx_Panel_A : constant :=
-     Ward_Driver_Rx_Panel_J + (Ward_Driver_Rx_Panel_T - 1);
    Ward_Driver_Rx_Panel_C : constant :=
      Ward_Driver_Rx_Panel_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Rx_Panel_B : constant := Board_Critical_Section;
 
-   --  [ward.driver_tx.display] the driver's work, released by control,
-   --  which is J late. B: control may be inside ward.transmit.
+   --  [ward.driver_tx.display] the driver, released by control. B: control
+   --  in ward.transmit.
    Ward_Driver_Tx_Display_Priority : constant :=
      System.Default_Priority + 3;
    Ward_Driver_Tx_Display_Budget : constant := 20_000;
    Ward_Driver_Tx_Display_T : constant := 200_000_000;
    Ward_Driver_Tx_Display_D : constant := 200_000_000;
    Ward_Driver_Tx_Display_J : constant := Control_R;
-   Ward_Driver_Tx_Display_A : constant :=
-     Ward_Driver_Tx_Display_J + (Ward_Driver_Tx_Display_T - 1);
    Ward_Driver_Tx_Display_C : constant :=
      Ward_Driver_Tx_Display_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Tx_Display_B : constant := Board_Critical_Section;
 
-   pragma Compile_Time_Error
-     (Ward_Driver_Rx_Line_Priority /= Ward_Driver_Tx_Motor_Priority,
-      "ward.driver_rx.line "
-      & "must have the priority of ward.driver_tx.motor");
-   pragma Compile_Time_Error
-     (Ward_Driver_Tx_Motor_Priority /= Ward_Driver_Rx_Panel_Priority,
-      "ward.driver_tx.motor "
-      & "must have the priority of ward.driver_rx.panel");
-   pragma Compile_Time_Error
-     (Ward_Driver_Rx_Panel_Priority /= Ward_Driver_Tx_Display_Priority,
-      "ward.driver_rx.panel "
-      & "must have the priority of ward.driver_tx.display");
-   pragma Compile_Time_Error
-     ((Reception_Priority + 1) > Ward_Driver_Tx_Display_Priority,
-      "ward.driver_tx.display "
-      & "must have a higher priority than reception");
-   pragma Compile_Time_Error
-     ((Control_Priority + 1) > Reception_Priority,
-      "reception " & "must have a higher priority than control");
+   function Ward_Driver_Rx_Line_Up (W : Window) return Time is
+     (Demand (W, Ward_Driver_Rx_Line_J, Ward_Driver_Rx_Line_T,
+         Ward_Driver_Rx_Line_C)) with Static;
+   function Ward_Driver_Tx_Motor_Up (W : Window) return Time is
+     (Demand (W, Ward_Driver_Tx_Motor_J, Ward_Driver_Tx_Motor_T,
+         Ward_Driver_Tx_Motor_C, Ward_Driver_Rx_Line_Up (W))) with Static;
+   function Ward_Driver_Rx_Panel_Up (W : Window) return Time is
+     (Demand (W, Ward_Driver_Rx_Panel_J, Ward_Driver_Rx_Panel_T,
+         Ward_Driver_Rx_Panel_C, Ward_Driver_Tx_Motor_Up (W))) with Static;
+   function Ward_Driver_Tx_Display_Up (W : Window) return Time is
+     (Demand (W, Ward_Driver_Tx_Display_J, Ward_Driver_Tx_Display_T,
+         Ward_Driver_Tx_Display_C, Ward_Driver_Rx_Panel_Up (W))) with Static;
+   function Reception_Up (W : Window) return Time is
+     (Demand (W, Reception_J, Reception_T, Reception_C,
+         Ward_Driver_Tx_Display_Up (W))) with Static;
+   function Ward_Driver_Tx_Display_Rest (W : Window) return Time is
+     (Demand (W, Ward_Driver_Tx_Display_J, Ward_Driver_Tx_Display_T,
+         Ward_Driver_Tx_Display_C)) with Static;
+   function Ward_Driver_Rx_Panel_Rest (W : Window) return Time is
+     (Demand (W, Ward_Driver_Rx_Panel_J, Ward_Driver_Rx_Panel_T,
+         Ward_Driver_Rx_Panel_C, Ward_Driver_Tx_Display_Rest (W)))
+   with Static;
+   function Ward_Driver_Tx_Motor_Rest (W : Window) return Time is
+     (Demand (W, Ward_Driver_Tx_Motor_J, Ward_Driver_Tx_Motor_T,
+         Ward_Driver_Tx_Motor_C, Ward_Driver_Rx_Panel_Rest (W))) with Static;
 
-   --  [ward] bits in a second, and one bit in nanoseconds, rounded up. Of a
-   --  message, Stuffed: bits that stuffing can lengthen by a quarter; Bits:
-   --  the longest frame, with 10 bits that are not stuffed and 3 to the
-   --  next frame.
+   pragma Compile_Time_Error
+     (Ward_Driver_Rx_Line_Priority /= Ward_Driver_Tx_Motor_Priority
+      or else Ward_Driver_Tx_Motor_Priority /= Ward_Driver_Rx_Panel_Priority
+      or else Ward_Driver_Rx_Panel_Priority
+        /= Ward_Driver_Tx_Display_Priority
+      or else Ward_Driver_Tx_Display_Priority <= Reception_Priority
+      or else Reception_Priority <= Control_Priority,
+      "board must keep the order of its priorities");
+
+   --  [ward] bits in a second, and one bit in nanoseconds, rounded up. A
+   --  message waits for the longest frame that goes behind it and has
+   --  begun, and for those that go before it. Of a message, Stuffed: bits
+   --  that stuffing can lengthen by a quarter; Bits: the longest frame,
+   --  with 10 bits that are not stuffed and 3 to the next frame.
    Ward_Bit_Rate : constant := 125_000;
    Ward_Bit : constant :=
      (1_000_000_000 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
@@ -234,11 +203,10 @@ is
    Ward_Line_D : constant := 1_000_000_000;
    Ward_Line_Stuffed : constant := 34 + 8 * Ward_Line_Length;
    Ward_Line_Bits : constant :=
-     Ward_Line_Stuffed + 13 + ((Ward_Line_Stuffed - 1) / 4);
+     Ward_Line_Stuffed + 13 + (Ward_Line_Stuffed - 1) / 4;
    Ward_Line_C : constant :=
-     ((Ward_Line_Bits * 10**9) + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+     (Ward_Line_Bits * 10**9 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
    Ward_Line_J : constant := 0;
-   Ward_Line_A : constant := Ward_Line_J + (Ward_Line_T - 1);
 
    --  [ward.motor] 11-bit identifier Id, Length bytes from bed.motor
    Ward_Motor_Id : constant := 16#101#;
@@ -247,11 +215,10 @@ is
    Ward_Motor_D : constant := 50_000_000;
    Ward_Motor_Stuffed : constant := 34 + 8 * Ward_Motor_Length;
    Ward_Motor_Bits : constant :=
-     Ward_Motor_Stuffed + 13 + ((Ward_Motor_Stuffed - 1) / 4);
+     Ward_Motor_Stuffed + 13 + (Ward_Motor_Stuffed - 1) / 4;
    Ward_Motor_C : constant :=
-     ((Ward_Motor_Bits * 10**9) + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+     (Ward_Motor_Bits * 10**9 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
    Ward_Motor_J : constant := Ward_Driver_Tx_Motor_R;
-   Ward_Motor_A : constant := Ward_Motor_J + (Ward_Motor_T - 1);
 
    --  [ward.panel] 11-bit identifier Id, Length bytes from somebody outside
    Ward_Panel_Id : constant := 16#110#;
@@ -260,11 +227,10 @@ is
    Ward_Panel_D : constant := 50_000_000;
    Ward_Panel_Stuffed : constant := 34 + 8 * Ward_Panel_Length;
    Ward_Panel_Bits : constant :=
-     Ward_Panel_Stuffed + 13 + ((Ward_Panel_Stuffed - 1) / 4);
+     Ward_Panel_Stuffed + 13 + (Ward_Panel_Stuffed - 1) / 4;
    Ward_Panel_C : constant :=
-     ((Ward_Panel_Bits * 10**9) + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+     (Ward_Panel_Bits * 10**9 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
    Ward_Panel_J : constant := 0;
-   Ward_Panel_A : constant := Ward_Panel_J + (Ward_Panel_T - 1);
 
    --  [ward.display] 11-bit identifier Id, Length bytes from bed.display
    Ward_Display_Id : constant := 16#111#;
@@ -273,446 +239,209 @@ is
    Ward_Display_D : constant := 200_000_000;
    Ward_Display_Stuffed : constant := 34 + 8 * Ward_Display_Length;
    Ward_Display_Bits : constant :=
-     Ward_Display_Stuffed + 13 + ((Ward_Display_Stuffed - 1) / 4);
+     Ward_Display_Stuffed + 13 + (Ward_Display_Stuffed - 1) / 4;
    Ward_Display_C : constant :=
-     ((Ward_Display_Bits * 10**9) + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+     (Ward_Display_Bits * 10**9 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
    Ward_Display_J : constant := Ward_Driver_Tx_Display_R;
-   Ward_Display_A : constant := Ward_Display_J + (Ward_Display_T - 1);
 
-   pragma Compile_Time_Error
-     (((2**19 * Ward_Line_Id) + 1) > (2**19 * Ward_Motor_Id),
-      "ward.line " & "must win the arbitration against ward.motor");
-   pragma Compile_Time_Error
-     (((2**19 * Ward_Motor_Id) + 1) > (2**19 * Ward_Panel_Id),
-      "ward.motor " & "must win the arbitration against ward.panel");
-   pragma Compile_Time_Error
-     (((2**19 * Ward_Panel_Id) + 1) > (2**19 * Ward_Display_Id),
-      "ward.panel " & "must win the arbitration against ward.display");
-
-   --  [reception] what can delay it: jobs of the same or higher priority
+   --  [reception] what delays it
    Reception_W : constant := Reception_R - Reception_J;
    Reception_Needs : constant :=
-     Reception_C
-     + Reception_B
-     + (((Reception_W + Ward_Driver_Rx_Line_A) / Ward_Driver_Rx_Line_T)
-        * Ward_Driver_Rx_Line_C)
-     + (((Reception_W + Ward_Driver_Tx_Motor_A) / Ward_Driver_Tx_Motor_T)
-        * Ward_Driver_Tx_Motor_C)
-     + (((Reception_W + Ward_Driver_Rx_Panel_A) / Ward_Driver_Rx_Panel_T)
-        * Ward_Driver_Rx_Panel_C)
-     + (((Reception_W + Ward_Driver_Tx_Display_A) / Ward_Driver_Tx_Display_T)
-        * Ward_Driver_Tx_Display_C);
+     Reception_C + Reception_B + Ward_Driver_Tx_Display_Up (Reception_W);
+   pragma Compile_Time_Error (Reception_W /= Reception_Needs,
+      "reception claims a wrong response time");
+   pragma Compile_Time_Error
+     (Reception_R > Time'Min (Reception_D, Reception_T),
+      "reception can miss its deadline or overlap");
+   pragma Assert
+     (Reception_Needs <= Reception_W and then Reception_R <= Reception_D);
 
-   pragma Compile_Time_Error
-     (0 > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_Needs > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_W > Reception_Needs,
-      "reception " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Reception_J + Reception_W) > Reception_T,
-      "reception " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Reception_R > Reception_D,
-      "reception " & "can miss its deadline");
-   pragma Assert (Reception_Needs <= Reception_W);
-   pragma Assert (Reception_R <= Reception_D);
-
-   --  [control] what can delay it: jobs of the same or higher priority
+   --  [control] what delays it
    Control_W : constant := Control_R - Control_J;
    Control_Needs : constant :=
-     Control_C
-     + Control_C_2
-     + Control_C_4
-     + Control_B
-     + (((Control_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Control_W + Ward_Driver_Rx_Line_A) / Ward_Driver_Rx_Line_T)
-        * Ward_Driver_Rx_Line_C)
-     + (((Control_W + Ward_Driver_Tx_Motor_A) / Ward_Driver_Tx_Motor_T)
-        * Ward_Driver_Tx_Motor_C)
-     + (((Control_W + Ward_Driver_Rx_Panel_A) / Ward_Driver_Rx_Panel_T)
-        * Ward_Driver_Rx_Panel_C)
-     + (((Control_W + Ward_Driver_Tx_Display_A) / Ward_Driver_Tx_Display_T)
-        * Ward_Driver_Tx_Display_C);
+     Control_C + Control_C_2 + Control_C_4 + Control_B
+     + Reception_Up (Control_W);
+   pragma Compile_Time_Error (Control_W /= Control_Needs,
+      "control claims a wrong response time");
+   pragma Compile_Time_Error (Control_R > Time'Min (Control_D, Control_T),
+      "control can miss its deadline or overlap");
+   pragma Assert
+     (Control_Needs <= Control_W and then Control_R <= Control_D);
 
-   pragma Compile_Time_Error
-     (0 > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_Needs > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_W > Control_Needs,
-      "control " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Control_J + Control_W) > Control_T,
-      "control " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Control_R > Control_D,
-      "control " & "can miss its deadline");
-   pragma Assert (Control_Needs <= Control_W);
-   pragma Assert (Control_R <= Control_D);
-
-   --  [ward.driver_rx.line] what can delay it: jobs of the same or higher
-   --  priority
+   --  [ward.driver_rx.line] what delays it
    Ward_Driver_Rx_Line_W : constant :=
      Ward_Driver_Rx_Line_R - Ward_Driver_Rx_Line_J;
    Ward_Driver_Rx_Line_Needs : constant :=
-     Ward_Driver_Rx_Line_C
-     + Ward_Driver_Rx_Line_B
-     + (((Ward_Driver_Rx_Line_W + Ward_Driver_Tx_Motor_A)
-         / Ward_Driver_Tx_Motor_T)
-        * Ward_Driver_Tx_Motor_C)
-     + (((Ward_Driver_Rx_Line_W + Ward_Driver_Rx_Panel_A)
-         / Ward_Driver_Rx_Panel_T)
-        * Ward_Driver_Rx_Panel_C)
-     + (((Ward_Driver_Rx_Line_W + Ward_Driver_Tx_Display_A)
-         / Ward_Driver_Tx_Display_T)
-        * Ward_Driver_Tx_Display_C);
+     Ward_Driver_Rx_Line_C + Ward_Driver_Rx_Line_B
+     + Ward_Driver_Tx_Motor_Rest (Ward_Driver_Rx_Line_W);
+   pragma Compile_Time_Error
+     (Ward_Driver_Rx_Line_W /= Ward_Driver_Rx_Line_Needs,
+      "ward.driver_rx.line claims a wrong response time");
+   pragma Compile_Time_Error
+     (Ward_Driver_Rx_Line_R
+      > Time'Min (Ward_Driver_Rx_Line_D, Ward_Driver_Rx_Line_T),
+      "ward.driver_rx.line can miss its deadline or overlap");
+   pragma Assert
+     (Ward_Driver_Rx_Line_Needs <= Ward_Driver_Rx_Line_W
+      and then Ward_Driver_Rx_Line_R <= Ward_Driver_Rx_Line_D);
 
-   pragma Compile_Time_Error
-     (0 > Ward_Driver_Rx_Line_W,
-      "ward.driver_rx.line "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Driver_Rx_Line_Needs > Ward_Driver_Rx_Line_W,
-      "ward.driver_rx.line "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Driver_Rx_Line_W > Ward_Driver_Rx_Line_Needs,
-      "ward.driver_rx.line " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Driver_Rx_Line_J + Ward_Driver_Rx_Line_W)
-      > Ward_Driver_Rx_Line_T,
-      "ward.driver_rx.line " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Ward_Driver_Rx_Line_R > Ward_Driver_Rx_Line_D,
-      "ward.driver_rx.line " & "can miss its deadline");
-   pragma Assert (Ward_Driver_Rx_Line_Needs <= Ward_Driver_Rx_Line_W);
-   pragma Assert (Ward_Driver_Rx_Line_R <= Ward_Driver_Rx_Line_D);
-
-   --  [ward.driver_tx.motor] what can delay it: jobs of the same or higher
-   --  priority
+   --  [ward.driver_tx.motor] what delays it
    Ward_Driver_Tx_Motor_W : constant :=
      Ward_Driver_Tx_Motor_R - Ward_Driver_Tx_Motor_J;
    Ward_Driver_Tx_Motor_Needs : constant :=
-     Ward_Driver_Tx_Motor_C
-     + Ward_Driver_Tx_Motor_B
-     + (((Ward_Driver_Tx_Motor_W + Ward_Driver_Rx_Line_A)
-         / Ward_Driver_Rx_Line_T)
-        * Ward_Driver_Rx_Line_C)
-     + (((Ward_Driver_Tx_Motor_W + Ward_Driver_Rx_Panel_A)
-         / Ward_Driver_Rx_Panel_T)
-        * Ward_Driver_Rx_Panel_C)
-     + (((Ward_Driver_Tx_Motor_W + Ward_Driver_Tx_Display_A)
-         / Ward_Driver_Tx_Display_T)
-        * Ward_Driver_Tx_Display_C);
+     Ward_Driver_Tx_Motor_C + Ward_Driver_Tx_Motor_B
+     + Ward_Driver_Rx_Line_Up (Ward_Driver_Tx_Motor_W)
+     + Ward_Driver_Rx_Panel_Rest (Ward_Driver_Tx_Motor_W);
+   pragma Compile_Time_Error
+     (Ward_Driver_Tx_Motor_W /= Ward_Driver_Tx_Motor_Needs,
+      "ward.driver_tx.motor claims a wrong response time");
+   pragma Compile_Time_Error
+     (Ward_Driver_Tx_Motor_R
+      > Time'Min (Ward_Driver_Tx_Motor_D, Ward_Driver_Tx_Motor_T),
+      "ward.driver_tx.motor can miss its deadline or overlap");
+   pragma Assert
+     (Ward_Driver_Tx_Motor_Needs <= Ward_Driver_Tx_Motor_W
+      and then Ward_Driver_Tx_Motor_R <= Ward_Driver_Tx_Motor_D);
 
-   pragma Compile_Time_Error
-     (0 > Ward_Driver_Tx_Motor_W,
-      "ward.driver_tx.motor "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Driver_Tx_Motor_Needs > Ward_Driver_Tx_Motor_W,
-      "ward.driver_tx.motor "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Driver_Tx_Motor_W > Ward_Driver_Tx_Motor_Needs,
-      "ward.driver_tx.motor " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Driver_Tx_Motor_J + Ward_Driver_Tx_Motor_W)
-      > Ward_Driver_Tx_Motor_T,
-      "ward.driver_tx.motor " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Ward_Driver_Tx_Motor_R > Ward_Driver_Tx_Motor_D,
-      "ward.driver_tx.motor " & "can miss its deadline");
-   pragma Assert (Ward_Driver_Tx_Motor_Needs <= Ward_Driver_Tx_Motor_W);
-   pragma Assert (Ward_Driver_Tx_Motor_R <= Ward_Driver_Tx_Motor_D);
-
-   --  [ward.driver_rx.panel] what can delay it: jobs of the same or higher
-   --  priority
+   --  [ward.driver_rx.panel] what delays it
    Ward_Driver_Rx_Panel_W : constant :=
      Ward_Driver_Rx_Panel_R - Ward_Driver_Rx_Panel_J;
    Ward_Driver_Rx_Panel_Needs : constant :=
-     Ward_Driver_Rx_Panel_C
-     + Ward_Driver_Rx_Panel_B
-     + (((Ward_Driver_Rx_Panel_W + Ward_Driver_Rx_Line_A)
-         / Ward_Driver_Rx_Line_T)
-        * Ward_Driver_Rx_Line_C)
-     + (((Ward_Driver_Rx_Panel_W + Ward_Driver_Tx_Motor_A)
-         / Ward_Driver_Tx_Motor_T)
-        * Ward_Driver_Tx_Motor_C)
-     + (((Ward_Driver_Rx_Panel_W + Ward_Driver_Tx_Display_A)
-         / Ward_Driver_Tx_Display_T)
-        * Ward_Driver_Tx_Display_C);
+     Ward_Driver_Rx_Panel_C + Ward_Driver_Rx_Panel_B
+     + Ward_Driver_Tx_Motor_Up (Ward_Driver_Rx_Panel_W)
+     + Ward_Driver_Tx_Display_Rest (Ward_Driver_Rx_Panel_W);
+   pragma Compile_Time_Error
+     (Ward_Driver_Rx_Panel_W /= Ward_Driver_Rx_Panel_Needs,
+      "ward.driver_rx.panel claims a wrong response time");
+   pragma Compile_Time_Error
+     (Ward_Driver_Rx_Panel_R
+      > Time'Min (Ward_Driver_Rx_Panel_D, Ward_Driver_Rx_Panel_T),
+      "ward.driver_rx.panel can miss its deadline or overlap");
+   pragma Assert
+     (Ward_Driver_Rx_Panel_Needs <= Ward_Driver_Rx_Panel_W
+      and then Ward_Driver_Rx_Panel_R <= Ward_Driver_Rx_Panel_D);
 
-   pragma Compile_Time_Error
-     (0 > Ward_Driver_Rx_Panel_W,
-      "ward.driver_rx.panel "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Driver_Rx_Panel_Needs > Ward_Driver_Rx_Panel_W,
-      "ward.driver_rx.panel "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Driver_Rx_Panel_W > Ward_Driver_Rx_Panel_Needs,
-      "ward.driver_rx.panel " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Driver_Rx_Panel_J + Ward_Driver_Rx_Panel_W)
-      > Ward_Driver_Rx_Panel_T,
-      "ward.driver_rx.panel " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Ward_Driver_Rx_Panel_R > Ward_Driver_Rx_Panel_D,
-      "ward.driver_rx.panel " & "can miss its deadline");
-   pragma Assert (Ward_Driver_Rx_Panel_Needs <= Ward_Driver_Rx_Panel_W);
-   pragma Assert (Ward_Driver_Rx_Panel_R <= Ward_Driver_Rx_Panel_D);
-
-   --  [ward.driver_tx.display] what can delay it: jobs of the same or
-   --  higher priority
+   --  [ward.driver_tx.display] what delays it
    Ward_Driver_Tx_Display_W : constant :=
      Ward_Driver_Tx_Display_R - Ward_Driver_Tx_Display_J;
    Ward_Driver_Tx_Display_Needs : constant :=
-     Ward_Driver_Tx_Display_C
-     + Ward_Driver_Tx_Display_B
-     + (((Ward_Driver_Tx_Display_W + Ward_Driver_Rx_Line_A)
-         / Ward_Driver_Rx_Line_T)
-        * Ward_Driver_Rx_Line_C)
-     + (((Ward_Driver_Tx_Display_W + Ward_Driver_Tx_Motor_A)
-         / Ward_Driver_Tx_Motor_T)
-        * Ward_Driver_Tx_Motor_C)
-     + (((Ward_Driver_Tx_Display_W + Ward_Driver_Rx_Panel_A)
-         / Ward_Driver_Rx_Panel_T)
-        * Ward_Driver_Rx_Panel_C);
+     Ward_Driver_Tx_Display_C + Ward_Driver_Tx_Display_B
+     + Ward_Driver_Rx_Panel_Up (Ward_Driver_Tx_Display_W);
+   pragma Compile_Time_Error
+     (Ward_Driver_Tx_Display_W /= Ward_Driver_Tx_Display_Needs,
+      "ward.driver_tx.display claims a wrong response time");
+   pragma Compile_Time_Error
+     (Ward_Driver_Tx_Display_R
+      > Time'Min (Ward_Driver_Tx_Display_D, Ward_Driver_Tx_Display_T),
+      "ward.driver_tx.display can miss its deadline or overlap");
+   pragma Assert
+     (Ward_Driver_Tx_Display_Needs <= Ward_Driver_Tx_Display_W
+      and then Ward_Driver_Tx_Display_R <= Ward_Driver_Tx_Display_D);
+
+   function Ward_Line_Up (W : Window) return Time is
+     (Demand (W, Ward_Line_J, Ward_Line_T, Ward_Line_C)) with Static;
+   function Ward_Motor_Up (W : Window) return Time is
+     (Demand (W, Ward_Motor_R - Ward_Motor_C, Ward_Motor_T, Ward_Motor_C,
+         Ward_Line_Up (W))) with Static;
+   function Ward_Panel_Up (W : Window) return Time is
+     (Demand (W, Ward_Panel_J, Ward_Panel_T, Ward_Panel_C,
+         Ward_Motor_Up (W))) with Static;
+   function Ward_Display_Up (W : Window) return Time is
+     (Demand (W, Ward_Display_R - Ward_Display_C, Ward_Display_T,
+         Ward_Display_C, Ward_Panel_Up (W))) with Static;
+   function Ward_Line_Up_Board (W : Window) return Time is
+     (Demand (W, Ward_Line_J, Ward_Line_T, Ward_Line_C)) with Static;
+   function Ward_Panel_Up_Board (W : Window) return Time is
+     (Demand (W, Ward_Panel_J, Ward_Panel_T, Ward_Panel_C,
+         Ward_Line_Up_Board (W))) with Static;
+   function Ward_Motor_Up_Board (W : Window) return Time is
+     (Demand (W, Ward_Motor_J, Ward_Motor_T, Ward_Motor_C,
+         Ward_Panel_Up_Board (W))) with Static;
+   function Ward_Display_Up_Board (W : Window) return Time is
+     (Demand (W, Ward_Display_J, Ward_Display_T, Ward_Display_C,
+         Ward_Motor_Up_Board (W))) with Static;
+   function Ward_Display_Rest_Board (W : Window) return Time is
+     (Demand (W, Ward_Display_J, Ward_Display_T, Ward_Display_C))
+   with Static;
 
    pragma Compile_Time_Error
-     (0 > Ward_Driver_Tx_Display_W,
-      "ward.driver_tx.display "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Driver_Tx_Display_Needs > Ward_Driver_Tx_Display_W,
-      "ward.driver_tx.display "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Driver_Tx_Display_W > Ward_Driver_Tx_Display_Needs,
-      "ward.driver_tx.display " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Driver_Tx_Display_J + Ward_Driver_Tx_Display_W)
-      > Ward_Driver_Tx_Display_T,
-      "ward.driver_tx.display "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Ward_Driver_Tx_Display_R > Ward_Driver_Tx_Display_D,
-      "ward.driver_tx.display " & "can miss its deadline");
-   pragma Assert (Ward_Driver_Tx_Display_Needs <= Ward_Driver_Tx_Display_W);
-   pragma Assert (Ward_Driver_Tx_Display_R <= Ward_Driver_Tx_Display_D);
+     (Ward_Line_Id >= Ward_Motor_Id
+      or else Ward_Motor_Id >= Ward_Panel_Id
+      or else Ward_Panel_Id >= Ward_Display_Id,
+      "ward must keep the order of its identifiers");
 
-   --  [ward.line] what can delay it: frames that go before it, and one of
-   --  those that go behind it, the longest of which counts once
+   --  [ward.line] what delays it
    Ward_Line_Busy : constant := 1_200_000;
    Ward_Line_Busy_Needs : constant :=
-     Ward_Panel_C
-     + (((Ward_Line_Busy + Ward_Line_A) / Ward_Line_T) * Ward_Line_C);
-
+     Ward_Panel_C + Ward_Line_Up (Ward_Line_Busy);
    pragma Compile_Time_Error
-     (1 > Ward_Line_Busy,
-      "ward.line " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Ward_Line_Busy_Needs > Ward_Line_Busy,
-      "ward.line " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Ward_Line_Busy > Ward_Line_Busy_Needs,
-      "ward.line " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Line_Busy + Ward_Line_J) > Ward_Line_T,
-      "ward.line " & "can come again before it is sent");
-
-   Ward_Line_W : constant := 680_000;
+     (Ward_Line_Busy < 1 or else Ward_Line_Busy /= Ward_Line_Busy_Needs,
+      "ward.line claims a wrong busy period");
+   pragma Compile_Time_Error (Ward_Line_Busy + Ward_Line_J > Ward_Line_T,
+      "ward.line can come again before it is sent");
+   Ward_Line_W : constant := Ward_Line_R - Ward_Line_J - Ward_Line_C;
    Ward_Line_Needs : constant := Ward_Panel_C;
-
-   pragma Compile_Time_Error
-     (0 > Ward_Line_W,
-      "ward.line " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Line_Needs > Ward_Line_W,
-      "ward.line " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Line_W > Ward_Line_Needs,
-      "ward.line " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Line_J + Ward_Line_W + Ward_Line_C) > Ward_Line_R,
-      "ward.line " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Line_R > (Ward_Line_J + Ward_Line_W + Ward_Line_C),
-      "ward.line " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Ward_Line_R > Ward_Line_D,
-      "ward.line " & "can miss its deadline");
+   pragma Compile_Time_Error (Ward_Line_W /= Ward_Line_Needs,
+      "ward.line claims a wrong response time");
+   pragma Compile_Time_Error (Ward_Line_R > Ward_Line_D,
+      "ward.line can miss its deadline");
    pragma Assert (Ward_Line_R <= Ward_Line_D);
 
-   --  [ward.motor] what can delay it: frames that go before it
+   --  [ward.motor] what delays it
    Ward_Motor_Busy : constant := 2_480_000;
    Ward_Motor_Busy_Needs : constant :=
-     0
-     + (((Ward_Motor_Busy + Ward_Line_A) / Ward_Line_T) * Ward_Line_C)
-     + (((Ward_Motor_Busy + Ward_Motor_A) / Ward_Motor_T) * Ward_Motor_C)
-     + (((Ward_Motor_Busy + Ward_Panel_A) / Ward_Panel_T) * Ward_Panel_C)
-     + (((Ward_Motor_Busy + Ward_Display_A) / Ward_Display_T)
-        * Ward_Display_C);
-
+     Ward_Display_Up_Board (Ward_Motor_Busy);
    pragma Compile_Time_Error
-     (1 > Ward_Motor_Busy,
-      "ward.motor " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Ward_Motor_Busy_Needs > Ward_Motor_Busy,
-      "ward.motor " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Ward_Motor_Busy > Ward_Motor_Busy_Needs,
-      "ward.motor " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Motor_Busy + Ward_Motor_J) > Ward_Motor_T,
-      "ward.motor " & "can come again before it is sent");
-
-   Ward_Motor_W : constant := 1_880_000;
+     (Ward_Motor_Busy < 1 or else Ward_Motor_Busy /= Ward_Motor_Busy_Needs,
+      "ward.motor claims a wrong busy period");
+   pragma Compile_Time_Error (Ward_Motor_Busy + Ward_Motor_J > Ward_Motor_T,
+      "ward.motor can come again before it is sent");
+   Ward_Motor_W : constant := Ward_Motor_R - Ward_Motor_J - Ward_Motor_C;
    Ward_Motor_Needs : constant :=
-     0
-     + (((Ward_Motor_W + Ward_Bit + Ward_Line_A) / Ward_Line_T)
-        * Ward_Line_C)
-     + (((Ward_Motor_W + Ward_Bit + Ward_Panel_A) / Ward_Panel_T)
-        * Ward_Panel_C)
-     + (((Ward_Motor_W + Ward_Bit + Ward_Display_A) / Ward_Display_T)
-        * Ward_Display_C);
-
-   pragma Compile_Time_Error
-     (0 > Ward_Motor_W,
-      "ward.motor " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Motor_Needs > Ward_Motor_W,
-      "ward.motor " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Motor_W > Ward_Motor_Needs,
-      "ward.motor " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Motor_J + Ward_Motor_W + Ward_Motor_C) > Ward_Motor_R,
-      "ward.motor " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Motor_R > (Ward_Motor_J + Ward_Motor_W + Ward_Motor_C),
-      "ward.motor " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Ward_Motor_R > Ward_Motor_D,
-      "ward.motor " & "can miss its deadline");
+     Ward_Panel_Up_Board (Ward_Motor_W + Ward_Bit)
+     + Ward_Display_Rest_Board (Ward_Motor_W + Ward_Bit);
+   pragma Compile_Time_Error (Ward_Motor_W /= Ward_Motor_Needs,
+      "ward.motor claims a wrong response time");
+   pragma Compile_Time_Error (Ward_Motor_R > Ward_Motor_D,
+      "ward.motor can miss its deadline");
    pragma Assert (Ward_Motor_R <= Ward_Motor_D);
 
-   --  [ward.panel] what can delay it: frames that go before it, and one of
-   --  those that go behind it, the longest of which counts once
+   --  [ward.panel] what delays it
    Ward_Panel_Busy : constant := 2_480_000;
    Ward_Panel_Busy_Needs : constant :=
-     Ward_Display_C
-     + (((Ward_Panel_Busy + Ward_Line_A) / Ward_Line_T) * Ward_Line_C)
-     + (((Ward_Panel_Busy
-          + (Ward_Motor_R - Ward_Motor_C)
-          + (Ward_Motor_T - 1))
-         / Ward_Motor_T)
-        * Ward_Motor_C)
-     + (((Ward_Panel_Busy + Ward_Panel_A) / Ward_Panel_T) * Ward_Panel_C);
-
+     Ward_Display_C + Ward_Panel_Up (Ward_Panel_Busy);
    pragma Compile_Time_Error
-     (1 > Ward_Panel_Busy,
-      "ward.panel " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Ward_Panel_Busy_Needs > Ward_Panel_Busy,
-      "ward.panel " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Ward_Panel_Busy > Ward_Panel_Busy_Needs,
-      "ward.panel " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Panel_Busy + Ward_Panel_J) > Ward_Panel_T,
-      "ward.panel " & "can come again before it is sent");
-
-   Ward_Panel_W : constant := 1_800_000;
+     (Ward_Panel_Busy < 1 or else Ward_Panel_Busy /= Ward_Panel_Busy_Needs,
+      "ward.panel claims a wrong busy period");
+   pragma Compile_Time_Error (Ward_Panel_Busy + Ward_Panel_J > Ward_Panel_T,
+      "ward.panel can come again before it is sent");
+   Ward_Panel_W : constant := Ward_Panel_R - Ward_Panel_J - Ward_Panel_C;
    Ward_Panel_Needs : constant :=
-     Ward_Display_C
-     + (((Ward_Panel_W + Ward_Bit + Ward_Line_A) / Ward_Line_T)
-        * Ward_Line_C)
-     + (((Ward_Panel_W
-          + Ward_Bit
-          + (Ward_Motor_R - Ward_Motor_C)
-          + (Ward_Motor_T - 1))
-         / Ward_Motor_T)
-        * Ward_Motor_C);
-
-   pragma Compile_Time_Error
-     (0 > Ward_Panel_W,
-      "ward.panel " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Panel_Needs > Ward_Panel_W,
-      "ward.panel " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Panel_W > Ward_Panel_Needs,
-      "ward.panel " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Panel_J + Ward_Panel_W + Ward_Panel_C) > Ward_Panel_R,
-      "ward.panel " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Panel_R > (Ward_Panel_J + Ward_Panel_W + Ward_Panel_C),
-      "ward.panel " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Ward_Panel_R > Ward_Panel_D,
-      "ward.panel " & "can miss its deadline");
+     Ward_Display_C + Ward_Motor_Up (Ward_Panel_W + Ward_Bit);
+   pragma Compile_Time_Error (Ward_Panel_W /= Ward_Panel_Needs,
+      "ward.panel claims a wrong response time");
+   pragma Compile_Time_Error (Ward_Panel_R > Ward_Panel_D,
+      "ward.panel can miss its deadline");
    pragma Assert (Ward_Panel_R <= Ward_Panel_D);
 
-   --  [ward.display] what can delay it: frames that go before it
+   --  [ward.display] what delays it
    Ward_Display_Busy : constant := 2_480_000;
    Ward_Display_Busy_Needs : constant :=
-     0
-     + (((Ward_Display_Busy + Ward_Line_A) / Ward_Line_T) * Ward_Line_C)
-     + (((Ward_Display_Busy + Ward_Motor_A) / Ward_Motor_T) * Ward_Motor_C)
-     + (((Ward_Display_Busy + Ward_Panel_A) / Ward_Panel_T) * Ward_Panel_C)
-     + (((Ward_Display_Busy + Ward_Display_A) / Ward_Display_T)
-        * Ward_Display_C);
-
+     Ward_Display_Up_Board (Ward_Display_Busy);
    pragma Compile_Time_Error
-     (1 > Ward_Display_Busy,
-      "ward.display " & "can keep others waiting for longer than claimed");
+     (Ward_Display_Busy < 1
+      or else Ward_Display_Busy /= Ward_Display_Busy_Needs,
+      "ward.display claims a wrong busy period");
    pragma Compile_Time_Error
-     (Ward_Display_Busy_Needs > Ward_Display_Busy,
-      "ward.display " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Ward_Display_Busy > Ward_Display_Busy_Needs,
-      "ward.display " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Display_Busy + Ward_Display_J) > Ward_Display_T,
-      "ward.display " & "can come again before it is sent");
-
-   Ward_Display_W : constant := 1_800_000;
+     (Ward_Display_Busy + Ward_Display_J > Ward_Display_T,
+      "ward.display can come again before it is sent");
+   Ward_Display_W : constant :=
+     Ward_Display_R - Ward_Display_J - Ward_Display_C;
    Ward_Display_Needs : constant :=
-     0
-     + (((Ward_Display_W + Ward_Bit + Ward_Line_A) / Ward_Line_T)
-        * Ward_Line_C)
-     + (((Ward_Display_W + Ward_Bit + Ward_Motor_A) / Ward_Motor_T)
-        * Ward_Motor_C)
-     + (((Ward_Display_W + Ward_Bit + Ward_Panel_A) / Ward_Panel_T)
-        * Ward_Panel_C);
-
-   pragma Compile_Time_Error
-     (0 > Ward_Display_W,
-      "ward.display " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Display_Needs > Ward_Display_W,
-      "ward.display " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Display_W > Ward_Display_Needs,
-      "ward.display " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Ward_Display_J + Ward_Display_W + Ward_Display_C) > Ward_Display_R,
-      "ward.display " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Ward_Display_R > (Ward_Display_J + Ward_Display_W + Ward_Display_C),
-      "ward.display " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Ward_Display_R > Ward_Display_D,
-      "ward.display " & "can miss its deadline");
+     Ward_Motor_Up_Board (Ward_Display_W + Ward_Bit);
+   pragma Compile_Time_Error (Ward_Display_W /= Ward_Display_Needs,
+      "ward.display claims a wrong response time");
+   pragma Compile_Time_Error (Ward_Display_R > Ward_Display_D,
+      "ward.display can miss its deadline");
    pragma Assert (Ward_Display_R <= Ward_Display_D);
 end Infusion_System.Timing_Certificate;

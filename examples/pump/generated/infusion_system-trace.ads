@@ -14,6 +14,5 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    package Buffer is new Ravenchart.Trace_Buffers
-     (Capacity => 4_096,
-      Ceiling => System.Default_Priority + 2);
+     (Capacity => 4_096, Ceiling => System.Default_Priority + 2);
 end Infusion_System.Trace;

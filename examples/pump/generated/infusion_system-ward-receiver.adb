@@ -16,7 +16,6 @@ is
    pragma Warnings (Off, "*can never be *");
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
-
    Frame : Ravenchart.Can.Any_Frames.Any_Frame :=
      Ravenchart.Can.Any_Frames.Null_Any_Frame;
 
@@ -38,22 +37,17 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Type_Line.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Line_Item,
-            Valid);
+         Codecs.Type_Line.Unpack (Ravenchart.Can.Any_Frames.Payload (Frame),
+            Line_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Ward_Line_Length)
          then
             pragma Assert
               (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Line));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Line_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Line_Message, 0);
             Bed.Put_Line (Line_Item);
          end if;
       elsif Ravenchart.Can.Any_Frames.Id (Frame)
@@ -62,21 +56,16 @@ is
            = Ravenchart.Can.Standard
       then
          Codecs.Type_Press.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Panel_Item,
-            Valid);
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Panel_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Ward_Panel_Length)
          then
             pragma Assert
               (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Panel));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Panel_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Panel_Message, 0);
             Bed.Put_Panel (Panel_Item);
          end if;
       end if;

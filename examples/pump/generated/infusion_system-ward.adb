@@ -41,9 +41,7 @@ is
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.Motor_Message,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Motor_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
       end if;
@@ -70,15 +68,12 @@ is
       pragma Assert
         (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Display));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Display_Message,
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Display_Message,
          0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Display_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));

@@ -50,7 +50,7 @@ is
    pragma Compile_Time_Error
      (Controller.Given_Priority
       /= Timing_Certificate.Ward_Driver_Rx_Line_Priority,
-      "ward " & "has another priority of its driver than its certificate");
+      "ward has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Ward_Bit_Rate
       and then Controller.Given_Setting.Data_Rate = 0);
@@ -70,8 +70,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Motor'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Motor'Result,
           Codecs.Frame_Motor)
        and then Ravenchart.Can.Any_Frames.Payload (Frame_Of_Motor'Result)
          = Codecs.Type_Portion.Pack (Item);
@@ -85,8 +84,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Display'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Display'Result,
           Codecs.Frame_Display)
        and then Ravenchart.Can.Any_Frames.Payload (Frame_Of_Display'Result)
          = Codecs.Type_View.Pack (Item);

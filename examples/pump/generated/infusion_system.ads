@@ -21,12 +21,7 @@ is
    subtype Volume is Unit_Ul range 0 .. 1_000_000;
 
    type Key is
-     (Start_Key,
-      Stop_Key,
-      Silence_Key,
-      Resume_Key,
-      Portion_Key,
-      Volume_Key);
+     (Start_Key, Stop_Key, Silence_Key, Resume_Key, Portion_Key, Volume_Key);
 
    type Lamp is (Dark, Steady, Flashing);
 

@@ -53,16 +53,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Charts_Priority,
-      "charts " & "has another priority than its certificate");
+      "charts has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Charts_T,
-      "charts " & "has another period than its certificate");
+      "charts has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Charts_D,
-      "charts " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "charts " & "has another offset than its certificate");
+      "charts has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "charts has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Test_Ports).Divisor
       = Timing_Certificate.Test_Ports_Divisor

@@ -37,14 +37,12 @@ is
         Pre => Raw <= 16#F#,
         Post =>
           (Raw <= 8)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Value)
              in 0 .. 8)
           and then (if Raw <= 8
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Value)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Value)
                    = Qhsm_Test.Key'Pos (Value_Of_Type_Key (Raw)))
       is
       begin
@@ -52,8 +50,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Value)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Value;

@@ -16,7 +16,6 @@ is
    pragma Warnings (Off, "*can never be *");
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
-
    Frame : Ravenchart.Can.Any_Frames.Any_Frame :=
      Ravenchart.Can.Any_Frames.Null_Any_Frame;
 
@@ -37,22 +36,17 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Type_Key.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Key_Item,
-            Valid);
+         Codecs.Type_Key.Unpack (Ravenchart.Can.Any_Frames.Payload (Frame),
+            Key_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Panel_Key_Length)
          then
             pragma Assert
               (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Key));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Key_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Key_Message, 0);
             Test.Put_Key (Key_Item);
          end if;
       end if;

@@ -45,7 +45,7 @@ is
    pragma Compile_Time_Error
      (Controller.Given_Priority
       /= Timing_Certificate.Panel_Driver_Rx_Key_Priority,
-      "panel " & "has another priority of its driver than its certificate");
+      "panel has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Panel_Bit_Rate
       and then Controller.Given_Setting.Data_Rate = 0);

@@ -11,132 +11,84 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    function In_S1_Init (Now : Occurrence; Data : Variables) return Selection is
-     (if Now = Passing
-         then S1_Init
-      elsif Now = On_A
-         then S1_A
-      elsif Now = On_B
-         then S1_B
-      elsif Now = On_C
-         then S1_C
-      elsif Now = On_D and then not Data.Foo
-         then S1_D
-      elsif Now = On_F
-         then S1_F
-      elsif Now = On_I
-         then S1_I
-      elsif Now = On_E
-         then S_E
-      elsif Now = On_I and then Data.Foo
-         then S_I
+     (if Now = Passing then S1_Init
+      elsif Now = On_A then S1_A
+      elsif Now = On_B then S1_B
+      elsif Now = On_C then S1_C
+      elsif Now = On_D and then not Data.Foo then S1_D
+      elsif Now = On_F then S1_F
+      elsif Now = On_I then S1_I
+      elsif Now = On_E then S_E
+      elsif Now = On_I and then Data.Foo then S_I
       else None)
    with
      Post =>
        Is_Selection (In_S1_Init'Result, Chart_States.S1_Init, Now, Data);
 
    function In_S21_Init
-     (Now : Occurrence;
-      Data : Variables)
+     (Now : Occurrence; Data : Variables)
      return Selection is
-     (if Now = Passing
-         then S21_Init
-      elsif Now = On_A
-         then S21_A
-      elsif Now = On_B
-         then S21_B
-      elsif Now = On_G
-         then S21_G
-      elsif Now = On_C
-         then S2_C
-      elsif Now = On_F
-         then S2_F
-      elsif Now = On_I and then not Data.Foo
-         then S2_I
-      elsif Now = On_E
-         then S_E
-      elsif Now = On_I and then Data.Foo
-         then S_I
+     (if Now = Passing then S21_Init
+      elsif Now = On_A then S21_A
+      elsif Now = On_B then S21_B
+      elsif Now = On_G then S21_G
+      elsif Now = On_C then S2_C
+      elsif Now = On_F then S2_F
+      elsif Now = On_I and then not Data.Foo then S2_I
+      elsif Now = On_E then S_E
+      elsif Now = On_I and then Data.Foo then S_I
       else None)
    with
      Post =>
        Is_Selection (In_S21_Init'Result, Chart_States.S21_Init, Now, Data);
 
    function In_S_Init (Now : Occurrence; Data : Variables) return Selection is
-     (if Now = Passing
-         then S_Init
-      elsif Now = On_E
-         then S_E
-      elsif Now = On_I and then Data.Foo
-         then S_I
+     (if Now = Passing then S_Init
+      elsif Now = On_E then S_E
+      elsif Now = On_I and then Data.Foo then S_I
       else None)
    with
      Post => Is_Selection (In_S_Init'Result, Chart_States.S_Init, Now, Data);
 
    function Select_Transition
-     (Leaf : Chart_States.Leaf;
-      Now  : Occurrence;
-      Data : Variables)
+     (Leaf : Chart_States.Leaf; Now  : Occurrence; Data : Variables)
      return Selection is
      (case Leaf is
         when Chart_States.S11 =>
-           (if Now = On_D and then Data.Foo
-               then S11_D
-            elsif Now = On_G
-               then S11_G
-            elsif Now = On_H
-               then S11_H
-            elsif Now = On_A
-               then S1_A
-            elsif Now = On_B
-               then S1_B
-            elsif Now = On_C
-               then S1_C
-            elsif Now = On_D and then not Data.Foo
-               then S1_D
-            elsif Now = On_F
-               then S1_F
-            elsif Now = On_I
-               then S1_I
-            elsif Now = On_E
-               then S_E
-            elsif Now = On_I and then Data.Foo
-               then S_I
+           (if Now = On_D and then Data.Foo then S11_D
+            elsif Now = On_G then S11_G
+            elsif Now = On_H then S11_H
+            elsif Now = On_A then S1_A
+            elsif Now = On_B then S1_B
+            elsif Now = On_C then S1_C
+            elsif Now = On_D and then not Data.Foo then S1_D
+            elsif Now = On_F then S1_F
+            elsif Now = On_I then S1_I
+            elsif Now = On_E then S_E
+            elsif Now = On_I and then Data.Foo then S_I
             else None),
         when Chart_States.S1_Init => In_S1_Init (Now, Data),
         when Chart_States.S211 =>
-           (if Now = On_D
-               then S211_D
-            elsif Now = On_H
-               then S211_H
-            elsif Now = On_A
-               then S21_A
-            elsif Now = On_B
-               then S21_B
-            elsif Now = On_G
-               then S21_G
-            elsif Now = On_C
-               then S2_C
-            elsif Now = On_F
-               then S2_F
-            elsif Now = On_I and then not Data.Foo
-               then S2_I
-            elsif Now = On_E
-               then S_E
-            elsif Now = On_I and then Data.Foo
-               then S_I
+           (if Now = On_D then S211_D
+            elsif Now = On_H then S211_H
+            elsif Now = On_A then S21_A
+            elsif Now = On_B then S21_B
+            elsif Now = On_G then S21_G
+            elsif Now = On_C then S2_C
+            elsif Now = On_F then S2_F
+            elsif Now = On_I and then not Data.Foo then S2_I
+            elsif Now = On_E then S_E
+            elsif Now = On_I and then Data.Foo then S_I
             else None),
         when Chart_States.S21_Init => In_S21_Init (Now, Data),
         when Chart_States.S_Init => In_S_Init (Now, Data))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Data);
 
    function Select_Segment
-     (Leaf : Chart_States.Leaf;
-      Data : Variables)
+     (Leaf : Chart_States.Leaf; Data : Variables)
      return Transition is
-     (if Leaf = Chart_States.S_Init
-         then In_S_Init (Passing, Data)
-      elsif Leaf = Chart_States.S1_Init
-         then In_S1_Init (Passing, Data)
+     (if Leaf = Chart_States.S_Init then In_S_Init (Passing, Data)
+      elsif Leaf = Chart_States.S1_Init then In_S1_Init (Passing, Data)
       else In_S21_Init (Passing, Data))
    with
      Pre => Segments_Left (Leaf) > 0,
@@ -148,25 +100,14 @@ is
    with Ghost
    is
       type Node is
-        (Nowhere,
-         S11,
-         S1_Init,
-         S211,
-         S21_Init,
-         S_Init,
-         S,
-         S1,
-         S2,
-         S21,
+        (Nowhere, S11, S1_Init, S211, S21_Init, S_Init, S, S1, S2, S21,
          Disorder);
 
       function Innermost (Leaf : Chart_States.Leaf) return Node is
         (Node'Val (Chart_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -183,16 +124,14 @@ is
    procedure Fire (Self : in out Region; Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
       procedure Leave_S21
@@ -388,15 +327,12 @@ is
    end Fire;
 
    procedure Step
-     (Self  : in out Region;
-      Now   : Occurrence;
-      Fired : out Firing_List) is
+     (Self  : in out Region; Now   : Occurrence; Fired : out Firing_List) is
       Chosen : Selection;
       procedure Fire_Whole (T : Firing)
       with
         Pre =>
-          (if T = Initial_Entry
-              then not Self.Started
+          (if T = Initial_Entry then not Self.Started
            else Self.Started and then In_Source (T, Self.Leaf))
           and then Fired.Count = 0,
         Post =>
@@ -424,7 +360,7 @@ is
                      Fired.Items (J) = Before.Items (J))
                and then (for all J in Before.Count + 2 .. Fired.Count =>
                      Is_Segment (Fired.Items (J)))
-               and then Segments_Left (Self.Leaf) <= (2 - I));
+               and then Segments_Left (Self.Leaf) <= 2 - I);
             if Segments_Left (Self.Leaf) = 0 then
                exit;
             end if;

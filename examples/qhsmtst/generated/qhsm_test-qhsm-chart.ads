@@ -14,46 +14,15 @@ is
 
    --  [Qhsm.Chart] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_E,
-      On_I,
-      On_A,
-      On_B,
-      On_C,
-      On_D,
-      On_F,
-      On_G,
-      On_H,
-      Passing,
-      Conditions);
+     (Start_Of_Region, On_E, On_I, On_A, On_B, On_C, On_D, On_F, On_G, On_H,
+      Passing, Conditions);
 
    --  [Qhsm.Chart.transitions] in order of precedence, innermost source
    --  first
    type Selection is
-     (Initial_Entry,
-      S211_D,
-      S211_H,
-      S21_Init,
-      S11_D,
-      S11_G,
-      S11_H,
-      S21_A,
-      S21_B,
-      S21_G,
-      S1_Init,
-      S1_A,
-      S1_B,
-      S1_C,
-      S1_D,
-      S1_F,
-      S1_I,
-      S2_C,
-      S2_F,
-      S2_I,
-      S_Init,
-      S_E,
-      S_I,
-      None);
+     (Initial_Entry, S211_D, S211_H, S21_Init, S11_D, S11_G, S11_H, S21_A,
+      S21_B, S21_G, S1_Init, S1_A, S1_B, S1_C, S1_D, S1_F, S1_I, S2_C, S2_F,
+      S2_I, S_Init, S_E, S_I, None);
 
    subtype Firing is Selection range Initial_Entry .. S_I;
    subtype Transition is Selection range S211_D .. S_I;
@@ -115,8 +84,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Chart_States.Leaf)
+     (T : Transition; Leaf : Chart_States.Leaf)
      return Boolean is
      (case T is
         when S211_D => Leaf = Chart_States.S211,
@@ -144,8 +112,7 @@ is
    --  Is its source the leaf, or around it?
 
    function Target
-     (T : Firing;
-      Leaf : Chart_States.Leaf)
+     (T : Firing; Leaf : Chart_States.Leaf)
      return Chart_States.Leaf is
      (case T is
         when Initial_Entry => Chart_States.S211,
@@ -203,8 +170,7 @@ is
      (Fired.Count > 0
       and then Fired.Items (1) = T
       and then (for all I in 2 .. Fired.Count =>
-            Is_Segment (Fired.Items (I))))
-   with Ghost;
+            Is_Segment (Fired.Items (I)))) with Ghost;
    --  Is that fired, with the segments of its way, and nothing else?
 
    function To_Occurrence (Item : Event) return Occurrence is
@@ -229,9 +195,7 @@ is
    --  neither.
 
    procedure Step
-     (Self  : in out Region;
-      Now   : Occurrence;
-      Fired : out Firing_List)
+     (Self  : in out Region; Now   : Occurrence; Fired : out Firing_List)
    with
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
@@ -241,10 +205,7 @@ is
              then Segments_Left (Self.Leaf) = 0)
        and then (if Now = Start_Of_Region
              then Fired.Items (1) = Initial_Entry
-          else Is_Selection
-               (Fired.Items (1),
-                Self.Leaf'Old,
-                Now,
+          else Is_Selection (Fired.Items (1), Self.Leaf'Old, Now,
                 Self.Data'Old))
        and then (if Fired.Count > 0 then Is_Only (Fired, Fired.Items (1)));
    --  One run-to-completion step.

@@ -11,8 +11,7 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    function Select_Transition
-     (Leaf : Keys_States.Leaf;
-      Now : Occurrence)
+     (Leaf : Keys_States.Leaf; Now : Occurrence)
      return Selection is
      (case Leaf is
         when Keys_States.Listening =>
@@ -28,9 +27,7 @@ is
         (Node'Val (Keys_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -51,16 +48,14 @@ is
       Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
    begin
@@ -71,48 +66,39 @@ is
             Self.Leaf := Keys_States.Listening;
          when Pressed =>
             if Item.Value_Key = Qhsm_Test.Key_A then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Qhsm.Event'(Name => Qhsm.A, others => <>));
             end if;
             if Item.Value_Key = Qhsm_Test.Key_B then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Qhsm.Event'(Name => Qhsm.B, others => <>));
             end if;
             if Item.Value_Key = Qhsm_Test.Key_C then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Qhsm.Event'(Name => Qhsm.C, others => <>));
             end if;
             if Item.Value_Key = Qhsm_Test.Key_D then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Qhsm.Event'(Name => Qhsm.D, others => <>));
             end if;
             if Item.Value_Key = Qhsm_Test.Key_E then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Qhsm.Event'(Name => Qhsm.E, others => <>));
             end if;
             if Item.Value_Key = Qhsm_Test.Key_F then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Qhsm.Event'(Name => Qhsm.F, others => <>));
             end if;
             if Item.Value_Key = Qhsm_Test.Key_G then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Qhsm.Event'(Name => Qhsm.G, others => <>));
             end if;
             if Item.Value_Key = Qhsm_Test.Key_H then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Qhsm.Event'(Name => Qhsm.H, others => <>));
             end if;
             if Item.Value_Key = Qhsm_Test.Key_I then
-               Event_Lists.Append
-                 (Box.Raised,
+               Event_Lists.Append (Box.Raised,
                   Qhsm.Event'(Name => Qhsm.I, others => <>));
             end if;
       end case;

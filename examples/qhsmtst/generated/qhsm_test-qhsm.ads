@@ -26,9 +26,7 @@ is
    No_Event : constant Event := (others => <>);
 
    package Event_Lists is new Ravenchart.Event_Lists
-     (Event => Qhsm.Event,
-      Null_Event => Qhsm.No_Event,
-      Capacity => 16);
+     (Event => Qhsm.Event, Null_Event => Qhsm.No_Event, Capacity => 16);
 
    --  [Qhsm.Chart.states]
    package Chart_States is
@@ -47,8 +45,7 @@ is
 
    --  [Qhsm.key] what its readers see
    package Key_Port is new Ravenchart.Port_Regions
-     (Value_Type => Qhsm_Test.Key,
-      Default => Qhsm_Test.Key_A);
+     (Value_Type => Qhsm_Test.Key, Default => Qhsm_Test.Key_A);
 
    subtype Key_View is Key_Port.Port;
 end Qhsm_Test.Qhsm;

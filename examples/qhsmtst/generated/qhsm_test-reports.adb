@@ -42,15 +42,11 @@ is
       Found : Reception.Processor.Statistics;
    begin
       Reception.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Reception_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Reception_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Reception.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Reception_Processor
-            + 1
+           (Elements.Reception_Processor + 1
             + Ravenchart.Element_Id (Reception.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -61,15 +57,11 @@ is
       Found : Charts.Processor.Statistics;
    begin
       Charts.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Charts_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Charts_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Charts.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Charts_Processor
-            + 1
+           (Elements.Charts_Processor + 1
             + Ravenchart.Element_Id (Charts.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -97,8 +89,7 @@ is
       Panel.Controller.Read_Counters (Panel_Counters);
       Ravenchart.Hosts.Put_Lost ("panel.lost_out", Panel_Counters.Lost_Out);
       Ravenchart.Hosts.Put_Lost ("panel.lost_in", Panel_Counters.Lost_In);
-      Ravenchart.Hosts.Put_Lost
-        ("panel.rejected_lines",
+      Ravenchart.Hosts.Put_Lost ("panel.rejected_lines",
          Panel_Counters.Rejected_Lines);
    end Put_All;
 end Qhsm_Test.Reports;

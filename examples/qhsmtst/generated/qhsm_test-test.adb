@@ -70,9 +70,7 @@ is
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.Test_Key,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Test_Key,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
       end if;
@@ -88,151 +86,112 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Test_Keys,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Test_Pressed,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Test_Pressed, 0);
          when Qhsm.A =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Test_A,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_A, 0);
          when Qhsm.B =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Test_B,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_B, 0);
          when Qhsm.C =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Test_C,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_C, 0);
          when Qhsm.D =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Test_D,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_D, 0);
          when Qhsm.E =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Test_E,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_E, 0);
          when Qhsm.F =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Test_F,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_F, 0);
          when Qhsm.G =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Test_G,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_G, 0);
          when Qhsm.H =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Test_H,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_H, 0);
          when Qhsm.I =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Test_I,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_I, 0);
       end case;
    end Offer;
 
@@ -253,9 +212,7 @@ is
          when Qhsm.Key_Port.Nothing =>
             null;
          when Qhsm.Key_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Test_Key,
+            Trace.Buffer.Note (Ravenchart.Traces.Handled, Elements.Test_Key,
                0);
             Offer
               (Qhsm.Event'(Name => Qhsm.Pressed,
@@ -263,9 +220,7 @@ is
          when Qhsm.Key_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
-               Elements.Test_Key,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Test_Key,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
       end case;
@@ -292,15 +247,12 @@ is
       Qhsm.Keys.Step (Keys_Region, Now, Event, Box, Fired);
       if Fired /= Qhsm.Keys.None then
          if Fired in Qhsm.Keys.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Test_Keys,
                Qhsm.Keys.Selection'Pos (Fired)
                - Qhsm.Keys.Selection'Pos (Qhsm.Keys.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.Test_Keys,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Test_Keys,
             Qhsm.Keys_States.Leaf'Pos (Keys_Region.Leaf));
          for I in 1 .. Qhsm.Event_Lists.Count (Box.Raised) loop
             Offer (Qhsm.Event_Lists.Element (Box.Raised, I));
@@ -334,16 +286,13 @@ is
       if Fired.Count > 0 then
          for I in 1 .. Fired.Count loop
             if Fired.Items (I) in Qhsm.Chart.Transition then
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Transition,
+               Trace.Buffer.Note (Ravenchart.Traces.Transition,
                   Elements.Test_Chart,
                   Qhsm.Chart.Selection'Pos (Fired.Items (I))
                   - Qhsm.Chart.Selection'Pos (Qhsm.Chart.Transition'First));
             end if;
          end loop;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.Test_Chart,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Test_Chart,
             Qhsm.Chart_States.Leaf'Pos (Chart_Region.Leaf));
       end if;
    end Step_Chart;

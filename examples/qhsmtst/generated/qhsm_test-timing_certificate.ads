@@ -2,7 +2,10 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+
 with System;
+with Ravenchart.Response_Times;
 
 package Qhsm_Test.Timing_Certificate
 with SPARK_Mode, Pure
@@ -16,13 +19,16 @@ is
    Model_Digest : constant String :=
      "8b02c33aec34ada9e3f711dc46754f154dfb3555f040889b48aae0da799ea680";
 
+   use Ravenchart.Response_Times;
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period. A
-   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W, and equals it: where it is
-   --  more, W is too short; where it is less, a term is missing.
+   --  from the event, W the time claimed from the start of a busy period.
+   --  X_Up (W) is what X and all that goes before it ask for within W,
+   --  X_Rest (W) what X and those listed behind it at its level do. Needs
+   --  is the demand that arises within W, and equals it: where it is more,
+   --  W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_R : constant := 105_000;
@@ -35,18 +41,17 @@ is
    Board_Critical_Section : constant := 5_000;
 
    --  [reception] released by arrivals, no closer than T; it may wait for T
-   --  to be over as well. B: charts may be inside test.key.mailbox.
+   --  to be over as well. B: charts in test.key.mailbox.
    Reception_Priority : constant := System.Default_Priority + 2;
    Panel_Receive_Budget : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
-   Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant :=
      Panel_Receive_Budget + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
-   --  [charts] released every T. B: main may be inside health.
+   --  [charts] released every T. B: main in health.
    Charts_Priority : constant := System.Default_Priority + 1;
    Test_Ports_Budget : constant := 50_000;
    Test_Keys_Budget : constant := 50_000;
@@ -55,67 +60,52 @@ is
    Charts_D : constant := 10_000_000;
    Test_Ports_Divisor : constant := 1;
    Test_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Test_Ports_Divisor /= 1,
-      "test.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Test_Ports_Phase + 1) > Test_Ports_Divisor,
-      "test.ports " & "has a phase beyond its divisor");
-
    Test_Keys_Divisor : constant := 1;
    Test_Keys_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Test_Keys_Divisor /= 1,
-      "test.Keys " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Test_Keys_Phase + 1) > Test_Keys_Divisor,
-      "test.Keys " & "has a phase beyond its divisor");
-
    Test_Chart_Divisor : constant := 1;
    Test_Chart_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Test_Chart_Divisor /= 1,
-      "test.Chart " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Test_Chart_Phase + 1) > Test_Chart_Divisor,
-      "test.Chart " & "has a phase beyond its divisor");
-
+     (Test_Ports_Divisor /= 1
+      or else Test_Ports_Phase /= 0
+      or else Test_Keys_Divisor /= 1
+      or else Test_Keys_Phase /= 0
+      or else Test_Chart_Divisor /= 1
+      or else Test_Chart_Phase /= 0,
+      "charts must keep divisors and phases of its rows");
    Charts_J : constant := 0;
-   Charts_A : constant := Charts_J + (Charts_T - 1);
    Charts_C : constant :=
-     Test_Ports_Budget
-     + Test_Keys_Budget
-     + Test_Chart_Budget
+     Test_Ports_Budget + Test_Keys_Budget + Test_Chart_Budget
      + 2 * Board_Context_Switch;
    Charts_B : constant := Board_Critical_Section;
 
-   --  [panel.driver_rx.key] the driver's work, released by panel.key, which
-   --  is J late. B: reception may be inside panel.receive.
+   --  [panel.driver_rx.key] the driver, released by panel.key. B: reception
+   --  in panel.receive.
    Panel_Driver_Rx_Key_Priority : constant := System.Default_Priority + 3;
    Panel_Driver_Rx_Key_Budget : constant := 20_000;
    Panel_Driver_Rx_Key_T : constant := 10_000_000;
    Panel_Driver_Rx_Key_D : constant := 10_000_000;
    Panel_Driver_Rx_Key_J : constant := Panel_Key_R;
-   Panel_Driver_Rx_Key_A : constant :=
-     Panel_Driver_Rx_Key_J + (Panel_Driver_Rx_Key_T - 1);
    Panel_Driver_Rx_Key_C : constant :=
      Panel_Driver_Rx_Key_Budget + 2 * Board_Context_Switch;
    Panel_Driver_Rx_Key_B : constant := Board_Critical_Section;
 
-   pragma Compile_Time_Error
-     ((Reception_Priority + 1) > Panel_Driver_Rx_Key_Priority,
-      "panel.driver_rx.key " & "must have a higher priority than reception");
-   pragma Compile_Time_Error
-     ((Charts_Priority + 1) > Reception_Priority,
-      "reception " & "must have a higher priority than charts");
+   function Panel_Driver_Rx_Key_Up (W : Window) return Time is
+     (Demand (W, Panel_Driver_Rx_Key_J, Panel_Driver_Rx_Key_T,
+         Panel_Driver_Rx_Key_C)) with Static;
+   function Reception_Up (W : Window) return Time is
+     (Demand (W, Reception_J, Reception_T, Reception_C,
+         Panel_Driver_Rx_Key_Up (W))) with Static;
 
-   --  [panel] bits in a second, and one bit in nanoseconds, rounded up. Of
-   --  a message, Stuffed: bits that stuffing can lengthen by a quarter;
-   --  Bits: the longest frame, with 10 bits that are not stuffed and 3 to
-   --  the next frame.
+   pragma Compile_Time_Error
+     (Panel_Driver_Rx_Key_Priority <= Reception_Priority
+      or else Reception_Priority <= Charts_Priority,
+      "board must keep the order of its priorities");
+
+   --  [panel] bits in a second, and one bit in nanoseconds, rounded up. A
+   --  message waits for the longest frame that goes behind it and has
+   --  begun, and for those that go before it. Of a message, Stuffed: bits
+   --  that stuffing can lengthen by a quarter; Bits: the longest frame,
+   --  with 10 bits that are not stuffed and 3 to the next frame.
    Panel_Bit_Rate : constant := 125_000;
    Panel_Bit : constant :=
      (1_000_000_000 + (Panel_Bit_Rate - 1)) / Panel_Bit_Rate;
@@ -127,131 +117,64 @@ is
    Panel_Key_D : constant := 10_000_000;
    Panel_Key_Stuffed : constant := 34 + 8 * Panel_Key_Length;
    Panel_Key_Bits : constant :=
-     Panel_Key_Stuffed + 13 + ((Panel_Key_Stuffed - 1) / 4);
+     Panel_Key_Stuffed + 13 + (Panel_Key_Stuffed - 1) / 4;
    Panel_Key_C : constant :=
-     ((Panel_Key_Bits * 10**9) + (Panel_Bit_Rate - 1)) / Panel_Bit_Rate;
+     (Panel_Key_Bits * 10**9 + (Panel_Bit_Rate - 1)) / Panel_Bit_Rate;
    Panel_Key_J : constant := 0;
-   Panel_Key_A : constant := Panel_Key_J + (Panel_Key_T - 1);
 
-   --  [reception] what can delay it: jobs of the same or higher priority
+   --  [reception] what delays it
    Reception_W : constant := Reception_R - Reception_J;
    Reception_Needs : constant :=
-     Reception_C
-     + Reception_B
-     + (((Reception_W + Panel_Driver_Rx_Key_A) / Panel_Driver_Rx_Key_T)
-        * Panel_Driver_Rx_Key_C);
+     Reception_C + Reception_B + Panel_Driver_Rx_Key_Up (Reception_W);
+   pragma Compile_Time_Error (Reception_W /= Reception_Needs,
+      "reception claims a wrong response time");
+   pragma Compile_Time_Error
+     (Reception_R > Time'Min (Reception_D, Reception_T),
+      "reception can miss its deadline or overlap");
+   pragma Assert
+     (Reception_Needs <= Reception_W and then Reception_R <= Reception_D);
 
-   pragma Compile_Time_Error
-     (0 > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_Needs > Reception_W,
-      "reception " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_W > Reception_Needs,
-      "reception " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Reception_J + Reception_W) > Reception_T,
-      "reception " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Reception_R > Reception_D,
-      "reception " & "can miss its deadline");
-   pragma Assert (Reception_Needs <= Reception_W);
-   pragma Assert (Reception_R <= Reception_D);
-
-   --  [charts] what can delay it: jobs of the same or higher priority
+   --  [charts] what delays it
    Charts_W : constant := Charts_R - Charts_J;
-   Charts_Needs : constant :=
-     Charts_C
-     + Charts_B
-     + (((Charts_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Charts_W + Panel_Driver_Rx_Key_A) / Panel_Driver_Rx_Key_T)
-        * Panel_Driver_Rx_Key_C);
+   Charts_Needs : constant := Charts_C + Charts_B + Reception_Up (Charts_W);
+   pragma Compile_Time_Error (Charts_W /= Charts_Needs,
+      "charts claims a wrong response time");
+   pragma Compile_Time_Error (Charts_R > Time'Min (Charts_D, Charts_T),
+      "charts can miss its deadline or overlap");
+   pragma Assert (Charts_Needs <= Charts_W and then Charts_R <= Charts_D);
 
-   pragma Compile_Time_Error
-     (0 > Charts_W,
-      "charts " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Charts_Needs > Charts_W,
-      "charts " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Charts_W > Charts_Needs,
-      "charts " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Charts_J + Charts_W) > Charts_T,
-      "charts " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Charts_R > Charts_D,
-      "charts " & "can miss its deadline");
-   pragma Assert (Charts_Needs <= Charts_W);
-   pragma Assert (Charts_R <= Charts_D);
-
-   --  [panel.driver_rx.key] what can delay it: jobs of the same or higher
-   --  priority
+   --  [panel.driver_rx.key] what delays it
    Panel_Driver_Rx_Key_W : constant :=
      Panel_Driver_Rx_Key_R - Panel_Driver_Rx_Key_J;
    Panel_Driver_Rx_Key_Needs : constant :=
      Panel_Driver_Rx_Key_C + Panel_Driver_Rx_Key_B;
+   pragma Compile_Time_Error
+     (Panel_Driver_Rx_Key_W /= Panel_Driver_Rx_Key_Needs,
+      "panel.driver_rx.key claims a wrong response time");
+   pragma Compile_Time_Error
+     (Panel_Driver_Rx_Key_R
+      > Time'Min (Panel_Driver_Rx_Key_D, Panel_Driver_Rx_Key_T),
+      "panel.driver_rx.key can miss its deadline or overlap");
+   pragma Assert
+     (Panel_Driver_Rx_Key_Needs <= Panel_Driver_Rx_Key_W
+      and then Panel_Driver_Rx_Key_R <= Panel_Driver_Rx_Key_D);
 
-   pragma Compile_Time_Error
-     (0 > Panel_Driver_Rx_Key_W,
-      "panel.driver_rx.key "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Panel_Driver_Rx_Key_Needs > Panel_Driver_Rx_Key_W,
-      "panel.driver_rx.key "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Panel_Driver_Rx_Key_W > Panel_Driver_Rx_Key_Needs,
-      "panel.driver_rx.key " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Panel_Driver_Rx_Key_J + Panel_Driver_Rx_Key_W)
-      > Panel_Driver_Rx_Key_T,
-      "panel.driver_rx.key " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Panel_Driver_Rx_Key_R > Panel_Driver_Rx_Key_D,
-      "panel.driver_rx.key " & "can miss its deadline");
-   pragma Assert (Panel_Driver_Rx_Key_Needs <= Panel_Driver_Rx_Key_W);
-   pragma Assert (Panel_Driver_Rx_Key_R <= Panel_Driver_Rx_Key_D);
+   function Panel_Key_Up (W : Window) return Time is
+     (Demand (W, Panel_Key_J, Panel_Key_T, Panel_Key_C)) with Static;
+   --  [panel.key] what delays it
 
-   --  [panel.key] what can delay it: frames that go before it
    Panel_Key_Busy : constant := 520_000;
-   Panel_Key_Busy_Needs : constant :=
-     0 + (((Panel_Key_Busy + Panel_Key_A) / Panel_Key_T) * Panel_Key_C);
-
+   Panel_Key_Busy_Needs : constant := Panel_Key_Up (Panel_Key_Busy);
    pragma Compile_Time_Error
-     (1 > Panel_Key_Busy,
-      "panel.key " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Panel_Key_Busy_Needs > Panel_Key_Busy,
-      "panel.key " & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Panel_Key_Busy > Panel_Key_Busy_Needs,
-      "panel.key " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Panel_Key_Busy + Panel_Key_J) > Panel_Key_T,
-      "panel.key " & "can come again before it is sent");
-
-   Panel_Key_W : constant := 0;
+     (Panel_Key_Busy < 1 or else Panel_Key_Busy /= Panel_Key_Busy_Needs,
+      "panel.key claims a wrong busy period");
+   pragma Compile_Time_Error (Panel_Key_Busy + Panel_Key_J > Panel_Key_T,
+      "panel.key can come again before it is sent");
+   Panel_Key_W : constant := Panel_Key_R - Panel_Key_J - Panel_Key_C;
    Panel_Key_Needs : constant := 0;
-
-   pragma Compile_Time_Error
-     (0 > Panel_Key_W,
-      "panel.key " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Panel_Key_Needs > Panel_Key_W,
-      "panel.key " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Panel_Key_W > Panel_Key_Needs,
-      "panel.key " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Panel_Key_J + Panel_Key_W + Panel_Key_C) > Panel_Key_R,
-      "panel.key " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Panel_Key_R > (Panel_Key_J + Panel_Key_W + Panel_Key_C),
-      "panel.key " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Panel_Key_R > Panel_Key_D,
-      "panel.key " & "can miss its deadline");
+   pragma Compile_Time_Error (Panel_Key_W /= Panel_Key_Needs,
+      "panel.key claims a wrong response time");
+   pragma Compile_Time_Error (Panel_Key_R > Panel_Key_D,
+      "panel.key can miss its deadline");
    pragma Assert (Panel_Key_R <= Panel_Key_D);
 end Qhsm_Test.Timing_Certificate;

@@ -14,6 +14,5 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    package Buffer is new Ravenchart.Trace_Buffers
-     (Capacity => 1_024,
-      Ceiling => System.Default_Priority + 2);
+     (Capacity => 1_024, Ceiling => System.Default_Priority + 2);
 end Qhsm_Test.Trace;

@@ -11,13 +11,5 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    type Key is
-     (Key_A,
-      Key_B,
-      Key_C,
-      Key_D,
-      Key_E,
-      Key_F,
-      Key_G,
-      Key_H,
-      Key_I);
+     (Key_A, Key_B, Key_C, Key_D, Key_E, Key_F, Key_G, Key_H, Key_I);
 end Qhsm_Test;

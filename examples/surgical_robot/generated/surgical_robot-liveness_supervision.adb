@@ -28,18 +28,14 @@ is
               Ravenchart.Liveness.Is_Silent
                 ((Offset => 0,
                   Period => Timing_Certificate.Servo_Loop_T,
-                  Limit => Timing_Certificate.Servo_Loop_L),
-                 Seen,
-                 Elapsed);
+                  Limit => Timing_Certificate.Servo_Loop_L), Seen, Elapsed);
          when Supervision_Watch =>
             Supervision.Processor.Observe_Progress (Seen);
             Is_Silent :=
               Ravenchart.Liveness.Is_Silent
                 ((Offset => 0,
                   Period => Timing_Certificate.Supervision_T,
-                  Limit => Timing_Certificate.Supervision_L),
-                 Seen,
-                 Elapsed);
+                  Limit => Timing_Certificate.Supervision_L), Seen, Elapsed);
       end case;
    end Look;
 
@@ -48,14 +44,12 @@ is
       Health_Counts.Counters.Record_Fault (Ravenchart.Health.Silence);
       case Item is
          when Servo_Loop_Watch =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Servo_Loop_Processor,
                Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
             Ravenchart.Failures.Note_Silence ("servo_loop");
          when Supervision_Watch =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Supervision_Processor,
                Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
             Ravenchart.Failures.Note_Silence ("supervision");

@@ -44,9 +44,9 @@ is
 
    pragma Compile_Time_Error
      (Supervisor.Given_Period /= Timing_Certificate.Board_Supervisor_T,
-      "board.supervisor " & "has another period than its certificate");
+      "board.supervisor has another period than its certificate");
    pragma Compile_Time_Error
      (Supervisor.Given_Priority
       /= Timing_Certificate.Board_Supervisor_Priority,
-      "board.supervisor " & "has another priority than its certificate");
+      "board.supervisor has another priority than its certificate");
 end Surgical_Robot.Liveness_Supervision;

@@ -35,15 +35,11 @@ is
       Found : Servo_Loop.Processor.Statistics;
    begin
       Servo_Loop.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Servo_Loop_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Servo_Loop_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Servo_Loop.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Servo_Loop_Processor
-            + 1
+           (Elements.Servo_Loop_Processor + 1
             + Ravenchart.Element_Id (Servo_Loop.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -54,15 +50,11 @@ is
       Found : Supervision.Processor.Statistics;
    begin
       Supervision.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Supervision_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Supervision_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Supervision.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Supervision_Processor
-            + 1
+           (Elements.Supervision_Processor + 1
             + Ravenchart.Element_Id (Supervision.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;

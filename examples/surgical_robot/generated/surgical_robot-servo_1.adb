@@ -64,8 +64,7 @@ is
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Servo_1_Motion,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -93,9 +92,7 @@ is
          exit when Taken = Ravenchart.Queueing.Empty;
          Seen_Board.Read (Seen_Value);
          Servo.Activities.Take_Orders
-           (Motion_Request => Asked,
-            Seen => Seen_Value,
-            Goal => Goal_Own);
+           (Motion_Request => Asked, Seen => Seen_Value, Goal => Goal_Own);
          Goal_Board.Write (Goal_Own);
       end loop;
       Executed := Executed + Elements.Servo_1_Take_Orders_Row;

@@ -48,16 +48,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Servo_Loop_Priority,
-      "servo_loop " & "has another priority than its certificate");
+      "servo_loop has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Servo_Loop_T,
-      "servo_loop " & "has another period than its certificate");
+      "servo_loop has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Servo_Loop_D,
-      "servo_loop " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "servo_loop " & "has another offset than its certificate");
+      "servo_loop has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "servo_loop has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Servo_1_Take_Orders).Divisor
       = Timing_Certificate.Servo_1_Take_Orders_Divisor

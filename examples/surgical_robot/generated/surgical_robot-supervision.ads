@@ -42,16 +42,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Supervision_Priority,
-      "supervision " & "has another priority than its certificate");
+      "supervision has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Supervision_T,
-      "supervision " & "has another period than its certificate");
+      "supervision has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Supervision_D,
-      "supervision " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "supervision " & "has another offset than its certificate");
+      "supervision has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "supervision has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Supervisor_1_Task_Of_Arm).Divisor
       = Timing_Certificate.Supervisor_1_Task_Of_Arm_Divisor

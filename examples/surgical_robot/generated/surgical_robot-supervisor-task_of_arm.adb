@@ -6,9 +6,7 @@ package body Surgical_Robot.Supervisor.Task_Of_Arm
 with SPARK_Mode
 is
    function Select_Transition
-     (Leaf : Task_Of_Arm_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs)
+     (Leaf : Task_Of_Arm_States.Leaf; Now  : Occurrence; Ins  : Inputs)
      return Selection is
      (case Leaf is
         when Task_Of_Arm_States.Parked =>
@@ -16,8 +14,7 @@ is
         when Task_Of_Arm_States.Reaching =>
            (if Now = Conditions and then Ins.Get_Position.Axis_1 >= 280
                then There
-            elsif Now = Expiry_Of_Too_Late
-               then Too_Late
+            elsif Now = Expiry_Of_Too_Late then Too_Late
             else None),
         when Task_Of_Arm_States.Holding => None,
         when Task_Of_Arm_States.Gave_Up => None)
@@ -32,9 +29,7 @@ is
         (Node'Val (Task_Of_Arm_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -63,36 +58,24 @@ is
    end Poll;
 
    procedure Fire
-     (Self : in out Region;
-      Box : in out Outbox;
-      Chosen : Firing)
+     (Self : in out Region; Box : in out Outbox; Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen)
        and then Self.Timers (1)
-         = Timer_After
-             (1,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (1))
        and then Self.Timers (2)
-         = Timer_After
-             (2,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (2, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (2))
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
       procedure Exit_Parked

@@ -13,10 +13,7 @@ is
 
    --  [Supervisor.Task_Of_Arm] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      Expiry_Of_Begin_Task,
-      Expiry_Of_Too_Late,
-      Conditions);
+     (Start_Of_Region, Expiry_Of_Begin_Task, Expiry_Of_Too_Late, Conditions);
 
    --  [Supervisor.Task_Of_Arm.transitions] in order of precedence,
    --  innermost source first
@@ -65,8 +62,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Task_Of_Arm_States.Leaf)
+     (T : Transition; Leaf : Task_Of_Arm_States.Leaf)
      return Boolean is
      (case T is
         when Begin_Task => Leaf = Task_Of_Arm_States.Parked,
@@ -104,15 +100,13 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Everything or else D = Beginning,
               D /= Beginning and then Before = Task_Of_Arm_States.Parked,
               After = Task_Of_Arm_States.Parked,
               Ravenchart.Timers.Started (5)),
         when 2 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Everything or else D = Beginning,
               D /= Beginning and then Before = Task_Of_Arm_States.Reaching,
               After = Task_Of_Arm_States.Reaching,
@@ -173,25 +167,15 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)
-               = Timer_After
-                   (1,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (1))
+               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (1))
              and then Self.Timers (2)
-               = Timer_After
-                   (2,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (2)));
+               = Timer_After (2, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (2)));
    --  One run-to-completion step.
 end Surgical_Robot.Supervisor.Task_Of_Arm;

@@ -29,8 +29,7 @@ is
       Servo_1.Put_Motion
         (Servo.Motion_Requests.Request'(Name =>
             Servo.Motion_Requests.Set_Goal_Asked,
-          Set_Goal => Item),
-         Unused_Status);
+          Set_Goal => Item), Unused_Status);
    end Call_Set_Goal;
 
    procedure Call_Hold is
@@ -39,8 +38,7 @@ is
       Servo_1.Put_Motion
         (Servo.Motion_Requests.Request'(Name =>
             Servo.Motion_Requests.Hold_Asked,
-          others => <>),
-         Unused_Status);
+          others => <>), Unused_Status);
    end Call_Hold;
 
    procedure Step_Task_Of_Arm (Ins : Supervisor.Task_Of_Arm.Inputs) is
@@ -50,23 +48,16 @@ is
       Box : Supervisor.Task_Of_Arm.Outbox;
    begin
       Supervisor.Task_Of_Arm.Poll (Task_Of_Arm_Region, Now);
-      Supervisor.Task_Of_Arm.Step
-        (Task_Of_Arm_Region,
-         Now,
-         Ins,
-         Box,
-         Fired);
+      Supervisor.Task_Of_Arm.Step (Task_Of_Arm_Region, Now, Ins, Box, Fired);
       if Fired /= Supervisor.Task_Of_Arm.None then
          if Fired in Supervisor.Task_Of_Arm.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Supervisor_1_Task_Of_Arm,
                Supervisor.Task_Of_Arm.Selection'Pos (Fired)
                - Supervisor.Task_Of_Arm.Selection'Pos
                    (Supervisor.Task_Of_Arm.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
+         Trace.Buffer.Note (Ravenchart.Traces.State,
             Elements.Supervisor_1_Task_Of_Arm,
             Supervisor.Task_Of_Arm_States.Leaf'Pos (Task_Of_Arm_Region.Leaf));
          if Box.Set_Goal_Sent then

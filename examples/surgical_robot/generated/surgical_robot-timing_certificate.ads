@@ -2,7 +2,10 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+
 with System;
+with Ravenchart.Response_Times;
 
 package Surgical_Robot.Timing_Certificate
 with SPARK_Mode, Pure
@@ -11,13 +14,16 @@ is
    Model_Digest : constant String :=
      "4b6268ebf871c98933e2b91a45a475c638ecbf5957aa3c147d299e53ef8434a2";
 
+   use Ravenchart.Response_Times;
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period. A
-   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W, and equals it: where it is
-   --  more, W is too short; where it is less, a term is missing.
+   --  from the event, W the time claimed from the start of a busy period.
+   --  X_Up (W) is what X and all that goes before it ask for within W,
+   --  X_Rest (W) what X and those listed behind it at its level do. Needs
+   --  is the demand that arises within W, and equals it: where it is more,
+   --  W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Servo_Loop_R : constant := 352_000;
@@ -31,7 +37,7 @@ is
    Right_Section : constant := 12_000;
    Wrist_Section : constant := 6_000;
 
-   --  [servo_loop] released every T. B: main may be inside Left.
+   --  [servo_loop] released every T. B: main in Left.
    Servo_Loop_Priority : constant := System.Default_Priority + 2;
    Servo_1_Take_Orders_Budget : constant := 50_000;
    Servo_1_Differ_Budget : constant := 54_000;
@@ -40,163 +46,99 @@ is
    Servo_Loop_D : constant := 5_000_000;
    Servo_1_Take_Orders_Divisor : constant := 1;
    Servo_1_Take_Orders_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Servo_1_Take_Orders_Divisor /= 1,
-      "servo_1.Take_Orders "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Servo_1_Take_Orders_Phase + 1) > Servo_1_Take_Orders_Divisor,
-      "servo_1.Take_Orders " & "has a phase beyond its divisor");
-
    Servo_1_Differ_Divisor : constant := 1;
    Servo_1_Differ_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Servo_1_Differ_Divisor /= 1,
-      "servo_1.Differ " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Servo_1_Differ_Phase + 1) > Servo_1_Differ_Divisor,
-      "servo_1.Differ " & "has a phase beyond its divisor");
-
    Servo_1_Control_Divisor : constant := 1;
    Servo_1_Control_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Servo_1_Control_Divisor /= 1,
-      "servo_1.Control " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Servo_1_Control_Phase + 1) > Servo_1_Control_Divisor,
-      "servo_1.Control " & "has a phase beyond its divisor");
-
+     (Servo_1_Take_Orders_Divisor /= 1
+      or else Servo_1_Take_Orders_Phase /= 0
+      or else Servo_1_Differ_Divisor /= 1
+      or else Servo_1_Differ_Phase /= 0
+      or else Servo_1_Control_Divisor /= 1
+      or else Servo_1_Control_Phase /= 0,
+      "servo_loop must keep divisors and phases of its rows");
    Servo_Loop_J : constant := 0;
-   Servo_Loop_A : constant := Servo_Loop_J + (Servo_Loop_T - 1);
    Servo_Loop_C : constant :=
-     Servo_1_Take_Orders_Budget
-     + Servo_1_Differ_Budget
-     + Servo_1_Control_Budget
-     + 2 * Board_Context_Switch;
+     Servo_1_Take_Orders_Budget + Servo_1_Differ_Budget
+     + Servo_1_Control_Budget + 2 * Board_Context_Switch;
    Servo_Loop_B : constant := Left_Section;
 
-   --  [supervision] released every T. B: main may be inside Left.
+   --  [supervision] released every T. B: main in Left.
    Supervision_Priority : constant := System.Default_Priority + 1;
    Supervisor_1_Task_Of_Arm_Budget : constant := 300_000;
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
    Supervisor_1_Task_Of_Arm_Divisor : constant := 1;
    Supervisor_1_Task_Of_Arm_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Supervisor_1_Task_Of_Arm_Divisor /= 1,
-      "supervisor_1.Task_Of_Arm "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Supervisor_1_Task_Of_Arm_Phase + 1)
-      > Supervisor_1_Task_Of_Arm_Divisor,
-      "supervisor_1.Task_Of_Arm " & "has a phase beyond its divisor");
-
+     (Supervisor_1_Task_Of_Arm_Divisor /= 1
+      or else Supervisor_1_Task_Of_Arm_Phase /= 0,
+      "supervision must keep divisors and phases of its rows");
    Supervision_J : constant := 0;
-   Supervision_A : constant := Supervision_J + (Supervision_T - 1);
    Supervision_C : constant :=
      Supervisor_1_Task_Of_Arm_Budget + 2 * Board_Context_Switch;
    Supervision_B : constant := Left_Section;
 
-   --  [board.supervisor] released every T. B: servo_loop may be inside
-   --  Left.
+   --  [board.supervisor] released every T. B: servo_loop in Left.
    Board_Supervisor_Priority : constant := System.Default_Priority + 3;
    Board_Supervisor_Budget : constant := 50_000;
    Board_Supervisor_T : constant := 5_000_000;
    Board_Supervisor_D : constant := 5_000_000;
    Board_Supervisor_J : constant := 0;
-   Board_Supervisor_A : constant :=
-     Board_Supervisor_J + (Board_Supervisor_T - 1);
    Board_Supervisor_C : constant :=
      Board_Supervisor_Budget + 2 * Board_Context_Switch;
    Board_Supervisor_B : constant := Left_Section;
 
-   pragma Compile_Time_Error
-     ((Servo_Loop_Priority + 1) > Board_Supervisor_Priority,
-      "board.supervisor " & "must have a higher priority than servo_loop");
-   pragma Compile_Time_Error
-     ((Supervision_Priority + 1) > Servo_Loop_Priority,
-      "servo_loop " & "must have a higher priority than supervision");
+   function Board_Supervisor_Up (W : Window) return Time is
+     (Demand (W, Board_Supervisor_J, Board_Supervisor_T, Board_Supervisor_C))
+   with Static;
+   function Servo_Loop_Up (W : Window) return Time is
+     (Demand (W, Servo_Loop_J, Servo_Loop_T, Servo_Loop_C,
+         Board_Supervisor_Up (W))) with Static;
 
-   --  [servo_loop] what can delay it: jobs of the same or higher priority
+   pragma Compile_Time_Error
+     (Board_Supervisor_Priority <= Servo_Loop_Priority
+      or else Servo_Loop_Priority <= Supervision_Priority,
+      "board must keep the order of its priorities");
+
+   --  [servo_loop] what delays it
    Servo_Loop_W : constant := Servo_Loop_R - Servo_Loop_J;
    Servo_Loop_Needs : constant :=
-     Servo_Loop_C
-     + Servo_Loop_B
-     + (((Servo_Loop_W + Board_Supervisor_A) / Board_Supervisor_T)
-        * Board_Supervisor_C);
+     Servo_Loop_C + Servo_Loop_B + Board_Supervisor_Up (Servo_Loop_W);
+   pragma Compile_Time_Error (Servo_Loop_W /= Servo_Loop_Needs,
+      "servo_loop claims a wrong response time");
+   pragma Compile_Time_Error
+     (Servo_Loop_R > Time'Min (Servo_Loop_D, Servo_Loop_T),
+      "servo_loop can miss its deadline or overlap");
+   pragma Assert
+     (Servo_Loop_Needs <= Servo_Loop_W and then Servo_Loop_R <= Servo_Loop_D);
 
-   pragma Compile_Time_Error
-     (0 > Servo_Loop_W,
-      "servo_loop " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Servo_Loop_Needs > Servo_Loop_W,
-      "servo_loop " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Servo_Loop_W > Servo_Loop_Needs,
-      "servo_loop " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Servo_Loop_J + Servo_Loop_W) > Servo_Loop_T,
-      "servo_loop " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Servo_Loop_R > Servo_Loop_D,
-      "servo_loop " & "can miss its deadline");
-   pragma Assert (Servo_Loop_Needs <= Servo_Loop_W);
-   pragma Assert (Servo_Loop_R <= Servo_Loop_D);
-
-   --  [supervision] what can delay it: jobs of the same or higher priority
+   --  [supervision] what delays it
    Supervision_W : constant := Supervision_R - Supervision_J;
    Supervision_Needs : constant :=
-     Supervision_C
-     + Supervision_B
-     + (((Supervision_W + Servo_Loop_A) / Servo_Loop_T) * Servo_Loop_C)
-     + (((Supervision_W + Board_Supervisor_A) / Board_Supervisor_T)
-        * Board_Supervisor_C);
+     Supervision_C + Supervision_B + Servo_Loop_Up (Supervision_W);
+   pragma Compile_Time_Error (Supervision_W /= Supervision_Needs,
+      "supervision claims a wrong response time");
+   pragma Compile_Time_Error
+     (Supervision_R > Time'Min (Supervision_D, Supervision_T),
+      "supervision can miss its deadline or overlap");
+   pragma Assert
+     (Supervision_Needs <= Supervision_W
+      and then Supervision_R <= Supervision_D);
 
-   pragma Compile_Time_Error
-     (0 > Supervision_W,
-      "supervision " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Supervision_Needs > Supervision_W,
-      "supervision " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Supervision_W > Supervision_Needs,
-      "supervision " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Supervision_J + Supervision_W) > Supervision_T,
-      "supervision " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Supervision_R > Supervision_D,
-      "supervision " & "can miss its deadline");
-   pragma Assert (Supervision_Needs <= Supervision_W);
-   pragma Assert (Supervision_R <= Supervision_D);
-
-   --  [board.supervisor] what can delay it: jobs of the same or higher
-   --  priority
+   --  [board.supervisor] what delays it
    Board_Supervisor_W : constant := Board_Supervisor_R - Board_Supervisor_J;
    Board_Supervisor_Needs : constant :=
      Board_Supervisor_C + Board_Supervisor_B;
-
+   pragma Compile_Time_Error (Board_Supervisor_W /= Board_Supervisor_Needs,
+      "board.supervisor claims a wrong response time");
    pragma Compile_Time_Error
-     (0 > Board_Supervisor_W,
-      "board.supervisor " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Board_Supervisor_Needs > Board_Supervisor_W,
-      "board.supervisor " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Board_Supervisor_W > Board_Supervisor_Needs,
-      "board.supervisor " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Board_Supervisor_J + Board_Supervisor_W) > Board_Supervisor_T,
-      "board.supervisor " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Board_Supervisor_R > Board_Supervisor_D,
-      "board.supervisor " & "can miss its deadline");
-   pragma Assert (Board_Supervisor_Needs <= Board_Supervisor_W);
-   pragma Assert (Board_Supervisor_R <= Board_Supervisor_D);
+     (Board_Supervisor_R > Time'Min (Board_Supervisor_D, Board_Supervisor_T),
+      "board.supervisor can miss its deadline or overlap");
+   pragma Assert
+     (Board_Supervisor_Needs <= Board_Supervisor_W
+      and then Board_Supervisor_R <= Board_Supervisor_D);
 
    --  [board] a release that has not completed L after it was due makes its
    --  processor silent; the supervisor has reported that S after the

@@ -9,6 +9,5 @@ package Surgical_Robot.Trace
 with SPARK_Mode
 is
    package Buffer is new Ravenchart.Trace_Buffers
-     (Capacity => 4_096,
-      Ceiling => System.Default_Priority + 3);
+     (Capacity => 4_096, Ceiling => System.Default_Priority + 3);
 end Surgical_Robot.Trace;

@@ -25,10 +25,7 @@ is
    protected body Guard is
       procedure Start (Passed : out Boolean) is
       begin
-         Force_Sensor.Self_Test
-           (Force_Sensor_Units.Wrist_Unit,
-            Own,
-            Passed);
+         Force_Sensor.Self_Test (Force_Sensor_Units.Wrist_Unit, Own, Passed);
          Is_Ready := Passed;
       end Start;
 

@@ -30,27 +30,21 @@ is
               Ravenchart.Liveness.Is_Silent
                 ((Offset => 0,
                   Period => Timing_Certificate.Processor_1_T,
-                  Limit => Timing_Certificate.Processor_1_L),
-                 Seen,
-                 Elapsed);
+                  Limit => Timing_Certificate.Processor_1_L), Seen, Elapsed);
          when Processor_2_Watch =>
             Processor_2.Processor.Observe_Progress (Seen);
             Is_Silent :=
               Ravenchart.Liveness.Is_Silent
                 ((Offset => 0,
                   Period => Timing_Certificate.Processor_2_T,
-                  Limit => Timing_Certificate.Processor_2_L),
-                 Seen,
-                 Elapsed);
+                  Limit => Timing_Certificate.Processor_2_L), Seen, Elapsed);
          when Processor_3_Watch =>
             Processor_3.Processor.Observe_Progress (Seen);
             Is_Silent :=
               Ravenchart.Liveness.Is_Silent
                 ((Offset => 0,
                   Period => Timing_Certificate.Processor_3_T,
-                  Limit => Timing_Certificate.Processor_3_L),
-                 Seen,
-                 Elapsed);
+                  Limit => Timing_Certificate.Processor_3_L), Seen, Elapsed);
       end case;
    end Look;
 
@@ -59,21 +53,18 @@ is
       Health_Counts.Counters.Record_Fault (Ravenchart.Health.Silence);
       case Item is
          when Processor_1_Watch =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Processor_1_Processor,
                Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
             Ravenchart.Failures.Note_Silence ("processor_1");
          when Processor_2_Watch =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Processor_2_Processor,
                Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
             One.Offer (Starter.Station_Silent);
             Ravenchart.Failures.Note_Silence ("processor_2");
          when Processor_3_Watch =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Processor_3_Processor,
                Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
             One.Offer (Starter.Station_Silent);

@@ -12,9 +12,7 @@ with SPARK_Mode
 is
    --  [board] the processors, the most urgent first
    type Watched is
-     (Processor_1_Watch,
-      Processor_2_Watch,
-      Processor_3_Watch);
+     (Processor_1_Watch, Processor_2_Watch, Processor_3_Watch);
 
    procedure Look
      (Item      : Watched;
@@ -43,9 +41,9 @@ is
 
    pragma Compile_Time_Error
      (Supervisor.Given_Period /= Timing_Certificate.Board_Supervisor_T,
-      "board.supervisor " & "has another period than its certificate");
+      "board.supervisor has another period than its certificate");
    pragma Compile_Time_Error
      (Supervisor.Given_Priority
       /= Timing_Certificate.Board_Supervisor_Priority,
-      "board.supervisor " & "has another priority than its certificate");
+      "board.supervisor has another priority than its certificate");
 end Three_Components.Liveness_Supervision;

@@ -67,16 +67,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Token_In_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.One_Token_In,
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.One_Token_In,
          0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.One_Token_In,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.One_Token_In,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
       end if;
@@ -92,8 +88,7 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.One_Starting,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
@@ -102,31 +97,25 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.One_Watching,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.One_Token_Came,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.One_Token_Came, 0);
          when Starter.Station_Silent =>
             Watching_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.One_Watching,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.One_Station_Silent,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.One_Station_Silent, 0);
       end case;
    end Offer;
 
@@ -154,16 +143,13 @@ is
          when Starter.Token_In_Port.Nothing =>
             null;
          when Starter.Token_In_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.One_Token_In,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.One_Token_In, 0);
             Offer (Starter.Token_Came);
          when Starter.Token_In_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.One_Token_In,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -191,16 +177,13 @@ is
       Starter.Starting.Step (Starting_Region, Now, Ins, Box, Fired);
       if Fired /= Starter.Starting.None then
          if Fired in Starter.Starting.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.One_Starting,
                Starter.Starting.Selection'Pos (Fired)
                - Starter.Starting.Selection'Pos
                    (Starter.Starting.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.One_Starting,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.One_Starting,
             Starter.Starting_States.Leaf'Pos (Starting_Region.Leaf));
          if Box.Token_Out_Sent then
             Send_Token_Out (Box.Token_Out);
@@ -237,16 +220,13 @@ is
       Starter.Watching.Step (Watching_Region, Now, Fired);
       if Fired /= Starter.Watching.None then
          if Fired in Starter.Watching.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.One_Watching,
                Starter.Watching.Selection'Pos (Fired)
                - Starter.Watching.Selection'Pos
                    (Starter.Watching.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.One_Watching,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.One_Watching,
             Starter.Watching_States.Leaf'Pos (Watching_Region.Leaf));
       end if;
    end Step_Watching;

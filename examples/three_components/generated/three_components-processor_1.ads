@@ -48,16 +48,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Processor_1_Priority,
-      "processor_1 " & "has another priority than its certificate");
+      "processor_1 has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Processor_1_T,
-      "processor_1 " & "has another period than its certificate");
+      "processor_1 has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Processor_1_D,
-      "processor_1 " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "processor_1 " & "has another offset than its certificate");
+      "processor_1 has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "processor_1 has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (One_Ports).Divisor
       = Timing_Certificate.One_Ports_Divisor

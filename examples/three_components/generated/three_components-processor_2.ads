@@ -48,16 +48,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Processor_2_Priority,
-      "processor_2 " & "has another priority than its certificate");
+      "processor_2 has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Processor_2_T,
-      "processor_2 " & "has another period than its certificate");
+      "processor_2 has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Processor_2_D,
-      "processor_2 " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "processor_2 " & "has another offset than its certificate");
+      "processor_2 has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "processor_2 has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Two_Ports).Divisor
       = Timing_Certificate.Two_Ports_Divisor

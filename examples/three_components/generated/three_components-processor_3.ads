@@ -12,11 +12,7 @@ with SPARK_Mode
 is
    --  [processor_3.table] the activities, in the order in which they run
    type Row is
-     (Three_Ports,
-      Three_Handling,
-      Two_Watching,
-      Two_Work,
-      Three_Work);
+     (Three_Ports, Three_Handling, Two_Watching, Two_Work, Three_Work);
 
    procedure Execute (Item : Row);
 
@@ -59,16 +55,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Processor_3_Priority,
-      "processor_3 " & "has another priority than its certificate");
+      "processor_3 has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Processor_3_T,
-      "processor_3 " & "has another period than its certificate");
+      "processor_3 has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Processor_3_D,
-      "processor_3 " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "processor_3 " & "has another offset than its certificate");
+      "processor_3 has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "processor_3 has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Three_Ports).Divisor
       = Timing_Certificate.Three_Ports_Divisor

@@ -36,15 +36,11 @@ is
       Found : Processor_1.Processor.Statistics;
    begin
       Processor_1.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Processor_1_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Processor_1_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Processor_1.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Processor_1_Processor
-            + 1
+           (Elements.Processor_1_Processor + 1
             + Ravenchart.Element_Id (Processor_1.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -55,15 +51,11 @@ is
       Found : Processor_2.Processor.Statistics;
    begin
       Processor_2.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Processor_2_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Processor_2_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Processor_2.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Processor_2_Processor
-            + 1
+           (Elements.Processor_2_Processor + 1
             + Ravenchart.Element_Id (Processor_2.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -74,15 +66,11 @@ is
       Found : Processor_3.Processor.Statistics;
    begin
       Processor_3.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Processor_3_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Processor_3_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Processor_3.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Processor_3_Processor
-            + 1
+           (Elements.Processor_3_Processor + 1
             + Ravenchart.Element_Id (Processor_3.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;

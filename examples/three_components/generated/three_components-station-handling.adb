@@ -6,8 +6,7 @@ package body Three_Components.Station.Handling
 with SPARK_Mode
 is
    function Select_Transition
-     (Leaf : Handling_States.Leaf;
-      Now : Occurrence)
+     (Leaf : Handling_States.Leaf; Now : Occurrence)
      return Selection is
      (case Leaf is
         when Handling_States.Empty =>
@@ -25,9 +24,7 @@ is
         (Node'Val (Handling_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -48,15 +45,13 @@ is
       Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post => Self.Started and then Self.Leaf = Target (Chosen)
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
    begin

@@ -9,10 +9,7 @@ is
 
    --  [Station.Handling] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_Token_Came,
-      On_Worked,
-      Conditions);
+     (Start_Of_Region, On_Token_Came, On_Worked, Conditions);
 
    --  [Station.Handling.transitions] in order of precedence, innermost
    --  source first
@@ -39,9 +36,7 @@ is
    end record;
 
    function Enabled
-     (T    : Transition;
-      Leaf : Handling_States.Leaf;
-      Now  : Occurrence)
+     (T    : Transition; Leaf : Handling_States.Leaf; Now  : Occurrence)
      return Boolean is
      (case T is
         when Take =>
@@ -51,8 +46,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Handling_States.Leaf)
+     (T : Transition; Leaf : Handling_States.Leaf)
      return Boolean is
      (case T is
         when Take => Leaf = Handling_States.Empty,
@@ -74,8 +68,7 @@ is
      ((Chosen = None
        or else (Chosen in Transition and then Enabled (Chosen, Leaf, Now)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now))))
-   with Ghost;
+            (if T < Chosen then not Enabled (T, Leaf, Now)))) with Ghost;
    --  The first transition that is enabled, or None when none is.
 
    function To_Occurrence (Item : Event) return Occurrence is
@@ -101,11 +94,9 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired));
    --  One run-to-completion step.
 end Three_Components.Station.Handling;

@@ -6,8 +6,7 @@ package body Three_Components.Station.Watching
 with SPARK_Mode
 is
    function Select_Transition
-     (Leaf : Watching_States.Leaf;
-      Now : Occurrence)
+     (Leaf : Watching_States.Leaf; Now : Occurrence)
      return Selection is
      (case Leaf is
         when Watching_States.Quiet =>
@@ -25,9 +24,7 @@ is
         (Node'Val (Watching_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -56,24 +53,18 @@ is
    procedure Fire (Self : in out Region; Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen)
        and then Self.Timers (1)
-         = Timer_After
-             (1,
-              Domain_Of (Chosen),
-              Self.Leaf'Old,
-              Self.Leaf,
+         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
               Self.Timers'Old (1))
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
       procedure Exit_Busy
@@ -121,9 +112,7 @@ is
    end Fire;
 
    procedure Step
-     (Self  : in out Region;
-      Now   : Occurrence;
-      Fired : out Selection) is
+     (Self  : in out Region; Now   : Occurrence; Fired : out Selection) is
    begin
       if Now = Start_Of_Region then
          Fired := Initial_Entry;

@@ -13,10 +13,7 @@ is
 
    --  [Station.Watching] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_Token_Came,
-      Expiry_Of_Calm,
-      Conditions);
+     (Start_Of_Region, On_Token_Came, Expiry_Of_Calm, Conditions);
 
    --  [Station.Watching.transitions] in order of precedence, innermost
    --  source first
@@ -33,9 +30,7 @@ is
    end record;
 
    function Enabled
-     (T    : Transition;
-      Leaf : Watching_States.Leaf;
-      Now  : Occurrence)
+     (T    : Transition; Leaf : Watching_States.Leaf; Now  : Occurrence)
      return Boolean is
      (case T is
         when Seen =>
@@ -45,8 +40,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Watching_States.Leaf)
+     (T : Transition; Leaf : Watching_States.Leaf)
      return Boolean is
      (case T is
         when Seen => Leaf = Watching_States.Quiet,
@@ -81,12 +75,10 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved
-             (Timer,
+           Ravenchart.Timers.Moved (Timer,
               D = Everything or else D = Beginning,
               D /= Beginning and then Before = Watching_States.Busy,
-              After = Watching_States.Busy,
-              Ravenchart.Timers.Started (2)),
+              After = Watching_States.Busy, Ravenchart.Timers.Started (2)),
         when others => Timer);
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
@@ -99,8 +91,7 @@ is
      ((Chosen = None
        or else (Chosen in Transition and then Enabled (Chosen, Leaf, Now)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now))))
-   with Ghost;
+            (if T < Chosen then not Enabled (T, Leaf, Now)))) with Ghost;
    --  The first transition that is enabled, or None when none is.
 
    procedure Tick (Self : in out Region)
@@ -135,25 +126,17 @@ is
    --  neither.
 
    procedure Step
-     (Self  : in out Region;
-      Now   : Occurrence;
-      Fired : out Selection)
+     (Self  : in out Region; Now   : Occurrence; Fired : out Selection)
    with
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)
-               = Timer_After
-                   (1,
-                    Domain_Of (Fired),
-                    Self.Leaf'Old,
-                    Self.Leaf,
-                    Self.Timers'Old (1)));
+               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
+                    Self.Leaf, Self.Timers'Old (1)));
    --  One run-to-completion step.
 end Three_Components.Station.Watching;

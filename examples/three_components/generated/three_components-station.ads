@@ -28,8 +28,7 @@ is
 
    --  [Station.token_in] what its readers see
    package Token_In_Port is new Ravenchart.Port_Regions
-     (Value_Type => Three_Components.Token,
-      Default => 0);
+     (Value_Type => Three_Components.Token, Default => 0);
 
    subtype Token_In_View is Token_In_Port.Port;
 end Three_Components.Station;

@@ -76,15 +76,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Token_In_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Three_Token_In,
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Three_Token_In,
          0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Three_Token_In,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
@@ -101,8 +98,7 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Three_Handling,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
@@ -111,39 +107,31 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Three_Watching,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Three_Token_Came,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Three_Token_Came, 0);
          when Station.Worked =>
             Handling_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Three_Handling,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Three_Worked,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Three_Worked, 0);
       end case;
    end Offer;
 
    procedure Send_Token_Out (Item : Three_Components.Token) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Three_Token_Out,
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Three_Token_Out,
          0);
       One.Put_Token_In (Item);
    end Send_Token_Out;
@@ -167,15 +155,13 @@ is
       Station.Watching.Step (Watching_Region, Now, Fired);
       if Fired /= Station.Watching.None then
          if Fired in Station.Watching.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Three_Watching,
                Station.Watching.Selection'Pos (Fired)
                - Station.Watching.Selection'Pos
                    (Station.Watching.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
+         Trace.Buffer.Note (Ravenchart.Traces.State,
             Elements.Three_Watching,
             Station.Watching_States.Leaf'Pos (Watching_Region.Leaf));
       end if;
@@ -207,16 +193,13 @@ is
          when Station.Token_In_Port.Nothing =>
             null;
          when Station.Token_In_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Three_Token_In,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Three_Token_In, 0);
             Offer (Station.Token_Came);
          when Station.Token_In_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Three_Token_In,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -244,15 +227,13 @@ is
       Station.Handling.Step (Handling_Region, Now, Ins, Box, Fired);
       if Fired /= Station.Handling.None then
          if Fired in Station.Handling.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Three_Handling,
                Station.Handling.Selection'Pos (Fired)
                - Station.Handling.Selection'Pos
                    (Station.Handling.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
+         Trace.Buffer.Note (Ravenchart.Traces.State,
             Elements.Three_Handling,
             Station.Handling_States.Leaf'Pos (Handling_Region.Leaf));
          if Box.Token_Out_Sent then

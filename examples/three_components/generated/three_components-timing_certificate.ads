@@ -2,7 +2,10 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+
 with System;
+with Ravenchart.Response_Times;
 
 package Three_Components.Timing_Certificate
 with SPARK_Mode, Pure
@@ -11,13 +14,16 @@ is
    Model_Digest : constant String :=
      "053c9f234b0c87db4f385d0178e613c9ddbdcb58979d36fe5f609422ffbbeca5";
 
+   use Ravenchart.Response_Times;
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period. A
-   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W, and equals it: where it is
-   --  more, W is too short; where it is less, a term is missing.
+   --  from the event, W the time claimed from the start of a busy period.
+   --  X_Up (W) is what X and all that goes before it ask for within W,
+   --  X_Rest (W) what X and those listed behind it at its level do. Needs
+   --  is the demand that arises within W, and equals it: where it is more,
+   --  W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Processor_1_R : constant := 695_000;
@@ -29,7 +35,7 @@ is
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
-   --  [processor_1] released every T. B: processor_3 may be inside
+   --  [processor_1] released every T. B: processor_3 in
    --  one.token_in.mailbox. C: what every release executes; C_2: rows of
    --  every 2th release.
    Processor_1_Priority : constant := System.Default_Priority + 3;
@@ -40,41 +46,24 @@ is
    Processor_1_D : constant := 10_000_000;
    One_Ports_Divisor : constant := 1;
    One_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (One_Ports_Divisor /= 1,
-      "one.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((One_Ports_Phase + 1) > One_Ports_Divisor,
-      "one.ports " & "has a phase beyond its divisor");
-
    One_Starting_Divisor : constant := 2;
    One_Starting_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (One_Starting_Divisor /= 2,
-      "one.Starting " & "is in the sum C_2, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((One_Starting_Phase + 1) > One_Starting_Divisor,
-      "one.Starting " & "has a phase beyond its divisor");
-
    One_Watching_Divisor : constant := 2;
    One_Watching_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (One_Watching_Divisor /= 2,
-      "one.Watching " & "is in the sum C_2, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((One_Watching_Phase + 1) > One_Watching_Divisor,
-      "one.Watching " & "has a phase beyond its divisor");
-
+     (One_Ports_Divisor /= 1
+      or else One_Ports_Phase /= 0
+      or else One_Starting_Divisor /= 2
+      or else One_Starting_Phase >= One_Starting_Divisor
+      or else One_Watching_Divisor /= 2
+      or else One_Watching_Phase >= One_Watching_Divisor,
+      "processor_1 must keep divisors and phases of its rows");
    Processor_1_J : constant := 0;
-   Processor_1_A : constant := Processor_1_J + (Processor_1_T - 1);
    Processor_1_C : constant := One_Ports_Budget + 2 * Board_Context_Switch;
    Processor_1_C_2 : constant := One_Starting_Budget + One_Watching_Budget;
    Processor_1_B : constant := Board_Critical_Section;
 
-   --  [processor_2] released every T. B: processor_3 may be inside
+   --  [processor_2] released every T. B: processor_3 in
    --  one.token_in.mailbox. C: what every release executes; C_2: rows of
    --  every 2th release.
    Processor_2_Priority : constant := System.Default_Priority + 2;
@@ -85,43 +74,26 @@ is
    Processor_2_D : constant := 10_000_000;
    Two_Ports_Divisor : constant := 1;
    Two_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Two_Ports_Divisor /= 1,
-      "two.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Two_Ports_Phase + 1) > Two_Ports_Divisor,
-      "two.ports " & "has a phase beyond its divisor");
-
    Two_Handling_Divisor : constant := 1;
    Two_Handling_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Two_Handling_Divisor /= 1,
-      "two.Handling " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Two_Handling_Phase + 1) > Two_Handling_Divisor,
-      "two.Handling " & "has a phase beyond its divisor");
-
    Three_Watching_Divisor : constant := 2;
    Three_Watching_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Three_Watching_Divisor /= 2,
-      "three.Watching " & "is in the sum C_2, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Three_Watching_Phase + 1) > Three_Watching_Divisor,
-      "three.Watching " & "has a phase beyond its divisor");
-
+     (Two_Ports_Divisor /= 1
+      or else Two_Ports_Phase /= 0
+      or else Two_Handling_Divisor /= 1
+      or else Two_Handling_Phase /= 0
+      or else Three_Watching_Divisor /= 2
+      or else Three_Watching_Phase >= Three_Watching_Divisor,
+      "processor_2 must keep divisors and phases of its rows");
    Processor_2_J : constant := 0;
-   Processor_2_A : constant := Processor_2_J + (Processor_2_T - 1);
    Processor_2_C : constant :=
      Two_Ports_Budget + Two_Handling_Budget + 2 * Board_Context_Switch;
    Processor_2_C_2 : constant := Three_Watching_Budget;
    Processor_2_B : constant := Board_Critical_Section;
 
-   --  [processor_3] released every T. B: main may be inside health. C: what
-   --  every release executes; C_2: rows of every 2th release.
+   --  [processor_3] released every T. B: main in health. C: what every
+   --  release executes; C_2: rows of every 2th release.
    Processor_3_Priority : constant := System.Default_Priority + 1;
    Three_Ports_Budget : constant := 200_000;
    Three_Handling_Budget : constant := 200_000;
@@ -132,198 +104,116 @@ is
    Processor_3_D : constant := 10_000_000;
    Three_Ports_Divisor : constant := 1;
    Three_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Three_Ports_Divisor /= 1,
-      "three.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Three_Ports_Phase + 1) > Three_Ports_Divisor,
-      "three.ports " & "has a phase beyond its divisor");
-
    Three_Handling_Divisor : constant := 1;
    Three_Handling_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Three_Handling_Divisor /= 1,
-      "three.Handling " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Three_Handling_Phase + 1) > Three_Handling_Divisor,
-      "three.Handling " & "has a phase beyond its divisor");
-
    Two_Watching_Divisor : constant := 2;
    Two_Watching_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Two_Watching_Divisor /= 2,
-      "two.Watching " & "is in the sum C_2, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Two_Watching_Phase + 1) > Two_Watching_Divisor,
-      "two.Watching " & "has a phase beyond its divisor");
-
    Two_Work_Divisor : constant := 2;
    Two_Work_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Two_Work_Divisor /= 2,
-      "two.work " & "is in the sum C_2, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Two_Work_Phase + 1) > Two_Work_Divisor,
-      "two.work " & "has a phase beyond its divisor");
-
    Three_Work_Divisor : constant := 2;
    Three_Work_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Three_Work_Divisor /= 2,
-      "three.work " & "is in the sum C_2, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Three_Work_Phase + 1) > Three_Work_Divisor,
-      "three.work " & "has a phase beyond its divisor");
-
+     (Three_Ports_Divisor /= 1
+      or else Three_Ports_Phase /= 0
+      or else Three_Handling_Divisor /= 1
+      or else Three_Handling_Phase /= 0
+      or else Two_Watching_Divisor /= 2
+      or else Two_Watching_Phase >= Two_Watching_Divisor
+      or else Two_Work_Divisor /= 2
+      or else Two_Work_Phase >= Two_Work_Divisor
+      or else Three_Work_Divisor /= 2
+      or else Three_Work_Phase >= Three_Work_Divisor,
+      "processor_3 must keep divisors and phases of its rows");
    Processor_3_J : constant := 0;
-   Processor_3_A : constant := Processor_3_J + (Processor_3_T - 1);
    Processor_3_C : constant :=
      Three_Ports_Budget + Three_Handling_Budget + 2 * Board_Context_Switch;
    Processor_3_C_2 : constant :=
      Two_Watching_Budget + Two_Work_Budget + Three_Work_Budget;
    Processor_3_B : constant := Board_Critical_Section;
 
-   --  [board.supervisor] released every T. B: processor_1 may be inside
+   --  [board.supervisor] released every T. B: processor_1 in
    --  one.Starting.queue.
    Board_Supervisor_Priority : constant := System.Default_Priority + 4;
    Board_Supervisor_Budget : constant := 50_000;
    Board_Supervisor_T : constant := 10_000_000;
    Board_Supervisor_D : constant := 10_000_000;
    Board_Supervisor_J : constant := 0;
-   Board_Supervisor_A : constant :=
-     Board_Supervisor_J + (Board_Supervisor_T - 1);
    Board_Supervisor_C : constant :=
      Board_Supervisor_Budget + 2 * Board_Context_Switch;
    Board_Supervisor_B : constant := Board_Critical_Section;
 
-   pragma Compile_Time_Error
-     ((Processor_1_Priority + 1) > Board_Supervisor_Priority,
-      "board.supervisor " & "must have a higher priority than processor_1");
-   pragma Compile_Time_Error
-     ((Processor_2_Priority + 1) > Processor_1_Priority,
-      "processor_1 " & "must have a higher priority than processor_2");
-   pragma Compile_Time_Error
-     ((Processor_3_Priority + 1) > Processor_2_Priority,
-      "processor_2 " & "must have a higher priority than processor_3");
+   function Board_Supervisor_Up (W : Window) return Time is
+     (Demand (W, Board_Supervisor_J, Board_Supervisor_T, Board_Supervisor_C))
+   with Static;
+   function Processor_1_Up (W : Window) return Time is
+     (Demand (W, Processor_1_J, Processor_1_T, Processor_1_C,
+         Demand (W, Processor_1_J, 2 * Processor_1_T, Processor_1_C_2,
+            Board_Supervisor_Up (W)))) with Static;
+   function Processor_2_Up (W : Window) return Time is
+     (Demand (W, Processor_2_J, Processor_2_T, Processor_2_C,
+         Demand (W, Processor_2_J, 2 * Processor_2_T, Processor_2_C_2,
+            Processor_1_Up (W)))) with Static;
 
-   --  [processor_1] what can delay it: jobs of the same or higher priority
+   pragma Compile_Time_Error
+     (Board_Supervisor_Priority <= Processor_1_Priority
+      or else Processor_1_Priority <= Processor_2_Priority
+      or else Processor_2_Priority <= Processor_3_Priority,
+      "board must keep the order of its priorities");
+
+   --  [processor_1] what delays it
    Processor_1_W : constant := Processor_1_R - Processor_1_J;
    Processor_1_Needs : constant :=
-     Processor_1_C
-     + Processor_1_C_2
-     + Processor_1_B
-     + (((Processor_1_W + Board_Supervisor_A) / Board_Supervisor_T)
-        * Board_Supervisor_C);
+     Processor_1_C + Processor_1_C_2 + Processor_1_B
+     + Board_Supervisor_Up (Processor_1_W);
+   pragma Compile_Time_Error (Processor_1_W /= Processor_1_Needs,
+      "processor_1 claims a wrong response time");
+   pragma Compile_Time_Error
+     (Processor_1_R > Time'Min (Processor_1_D, Processor_1_T),
+      "processor_1 can miss its deadline or overlap");
+   pragma Assert
+     (Processor_1_Needs <= Processor_1_W
+      and then Processor_1_R <= Processor_1_D);
 
-   pragma Compile_Time_Error
-     (0 > Processor_1_W,
-      "processor_1 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Processor_1_Needs > Processor_1_W,
-      "processor_1 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Processor_1_W > Processor_1_Needs,
-      "processor_1 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Processor_1_J + Processor_1_W) > Processor_1_T,
-      "processor_1 " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Processor_1_R > Processor_1_D,
-      "processor_1 " & "can miss its deadline");
-   pragma Assert (Processor_1_Needs <= Processor_1_W);
-   pragma Assert (Processor_1_R <= Processor_1_D);
-
-   --  [processor_2] what can delay it: jobs of the same or higher priority
+   --  [processor_2] what delays it
    Processor_2_W : constant := Processor_2_R - Processor_2_J;
    Processor_2_Needs : constant :=
-     Processor_2_C
-     + Processor_2_C_2
-     + Processor_2_B
-     + (((Processor_2_W + Processor_1_A) / Processor_1_T) * Processor_1_C)
-     + (((((Processor_2_W + Processor_1_A) / Processor_1_T) + (2 - 1)) / 2)
-        * Processor_1_C_2)
-     + (((Processor_2_W + Board_Supervisor_A) / Board_Supervisor_T)
-        * Board_Supervisor_C);
+     Processor_2_C + Processor_2_C_2 + Processor_2_B
+     + Processor_1_Up (Processor_2_W);
+   pragma Compile_Time_Error (Processor_2_W /= Processor_2_Needs,
+      "processor_2 claims a wrong response time");
+   pragma Compile_Time_Error
+     (Processor_2_R > Time'Min (Processor_2_D, Processor_2_T),
+      "processor_2 can miss its deadline or overlap");
+   pragma Assert
+     (Processor_2_Needs <= Processor_2_W
+      and then Processor_2_R <= Processor_2_D);
 
-   pragma Compile_Time_Error
-     (0 > Processor_2_W,
-      "processor_2 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Processor_2_Needs > Processor_2_W,
-      "processor_2 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Processor_2_W > Processor_2_Needs,
-      "processor_2 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Processor_2_J + Processor_2_W) > Processor_2_T,
-      "processor_2 " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Processor_2_R > Processor_2_D,
-      "processor_2 " & "can miss its deadline");
-   pragma Assert (Processor_2_Needs <= Processor_2_W);
-   pragma Assert (Processor_2_R <= Processor_2_D);
-
-   --  [processor_3] what can delay it: jobs of the same or higher priority
+   --  [processor_3] what delays it
    Processor_3_W : constant := Processor_3_R - Processor_3_J;
    Processor_3_Needs : constant :=
-     Processor_3_C
-     + Processor_3_C_2
-     + Processor_3_B
-     + (((Processor_3_W + Processor_1_A) / Processor_1_T) * Processor_1_C)
-     + (((((Processor_3_W + Processor_1_A) / Processor_1_T) + (2 - 1)) / 2)
-        * Processor_1_C_2)
-     + (((Processor_3_W + Processor_2_A) / Processor_2_T) * Processor_2_C)
-     + (((((Processor_3_W + Processor_2_A) / Processor_2_T) + (2 - 1)) / 2)
-        * Processor_2_C_2)
-     + (((Processor_3_W + Board_Supervisor_A) / Board_Supervisor_T)
-        * Board_Supervisor_C);
+     Processor_3_C + Processor_3_C_2 + Processor_3_B
+     + Processor_2_Up (Processor_3_W);
+   pragma Compile_Time_Error (Processor_3_W /= Processor_3_Needs,
+      "processor_3 claims a wrong response time");
+   pragma Compile_Time_Error
+     (Processor_3_R > Time'Min (Processor_3_D, Processor_3_T),
+      "processor_3 can miss its deadline or overlap");
+   pragma Assert
+     (Processor_3_Needs <= Processor_3_W
+      and then Processor_3_R <= Processor_3_D);
 
-   pragma Compile_Time_Error
-     (0 > Processor_3_W,
-      "processor_3 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Processor_3_Needs > Processor_3_W,
-      "processor_3 " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Processor_3_W > Processor_3_Needs,
-      "processor_3 " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Processor_3_J + Processor_3_W) > Processor_3_T,
-      "processor_3 " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Processor_3_R > Processor_3_D,
-      "processor_3 " & "can miss its deadline");
-   pragma Assert (Processor_3_Needs <= Processor_3_W);
-   pragma Assert (Processor_3_R <= Processor_3_D);
-
-   --  [board.supervisor] what can delay it: jobs of the same or higher
-   --  priority
+   --  [board.supervisor] what delays it
    Board_Supervisor_W : constant := Board_Supervisor_R - Board_Supervisor_J;
    Board_Supervisor_Needs : constant :=
      Board_Supervisor_C + Board_Supervisor_B;
-
+   pragma Compile_Time_Error (Board_Supervisor_W /= Board_Supervisor_Needs,
+      "board.supervisor claims a wrong response time");
    pragma Compile_Time_Error
-     (0 > Board_Supervisor_W,
-      "board.supervisor " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Board_Supervisor_Needs > Board_Supervisor_W,
-      "board.supervisor " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Board_Supervisor_W > Board_Supervisor_Needs,
-      "board.supervisor " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Board_Supervisor_J + Board_Supervisor_W) > Board_Supervisor_T,
-      "board.supervisor " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Board_Supervisor_R > Board_Supervisor_D,
-      "board.supervisor " & "can miss its deadline");
-   pragma Assert (Board_Supervisor_Needs <= Board_Supervisor_W);
-   pragma Assert (Board_Supervisor_R <= Board_Supervisor_D);
+     (Board_Supervisor_R > Time'Min (Board_Supervisor_D, Board_Supervisor_T),
+      "board.supervisor can miss its deadline or overlap");
+   pragma Assert
+     (Board_Supervisor_Needs <= Board_Supervisor_W
+      and then Board_Supervisor_R <= Board_Supervisor_D);
 
    --  [board] a release that has not completed L after it was due makes its
    --  processor silent; the supervisor has reported that S after the

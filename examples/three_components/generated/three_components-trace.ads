@@ -9,6 +9,5 @@ package Three_Components.Trace
 with SPARK_Mode
 is
    package Buffer is new Ravenchart.Trace_Buffers
-     (Capacity => 1_024,
-      Ceiling => System.Default_Priority + 4);
+     (Capacity => 1_024, Ceiling => System.Default_Priority + 4);
 end Three_Components.Trace;

@@ -76,16 +76,12 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Token_In_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Two_Token_In,
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Two_Token_In,
          0);
       if Status /= Ravenchart.Queueing.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
-            Elements.Two_Token_In,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Two_Token_In,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
       end if;
@@ -101,8 +97,7 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Two_Handling,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
@@ -111,31 +106,25 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Two_Watching,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Two_Token_Came,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Two_Token_Came, 0);
          when Station.Worked =>
             Handling_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Two_Handling,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Two_Worked,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Two_Worked, 0);
       end case;
    end Offer;
 
@@ -163,16 +152,13 @@ is
          when Station.Token_In_Port.Nothing =>
             null;
          when Station.Token_In_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Two_Token_In,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Two_Token_In, 0);
             Offer (Station.Token_Came);
          when Station.Token_In_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Two_Token_In,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -200,16 +186,13 @@ is
       Station.Handling.Step (Handling_Region, Now, Ins, Box, Fired);
       if Fired /= Station.Handling.None then
          if Fired in Station.Handling.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Two_Handling,
                Station.Handling.Selection'Pos (Fired)
                - Station.Handling.Selection'Pos
                    (Station.Handling.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.Two_Handling,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Two_Handling,
             Station.Handling_States.Leaf'Pos (Handling_Region.Leaf));
          if Box.Token_Out_Sent then
             Send_Token_Out (Box.Token_Out);
@@ -245,16 +228,13 @@ is
       Station.Watching.Step (Watching_Region, Now, Fired);
       if Fired /= Station.Watching.None then
          if Fired in Station.Watching.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Two_Watching,
                Station.Watching.Selection'Pos (Fired)
                - Station.Watching.Selection'Pos
                    (Station.Watching.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.Two_Watching,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Two_Watching,
             Station.Watching_States.Leaf'Pos (Watching_Region.Leaf));
       end if;
    end Step_Watching;

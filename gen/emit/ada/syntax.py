@@ -293,6 +293,13 @@ class UseType:
     name: str
 
 
+@frozen
+class UsePackage:
+    """``use name;``"""
+
+    name: str
+
+
 Decl = (
     EnumType
     | PlainType
@@ -304,6 +311,7 @@ Decl = (
     | Protected
     | Rename
     | UseType
+    | UsePackage
     | Pragma
     | Comment
 )
@@ -374,6 +382,14 @@ def both(*operands: Expr) -> Expr:
 def equal(left: Expr, right: Expr) -> Expr:
     """``left = right``."""
     return Chain("=", (left, right))
+
+
+def case_of(selector: Expr, rows: Sequence[tuple[str, tuple[Stmt, ...]]]) -> Case:
+    """A case statement; choices with the same statements stand together."""
+    found: dict[tuple[Stmt, ...], list[str]] = {}
+    for choice, statements in rows:
+        found.setdefault(statements, []).append(choice)
+    return Case(selector, tuple((" | ".join(names), body) for body, names in found.items()))
 
 
 def names_in(construct: object) -> Iterator[str]:

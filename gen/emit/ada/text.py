@@ -46,6 +46,7 @@ from .syntax import (
     Stmt,
     Subprogram,
     Unit,
+    UsePackage,
     UseType,
     arguments,
 )
@@ -67,8 +68,26 @@ def _lines(docs: Sequence[Doc]) -> Doc:
     return nest(*(part for doc in docs for part in (SOFT, doc)))
 
 
+def _filled(docs: Sequence[Doc], separator: str = ",") -> Doc:
+    """The documents with a separator, as many on a line as it holds."""
+    *others, last = docs
+    first, *rest = [*(cat(doc, separator) for doc in others), last]
+    return cat(first, *(group(SOFT, doc) for doc in rest))
+
+
 def _args(args: Sequence[Arg]) -> Doc:
-    return cat("(", nest(*_join([_arg(a) for a in args], ","), by=1), ")")
+    """Arguments on one line; else named ones have a line each, and positional ones fill lines."""
+    return group("(", nest(*_join([_arg(a) for a in args], ","), by=1), ")")
+
+
+def _given(head: str, args: Sequence[Arg], end: str = "") -> Doc:
+    """A name and its arguments; positional ones begin behind it."""
+    if len(args) < 2 or any(a.name is not None for a in args):
+        return group(head, nest(SOFT, _args(args), by=2), end)
+    first, *rest = (_arg(a) for a in args)
+    behind = [group(SOFT, doc, "," if n < len(rest) else ")") for n, doc in enumerate(rest, 1)]
+    begin = group(SOFT, "(", nest(first, by=1), ",")
+    return group(head, nest(begin, nest(*behind, by=1), by=2), end)
 
 
 def _arg(arg: Arg) -> Doc:
@@ -76,21 +95,37 @@ def _arg(arg: Arg) -> Doc:
     return value if arg.name is None else group(arg.name, " =>", nest(SOFT, value, by=2))
 
 
-_RELATIONS = ("=", "/=", "<", "<=", ">", ">=", "in", "not in")
-_LOGICAL = ("and then", "or else")
+_LEVELS = (
+    ("and", "or", "xor", "and then", "or else"),
+    ("=", "/=", "<", "<=", ">", ">=", "in", "not in"),
+    ("+", "-", "&"),
+    ("*", "/", "mod", "rem"),
+    ("**",),
+)
+"""The binary operators of Ada, each row binding its operands closer than the one before."""
+_CLOSENESS = {operator: level for level, row in enumerate(_LEVELS) for operator in row}
+_ARITHMETIC = _LEVELS[2] + _LEVELS[3]
+"""Operators without which a line may go on: their operands fill the lines."""
 
 
-def _operand(expr: Expr, operator: str = "") -> Doc:
-    """One operand; no parentheses where the precedence of Ada is plain to a reader."""
+def _operand(expr: Expr, operator: str = "", first: bool = False) -> Doc:
+    """One operand, in parentheses where the precedence of Ada asks for them.
+
+    The first one of an arithmetic operator needs none where it has an operator of the same level.
+    """
     doc = expression(expr)
-    plain = not isinstance(expr, Chain) or (operator in _LOGICAL and expr.operator in _RELATIONS)
-    return doc if plain else cat("(", nest(doc, by=1), ")")
+    if isinstance(expr, Chain):
+        own, around = _CLOSENESS[expr.operator], _CLOSENESS.get(operator, len(_LEVELS))
+        alike = first and own == around and operator in _ARITHMETIC
+        if not (alike or own > around) or operator == "**":
+            return cat("(", nest(doc, by=1), ")")
+    return doc
 
 
-def _signed(expr: Expr, operator: str = "") -> Doc:
+def _signed(expr: Expr, operator: str = "", first: bool = False) -> Doc:
     """An operand after an operator: there Ada has no sign, ``abs`` or ``not`` of its own."""
     nested = isinstance(expr, Prefix) and (expr.operator == "-" or not operator)
-    return _bare(expression(expr)) if nested else _operand(expr, operator)
+    return _bare(expression(expr)) if nested else _operand(expr, operator, first)
 
 
 def _bare(*docs: Doc) -> Doc:
@@ -113,21 +148,22 @@ def expression(expr: Expr) -> Doc:
         case Chain(operator, operands):
             #  GNAT wants to see what a sign before a product is of
             begin = _signed if operator in ("*", "/") else _operand
-            head = begin(operands[0], operator)
+            head = begin(operands[0], operator, first=True)
             rest = [_signed(o, operator) for o in operands[1:]]
-            return group(head, *(cat(SOFT, f"{operator} ", nest(r, by=2)) for r in rest))
+            place = group if operator in _ARITHMETIC else cat
+            return group(head, *(place(SOFT, f"{operator} ", nest(r, by=2)) for r in rest))
         case Prefix(operator, operand):
             return cat(operator if operator == "-" else f"{operator} ", _signed(operand))
         case Call(name, args):
-            return group(name, nest(SOFT, _args(args), by=2))
+            return _given(name, args)
         case Aggregate(args, _, str(base)):
             changed = _join([_arg(a) for a in args], ",")
             return _bare(f"{base}{_DELTA}", nest(SOFT, *changed, by=2))
         case Aggregate(args, of_type):
             return group(f"{of_type}'" if of_type else "", _args(args))
         case IfExpr(branches, otherwise):
-            parts = [
-                cat(
+            parts: list[Doc] = [
+                group(
                     "if " if i == 0 else "elsif ",
                     nest(expression(c)),
                     nest(SOFT, "then ", nest(expression(v))),
@@ -176,7 +212,7 @@ def statement(stmt: Stmt) -> Doc:
         case Do(name, ()):
             return f"{name};"
         case Do(name, args):
-            return group(name, nest(SOFT, _args(args), by=2), ";")
+            return _given(name, args, ";")
         case If(branches, otherwise):
             parts: list[Doc] = []
             for index, (condition, body) in enumerate(branches):
@@ -188,7 +224,10 @@ def statement(stmt: Stmt) -> Doc:
                 parts += ["else", _block(otherwise), SOFT]
             return upright(*parts, "end if;")
         case Case(selector, branches):
-            rows = [upright(f"when {choice} =>", _block(body)) for choice, body in branches]
+            rows = [
+                upright(group("when ", nest(_choices(f"{choice} =>"))), _block(body))
+                for choice, body in branches
+            ]
             return upright("case ", expression(selector), " is", _lines(rows), SOFT, "end case;")
         case Loop(head, body):
             start = f"{head} loop" if head else "loop"
@@ -206,7 +245,7 @@ def statement(stmt: Stmt) -> Doc:
 def _pragma(name: str, args: Sequence[Expr]) -> Doc:
     if not args:
         return f"pragma {name};"
-    return group(f"pragma {name}", nest(SOFT, _args(arguments(*args)), by=2), ";")
+    return _given(f"pragma {name}", arguments(*args), ";")
 
 
 @lru_cache(maxsize=8192)
@@ -225,7 +264,7 @@ def _params(params: Sequence[Param]) -> Doc:
     #  names are padded only where each stands on a line of its own
     width = max(len(p.name) for p in params) if plain > ONE_LINE else 0
     docs = [f"{p.name:<{width}} : {t}" for p, t in zip(params, texts, strict=True)]
-    return nest(SOFT, "(", nest(*_join(docs, ";"), by=1), ")", by=2)
+    return nest(SOFT, group("(", nest(*_join(docs, ";"), by=1), ")"), by=2)
 
 
 def _subprogram(sub: Subprogram) -> Doc:
@@ -240,6 +279,8 @@ def _subprogram(sub: Subprogram) -> Doc:
         inner = expression(sub.expression)
         if not isinstance(sub.expression, (IfExpr, CaseExpr, ForAll, ForSome)):
             inner = _bare(inner)
+        if not any(aspect.value for aspect in sub.aspects):
+            aspects = group(aspects)
         return upright(group(head, " is", nest(SOFT, inner, by=2)), aspects, ";")
     if sub.body is None:
         return upright(head, aspects, ";")
@@ -261,8 +302,8 @@ def _subprogram(sub: Subprogram) -> Doc:
 def _declaration(decl: Decl) -> Doc:
     match decl:
         case EnumType(name, literals):
-            items = nest(*_join(literals, ","), by=1)
-            return group(f"type {name} is", nest(SOFT, "(", items, ");", by=2))
+            items = nest(_filled(literals), by=1)
+            return group(f"type {name} is", nest(SOFT, group("(", items, ");"), by=2))
         case PlainType(name, definition, subtype):
             parts = f"{definition};".replace(" range ", "\n range ").replace(" .. ", "\n.. ")
             whole, *bounds = [part.strip() for part in parts.split("\n")]
@@ -292,8 +333,8 @@ def _declaration(decl: Decl) -> Doc:
             return _protected(decl)
         case Rename(name, other):
             return f"package {name} renames {other};"
-        case UseType(name):
-            return f"use type {name};"
+        case UseType(name) | UsePackage(name):
+            return f"use {'type ' if isinstance(decl, UseType) else ''}{name};"
         case Pragma(name, args):
             return _pragma(name, args)
         case Comment(text):
@@ -309,6 +350,16 @@ def _component(head: str, initial: Expr | None) -> Doc:
 _TIGHT = (Object, PlainType, Rename, UseType, Pragma)
 
 
+def _alike(item: Decl, before: Decl | None) -> bool:
+    """Whether an item stands with the one before: a check with its number, static functions."""
+    match item, before:
+        case (Object() | Pragma(), Object() | Pragma()):
+            return True
+        case (Subprogram(aspects=(Aspect("Static"),)), Subprogram(aspects=(Aspect("Static"),))):
+            return True
+    return isinstance(item, _TIGHT) and type(item) is type(before)
+
+
 def _items(items: Sequence[Decl]) -> list[Doc]:
     """Declarations, set apart by blank lines.
 
@@ -321,7 +372,7 @@ def _items(items: Sequence[Decl]) -> list[Doc]:
     for item in items:
         is_trailing = isinstance(item, Comment) and isinstance(before, Subprogram)
         led = isinstance(before, Comment) and not trailing
-        alike = isinstance(item, _TIGHT) and type(item) is type(before)
+        alike = _alike(item, before)
         tight = before is None or is_trailing or led or alike
         docs.append(_declaration(item) if tight else cat("", SOFT, _declaration(item)))
         before, trailing = item, is_trailing
@@ -346,6 +397,7 @@ def _protected(decl: Protected) -> Doc:
 
 
 _DELTA = " with delta"
+_STATIC = "with Static;"
 """What the language of the other units does not have."""
 
 
@@ -358,7 +410,9 @@ def print_unit(unit: Unit, item: str | None = None) -> str:
     """The text of ``unit``, ending in a newline; ``item`` is what `print_item` made of it."""
     text = print_item(unit) if item is None else item
     parts: list[Doc] = [_comment(unit.header), ""]
-    if _DELTA in text:
+    if _STATIC in text:
+        parts += ["pragma Ada_2022;", ""]
+    elif _DELTA in text:
         parts += ["pragma Ada_2022;", 'pragma Warnings (Off, "*array aggregate using*");', ""]
     parts += [f"with {name};" for name in unit.withs]
     head = _laid_out(upright(*_join(parts)))

@@ -10,7 +10,7 @@ have waited.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Set
+from collections.abc import Callable, Set
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -19,29 +19,31 @@ from ravenchart.gen.derive.identifiers import leading
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import Chain, Comment, Decl, Expr, Ref, number
 from ravenchart.gen.model.claims import Claim, Claims
-from ravenchart.gen.model.system import Bus, Message, Reception, System
+from ravenchart.gen.model.system import Bus, Message, Node, System
 
 from .frames import explained, length_terms, rate_terms, span
+from .interference import Ladder, Step, W, asked
 from .terms import (
+    LATE,
     ONE,
-    SLOW,
-    arrivals,
+    RESPONSE,
     assured,
-    before,
-    bounded,
-    ceiling,
-    least,
+    exact,
+    less_periods,
     name_of,
     named,
+    none_of,
     plus,
     refuse,
     stated,
     times,
-    within,
 )
 
 ERROR_BITS = 31
 """Bits lost to one error besides the frame that is sent again: Tindell and Burns 1994."""
+
+
+BUSY = "busy period"
 
 
 def arbitration(message: Message) -> tuple[int, bool, int]:
@@ -57,8 +59,12 @@ def _of(system: System, bus: Bus) -> list[Message]:
 def bus_terms(system: System, bus: Bus) -> list[Decl]:
     """What is known of a bus and its messages."""
     own = ada_case(bus.name)
-    words = f"[{bus.name}] bits in a second, and one bit in nanoseconds, rounded up. Of a message, "
-    items: list[Decl] = [Comment(words + explained(bus)), *rate_terms(bus)]
+    words = (
+        f"[{bus.name}] bits in a second, and one bit in nanoseconds, rounded up. A message waits "
+        "for the longest frame that goes behind it and has begun, and for those that go before "
+        f"it. Of a message, {explained(bus)}"
+    )
+    items: list[Decl] = [Comment(words), *rate_terms(bus)]
     if bus.errors is not None:
         hit = f"[{bus.name}] errors: so many at once, one more every T, bits lost to each"
         items += [
@@ -70,10 +76,15 @@ def bus_terms(system: System, bus: Bus) -> list[Decl]:
     messages = _of(system, bus)
     for message in messages:
         items += _terms(message, bus)
-    for first, second in pairwise(messages):
-        problem = f"must win the arbitration against {second.element}"
-        items.append(refuse(plus(_rank(first), ONE), _rank(second), first.element, problem))
     return items
+
+
+def _order(messages: list[Message], bus: Bus) -> list[Decl]:
+    """Arbitration has the order that the sums suppose."""
+    alike = len({message.extended for message in messages}) == 1
+    ranks = [Ref(f"{name_of(m.element)}_Id") if alike else _rank(m) for m in messages]
+    wrong = [Chain(">=", pair) for pair in pairwise(ranks)]
+    return none_of(wrong, bus.name, "must keep the order of its identifiers")
 
 
 def _rank(message: Message) -> Expr:
@@ -113,7 +124,7 @@ def _terms(message: Message, bus: Bus) -> list[Decl]:
             Comment(f"[{message.element}] the longest time from one frame to the next"),
             stated(f"{own}_Renewal", mode.longest),
         ]
-    return [*items, arrivals(own)]
+    return items
 
 
 # --- Claims --------------------------------------------------------------------------
@@ -127,7 +138,7 @@ class _Level:
     message: Message
     before: list[Message]
     behind: list[Message]
-    queue: Callable[[Message], str]
+    ladder: Ladder
 
     @property
     def blocking(self) -> Expr:
@@ -135,51 +146,69 @@ class _Level:
         longest = max(self.behind, key=self._span, default=None)
         return number(0) if longest is None else Ref(f"{name_of(longest.element)}_C")
 
-    @property
-    def longest(self) -> str:
-        """The longest frame that an error may spoil."""
-        return name_of(max(self.before, key=self._span).element)
-
     def _span(self, message: Message) -> Fraction:
         return span(message, self.bus)
 
     def lost(self, window: Expr) -> list[Expr]:
-        """The time lost to errors within a window."""
+        """The time lost to errors within a window, each of which may spoil the longest frame."""
         if self.bus.errors is None:
             return []
         line = ada_case(self.bus.name)
-        count = plus(Ref(f"{line}_Error_Burst - 1"), ceiling(window, Ref(f"{line}_Error_T")))
+        longest = name_of(max(self.before, key=self._span).element)
         bits = times(Ref(f"{line}_Error_Bits"), Ref(f"{line}_Bit"))
-        return [times(count, plus(bits, Ref(f"{self.longest}_C")))]
+        hit = plus(bits, Ref(f"{longest}_C"))
+        burst = Chain("-", (Ref(f"{line}_Error_Burst"), ONE))
+        return [times(burst, hit), asked(window, number(0), Ref(f"{line}_Error_T"), hit)]
 
-    def instances(self, other: Message, window: Expr, claims: Claims) -> Expr:
-        """How often another message goes before this one within a window.
 
-        A frame of a queue is late by what it may have waited, as a rule R - C, for all
-        but those in the same queue.
-        """
-        own = name_of(other.element)
-        if other.source is None or self.queue(other) == self.queue(self.message):
-            return within(own, window)
-        if other.element in claims.waits:
-            return within(own, plus(window, Ref(f"{own}_Wait")))
-        return ceiling(
-            plus(window, Chain("-", (Ref(f"{own}_R"), Ref(f"{own}_C")))), Ref(f"{own}_T")
-        )
+def _ladders(system: System, bus: Bus, order: list[Message], claims: Claims) -> dict[str, Ladder]:
+    """The messages of a bus as those see them that wait in each queue, or in none ("").
+
+    Of a queue the frames delay each other, whatever their identifiers. To others a frame of a
+    queue is late by what it may have waited there, as a rule R - C.
+    """
+    found: dict[str, Ladder] = {}
+    queues = sorted({system.queue(message) for message in order})
+    for queue in queues:
+        names = "Up", "Rest"
+        if len(queues) > 1 and queue:
+            node = ada_case(queue.removesuffix(f".{bus.name}"))
+            names = f"Up_{node}", f"Rest_{node}"
+        steps = []
+        inside = {m.element for m in order if queue and system.queue(m) == queue}
+        for place, other in enumerate(sorted(order, key=lambda m: m.element in inside)):
+            own = name_of(other.element)
+            late: Expr = Ref(f"{own}_J")
+            if other.source is not None and system.queue(other) != queue:
+                late = Chain("-", (Ref(f"{own}_R"), Ref(f"{own}_C")))
+                if other.element in claims.waits:
+                    late = plus(Ref(f"{own}_Wait"), Ref(f"{own}_J"))
+            level = len(order) if other.element in inside else place
+            steps.append(Step(own, (_sent(own, late),), level))
+        found[queue] = Ladder(tuple(steps), *names)
+    return found
+
+
+def _sent(own: str, late: Expr) -> Expr:
+    return asked(W, late, Ref(f"{own}_T"), Ref(f"{own}_C"))
 
 
 def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> list[Decl]:
     """The instances of each message, and what they show of its response; then those handed over."""
     order = _of(system, bus)
     items = _waits(system, bus, order, claims)
+    ladders = _ladders(system, bus, order, claims)
+    for ladder in ladders.values():
+        items += ladder.functions()
+    items += _order(order, bus)
     for number_, message in enumerate(order, 1):
-        reach = len(order) if system.queue(message) else number_
-        level = _Level(bus, message, order[:reach], order[reach:], system.queue)
-        items += _of_message(level, claims)
-    for message in order:
-        for one in system.receptions(message):
-            if one.element in handed:
-                items += _turns(system, one, claims.turns.get(one.element, Claim()))
+        queue = system.queue(message)
+        reach = len(order) if queue else number_
+        items += _of_message(
+            _Level(bus, message, order[:reach], order[reach:], ladders[queue]), claims
+        )
+    for node in system.nodes:
+        items += _turns(system, bus, node, claims, handed)
     return items
 
 
@@ -189,25 +218,23 @@ def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> li
         return []
     line = ada_case(bus.name)
     busiest = Ref(f"{line}_Busiest")
-    works = [
-        times(within(name_of(m.element), busiest), Ref(f"{name_of(m.element)}_C")) for m in order
-    ]
-    lost = _Level(bus, order[0], order, [], system.queue).lost(busiest)
-    problem = "can be busy longer than claimed"
+    own = [name_of(message.element) for message in order]
+    steps = (Step(one, (_sent(one, Ref(f"{one}_J")),), n) for n, one in enumerate(own))
+    ladder = Ladder(tuple(steps), "Queued")
+    lost = _Level(bus, order[0], order, [], ladder).lost(busiest)
     items: list[Decl] = [
         Comment(f"[{bus.name}] how long it is ever busy, and who waits no longer in a queue"),
+        *ladder.functions(),
         stated(f"{line}_Busiest", claims.busiest[bus.name]),
-        named(f"{line}_Busiest_Needs", plus(*works, *lost)),
-        refuse(ONE, busiest, bus.name, problem),
-        *least(busiest, [Ref(f"{line}_Busiest_Needs")], bus.name, problem),
+        named(f"{line}_Busiest_Needs", plus(*ladder.whole(own[-1], busiest), *lost)),
+        exact(busiest, [Ref(f"{line}_Busiest_Needs")], bus.name, BUSY, least=1),
     ]
     for message in order:
         if message.element in claims.waits:
-            own = name_of(message.element)
-            problem = "can wait longer than claimed"
-            longest = Chain("-", (busiest, Ref(f"{own}_C")))
-            items.append(stated(f"{own}_Wait", claims.waits[message.element]))
-            items += least(Ref(f"{own}_Wait"), [longest], message.element, problem)
+            wait = f"{name_of(message.element)}_Wait"
+            longest = Chain("-", (busiest, Ref(f"{name_of(message.element)}_C")))
+            items.append(stated(wait, claims.waits[message.element]))
+            items.append(exact(Ref(wait), [longest], message.element, "wait in a queue"))
     return items
 
 
@@ -216,35 +243,28 @@ def _of_message(level: _Level, claims: Claims) -> list[Decl]:
     message, claim = level.message, claims.of(level.message.element)
     own, line = name_of(message.element), ada_case(level.bus.name)
 
-    def rivals(window: Expr, others: list[Message]) -> list[Expr]:
-        return [
-            times(level.instances(m, window, claims), Ref(f"{name_of(m.element)}_C"))
-            for m in others
-        ]
-
     def waiting(instance: int, window: Expr) -> Expr:
-        others = [m for m in level.before if m is not message]
         earlier = [times(number(instance), Ref(f"{own}_C"))] if instance else []
         until = plus(window, Ref(f"{line}_Bit"))
         hit = level.lost(plus(window, Ref(f"{own}_C")))
-        return plus(level.blocking, *earlier, *rivals(until, others), *hit)
+        return plus(level.blocking, *earlier, *level.ladder.others(own, until), *hit)
 
-    def busy(window: Expr) -> Expr:
-        return plus(level.blocking, *rivals(window, level.before), *level.lost(window))
-
-    words = f"[{message.element}] what can delay it: frames that go before it"
-    if level.behind:
-        words += ", and one of those that go behind it, the longest of which counts once"
-    items: list[Decl] = [Comment(words)]
-    items += _instances(own, message.element, claim, waiting, busy)
-    responses = []
-    for instance in range(len(claim.windows)):
-        tail = _tail(claim, instance)
-        response = plus(Ref(f"{own}_J"), Ref(f"{own}_W{tail}"), Ref(f"{own}_C"))
-        responses.append(plus(response, *before(own, instance)))
-    items += least(Ref(f"{own}_R"), responses, message.element, SLOW)
-    items.append(refuse(Ref(f"{own}_R"), Ref(f"{own}_D"), message.element, "can miss its deadline"))
-    items.append(assured(Ref(f"{own}_R"), Ref(f"{own}_D")))
+    busy = Ref(f"{own}_Busy")
+    demand = plus(level.blocking, *level.ladder.whole(own, busy), *level.lost(busy))
+    jitter, response = Ref(f"{own}_J"), Ref(f"{own}_R")
+    items: list[Decl] = [Comment(f"[{message.element}] what delays it")]
+    items += _busy(own, message.element, claim, demand)
+    sent = Ref(f"{own}_C")
+    last = Chain("-", (response, jitter, sent)) if len(claim.windows) == 1 else None
+    items += _windows(own, message.element, claim, waiting, (busy, jitter), last=last)
+    if last is None:
+        ends = [
+            less_periods(plus(jitter, Ref(f"{own}_W{_tail(claim, n)}"), sent), own, n)
+            for n in range(len(claim.windows))
+        ]
+        items.append(exact(response, ends, message.element, RESPONSE))
+    items.append(refuse(response, Ref(f"{own}_D"), message.element, LATE))
+    items.append(assured((response, Ref(f"{own}_D"))))
     return items
 
 
@@ -252,74 +272,87 @@ def _tail(claim: Claim, instance: int) -> str:
     return "" if len(claim.windows) == 1 else f"_{instance + 1}"
 
 
-def _instances(
+def _busy(own: str, label: str, claim: Claim, demand: Expr) -> list[Decl]:
+    """A busy period: no time at all would hold no demand as well."""
+    busy, needs = Ref(f"{own}_Busy"), Ref(f"{own}_Busy_Needs")
+    return [
+        stated(busy.text, claim.busy),
+        named(needs.text, demand),
+        exact(busy, [needs], label, BUSY, least=1),
+    ]
+
+
+def _windows(
     own: str,
     label: str,
     claim: Claim,
     waiting: Callable[[int, Expr], Expr],
-    busy: Callable[[Expr], Expr],
+    span_of: tuple[Expr, Expr],
     prefix: str = "",
+    last: Expr | None = None,
 ) -> list[Decl]:
-    """The windows of all instances, and the busy period in which there are no more."""
-    items: list[Decl] = [stated(f"{own}_{prefix}Busy", claim.busy)]
-    window: Expr = Ref(f"{own}_{prefix}Busy")
-    items.append(named(f"{own}_{prefix}Busy_Needs", busy(window)))
-    problem = "can keep others waiting for longer than claimed"
-    items.append(refuse(ONE, window, label, problem))  # no time at all is a solution too
-    items += least(window, [Ref(f"{own}_{prefix}Busy_Needs")], label, problem)
-    late = Ref(f"{own}_J") if not prefix else Ref(f"{own}_{prefix}J")
+    """The windows of all instances in a busy period, the first as late as can be: no more come.
+
+    ``last`` is the only window where there is one.
+    """
     most = times(number(len(claim.windows)), Ref(f"{own}_T"))
-    problem = "can come again before it is sent"
-    items.append(refuse(plus(window, late), most, label, problem))
+    items: list[Decl] = [refuse(plus(*span_of), most, label, "can come again before it is sent")]
     for instance, length in enumerate(claim.windows):
         tail = _tail(claim, instance)
-        at: Expr = Ref(f"{own}_{prefix}W{tail}")
-        needs = f"{own}_{prefix}Needs{tail}"
-        items.append(stated(f"{own}_{prefix}W{tail}", length))
-        items.append(named(needs, waiting(instance, at)))
-        items += bounded(Ref(needs), at, label)
+        window, needs = Ref(f"{own}_{prefix}W{tail}"), Ref(f"{own}_{prefix}Needs{tail}")
+        items += [
+            named(window.text, number(length) if last is None else last),
+            named(needs.text, waiting(instance, window)),
+            exact(window, [needs], label, RESPONSE),
+        ]
     return items
 
 
-def _turns(system: System, one: Reception, claim: Claim) -> list[Decl]:
-    """When the reception, which keeps its least separation, has handed a message over."""
-    here = one.message.bus, one.node
+def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str]) -> list[Decl]:
+    """When the reception, which keeps its least separation, has handed each message over."""
+    received = system.received(bus.name, node.name)
+    wanted = [one for one in received if one.element in handed]
+    if not wanted:
+        return []
+    here = bus.name, node.name
     processor = next(p for p in system.processors if (p.released_by, p.node) == here)
-    separation, response = (Ref(f"{name_of(processor.name)}_{letter}") for letter in "TR")
-    received = system.received(*here)
-    own = name_of(one.element)
-
-    def served(window: Expr, among: Iterable[Reception]) -> list[Expr]:
-        return [
-            times(
-                ceiling(
-                    plus(window, Ref(f"{name_of(r.driver)}_R")),
-                    Ref(f"{name_of(r.message.element)}_T"),
-                ),
-                separation,
-            )
-            for r in among
-        ]
-
-    def waiting(instance: int, window: Expr) -> Expr:
-        earlier = [times(number(instance), separation)] if instance else []
-        others = [r for r in received if r != one]
-        return plus(*earlier, *served(plus(window, number(1)), others))
-
-    label = one.element
-    words = f"[{label}] its turn in the queue of {processor.name}, and when it is handed over"
-    items: list[Decl] = [Comment(words)]
-    if one.several:
-        items.append(named(f"{own}_T", Ref(f"{name_of(one.message.element)}_T")))
-    items += [
-        named(f"{own}_Turn_J", Ref(f"{name_of(one.driver)}_R")),
-        *_instances(own, label, claim, waiting, lambda w: plus(*served(w, received)), "Turn_"),
-        stated(f"{own}_Turn", claim.response),
+    separation, reply = (Ref(f"{name_of(processor.name)}_{letter}") for letter in "TR")
+    steps = []
+    for one in received:
+        late, period = (Ref(f"{name_of(one.driver)}_R"), Ref(f"{name_of(one.message.element)}_T"))
+        steps.append(Step(name_of(one.element), (asked(W, late, period, separation),), 0))
+    ladder = Ladder(tuple(steps), "Turn_Up", "Turn_Rest")
+    line = name_of(processor.name)
+    busy = Ref(f"{line}_Busy")
+    first = claims.turns.get(wanted[0].element, Claim())
+    whole = plus(*ladder.whole(steps[0].name, busy))
+    items: list[Decl] = [
+        Comment(f"[{processor.name}] how long it is ever busy with what it receives"),
+        *ladder.functions(),
+        *_busy(line, processor.name, first, whole),
     ]
-    turns = []
-    for instance in range(len(claim.windows)):
-        late = plus(Ref(f"{own}_Turn_J"), Ref(f"{own}_Turn_W{_tail(claim, instance)}"))
-        turns.append(plus(late, *before(own, instance)))
-    items += least(Ref(f"{own}_Turn"), turns, label, SLOW)
-    items.append(named(f"{own}_Handed", plus(Ref(f"{own}_Turn"), times(number(2), response))))
+    for one in wanted:
+        own, label = name_of(one.element), one.element
+        claim = claims.turns.get(label, Claim())
+        jitter, turn = Ref(f"{own}_Turn_J"), Ref(f"{own}_Turn")
+
+        def waiting(instance: int, window: Expr, own: str = own) -> Expr:
+            earlier = [times(number(instance), separation)] if instance else []
+            return plus(*earlier, *ladder.others(own, plus(window, ONE)))
+
+        words = f"[{label}] its turn in {processor.name}, and when it is handed over"
+        items.append(Comment(words))
+        if one.several:
+            items.append(named(f"{own}_T", Ref(f"{name_of(one.message.element)}_T")))
+        items.append(named(jitter.text, Ref(f"{name_of(one.driver)}_R")))
+        items += _windows(own, label, claim, waiting, (busy, jitter), "Turn_")
+        ends = [
+            less_periods(plus(jitter, Ref(f"{own}_Turn_W{_tail(claim, n)}")), own, n)
+            for n in range(len(claim.windows))
+        ]
+        items += [
+            stated(turn.text, claim.response),
+            exact(turn, ends, label, RESPONSE),
+            named(f"{own}_Handed", plus(turn, times(number(2), reply))),
+        ]
     return items

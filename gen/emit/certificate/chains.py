@@ -12,7 +12,7 @@ from ravenchart.gen.model.system import Chain as ModelChain
 from ravenchart.gen.model.system import Processor, System
 
 from .hops import Hop, hops_of
-from .terms import assured, least, name_of, named, plus, refuse, stated, times
+from .terms import assured, exact, name_of, named, plus, refuse, stated, times
 
 SUFFIX = {"row": "Done", "item": "R", "handed": "Handed", "transfer": "Transfer"}
 """What the response of a step is called."""
@@ -76,10 +76,10 @@ def chain_claims(system: System, chain: ModelChain, claim: ChainClaim) -> list[D
         ]
         label, low = f"chain {chain.name}", what.lower()
         needs, claimed = Ref(f"{own}_{what}_Needs"), Ref(f"{own}_{what}")
-        items += least(claimed, [needs], label, f"can have a longer {low} than claimed")
+        items.append(exact(claimed, [needs], label, low))
         problem = f"can exceed the limit of its {low}"
         items.append(refuse(claimed, Ref(f"{own}_{what}_Limit"), label, problem))
-        items.append(assured(needs, Ref(f"{own}_{what}_Limit")))
+        items.append(assured((needs, Ref(f"{own}_{what}_Limit"))))
         if not hops or without:
             problem = f"can have any {low}: " + (without[0] if without else "its way is broken")
             items.append(refuse(number(1), number(0), label, problem))
@@ -127,12 +127,11 @@ def _queue(
     burst = f"{wait}_Burst"
     label, many = f"chain {chain}", number(hop.at_once)
     last = times(Ref(burst), many, cycle)
-    gone = Chain("*", (number(-1), Ref(burst), period))
-    following = plus(times(plus(Ref(burst), number(1)), many, cycle), late, gone)
-    problem = "can wait longer in a queue than claimed"
+    full = plus(times(plus(Ref(burst), number(1)), many, cycle), late)
+    following = Chain("-", (full, times(Ref(burst), period)))
     return [
         named(burst, plus(Chain("/", (late, period)), number(1))),
         stated(wait, claimed),
         refuse(times(many, cycle), period, label, "can fill a queue"),
-        *least(Ref(wait), [last, following], label, problem),
+        exact(Ref(wait), [last, following], label, "wait in a queue"),
     ]

@@ -16,8 +16,22 @@ from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.claims import Claim
 from ravenchart.gen.model.system import System, Task
 
-from .demand import Count, anyhow, costs, demand
-from .terms import LATE, ONE, assured, bounded, ceiling, name_of, named, plus, refuse, stated, times
+from .interference import asked, costs, platform
+from .terms import (
+    LATE,
+    ONE,
+    OVERLAP,
+    RESPONSE,
+    assured,
+    ceiling,
+    exact,
+    name_of,
+    named,
+    plus,
+    refuse,
+    stated,
+    times,
+)
 
 UNLISTED = "can be late from an instant that is not listed"
 
@@ -38,7 +52,7 @@ def offset_claims(system: System, task: Task, claim: Claim) -> list[Decl]:
         ),
         stated(f"{own}_Reach", reach),
         refuse(Chain("-", (bound, jitter, Ref(f"{own}_Reach"))), deadline, label, LATE),
-        refuse(deadline, period, label, "can be released again before it completes"),
+        refuse(deadline, period, label, OVERLAP),
     ]
     found = instants(system, task, reach) or ()
     if not found:
@@ -49,20 +63,15 @@ def offset_claims(system: System, task: Task, claim: Claim) -> list[Decl]:
         names = [f"{own}_{part}_{place}" for part in ("At", "W_At", "Needs_At")]
         at, window, needs = map(Ref, names)
         due = plus(Ref(f"{own}_O"), times(number(instant.release), period))
-        work = [
-            Ref(f"{own}_{letter}")
-            for letter in costs(task)
-            if instant.release % int(letter.partition("_")[2] or 1) == 0
-        ]
-        count = _counted(system, task, at, window)
+        work = [Ref(c) for n, c in costs(task).items() if instant.release % n == 0]
         items += [
             stated(names[0], instant.time),
             stated(names[1], length),
-            named(names[2], demand(system, task, window, plus(*work), count)),
-            *bounded(needs, window, label),
+            named(names[2], plus(*work, *_delay(system, task, at, window))),
+            exact(window, [needs], label, RESPONSE, least=1),
             refuse(plus(at, window), plus(due, deadline), label, LATE),
             refuse(plus(due, jitter, ONE), plus(at, period), label, UNLISTED),
-            assured(needs, window),
+            assured((needs, window)),
         ]
         reached = Chain("-", (due, Ref(f"{own}_Reach")))
         between += _all_between(system, task, found, place, reached, reach)
@@ -113,18 +122,23 @@ def _all_between(
     ]
 
 
-def _counted(system: System, task: Task, at: Expr, window: Expr) -> Count:
-    """Releases of processors that are due in the window, and the most of all others."""
+def _delay(system: System, task: Task, at: Expr, window: Expr) -> list[Expr]:
+    """What delays a job: of processors the releases due in the window, the most of all others."""
+    node = system.node(task.node)
     known = {other.element for other in phased(system, task)}
-    others = anyhow(window)
+    terms: list[Expr] = [Ref(f"{name_of(task.element)}_B")]
 
-    def count(other: Task, divisor: int) -> Expr:
-        if other.element not in known:
-            return others(other, divisor)
+    def term(other: Task, divisor: int, cost: Expr) -> Expr:
         own = name_of(other.element)
-        offset, period = Ref(f"{own}_O"), times(number(divisor), Ref(f"{own}_T"))
+        period = times(number(divisor), Ref(f"{own}_T"))
+        if other.element not in known:
+            return asked(window, Ref(f"{own}_J"), period, cost)
+        offset = Ref(f"{own}_O")
         end = Chain("-", (plus(at, window), offset))
         begin = Chain("-", (at, Ref(f"{own}_J"), offset))
-        return Chain("-", (ceiling(end, period), ceiling(begin, period)))
+        return times(Chain("-", (ceiling(end, period), ceiling(begin, period))), cost)
 
-    return count
+    for other in system.tasks:
+        if other.node == task.node and other is not task and other.priority >= task.priority:
+            terms += [term(other, divisor, Ref(c)) for divisor, c in costs(other).items()]
+    return [*terms, *platform(system, node, window, term)]

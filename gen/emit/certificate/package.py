@@ -1,7 +1,7 @@
-"""The timing certificate: every term a named number, every claim checked by the compiler.
+"""The timing certificate: named numbers and static functions, every claim checked by the compiler.
 
-Named numbers are universal integers: exact, without a largest value, and known
-before anything runs. Each claim is a time within which something must be done, and
+Both are exact and known before anything runs; what is too much for a function is longer than
+any window. Each claim is a time within which something must be done, and
 beside it stands the demand that can arise within that time; the least time that
 holds its demand bounds the response, so a claim that holds its demand is no less.
 The recurrences are those of Joseph and Pandya 1986, Audsley et al. 1993 (tasks),
@@ -25,6 +25,8 @@ from ravenchart.gen.emit.ada.syntax import (
     Package,
     Ref,
     Unit,
+    UsePackage,
+    call,
     number,
 )
 from ravenchart.gen.model.claims import ChainClaim, Claims
@@ -32,19 +34,19 @@ from ravenchart.gen.model.system import SUPERVISOR, Node, SharedObject, System, 
 
 from .buses import bus_claims, bus_terms
 from .chains import chain_claims
-from .demand import costs, demand, most, switches, work
+from .demand import demand, sums, switches, work
 from .hops import hops_of
+from .interference import UNIT, task_functions
 from .offsets import offset_claims
 from .protection import protection_claims, watched
 from .tables import order, table_terms
 from .terms import (
     LATE,
-    SLOW,
-    arrivals,
+    OVERLAP,
+    RESPONSE,
     assured,
-    before,
-    bounded,
-    least,
+    exact,
+    less_periods,
     name_of,
     named,
     plus,
@@ -58,9 +60,9 @@ LETTERS = (
     "Times in nanoseconds. T period or least separation, D deadline, J longest time from the "
     "event to the release, C longest execution (with context switches) or transmission, "
     "B blocking, R the claimed response from the event, W the time claimed from the start of a "
-    "busy period. A is J + T - 1, so that (W + A) / T is the number of releases within W. Needs "
-    "is the demand that arises within W, and equals it: where it is more, W is too short; where it "
-    "is less, a term is missing."
+    "busy period. X_Up (W) is what X and all that goes before it ask for within W, X_Rest (W) "
+    "what X and those listed behind it at its level do. Needs is the demand that arises within W, "
+    "and equals it: where it is more, W is too short; where it is less, a term is missing."
 )
 
 
@@ -69,6 +71,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     items: list[Decl] = [
         Comment("SHA-256 of the model: the program and its trace carry it."),
         Object("Model_Digest", "String", Ref(f'"{system.digest}"'), constant=True),
+        UsePackage(UNIT),
         Comment(LETTERS),
     ]
     elements = [task.element for task in system.tasks] + [m.element for m in system.frames]
@@ -92,6 +95,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     for task in system.tasks:
         items += _terms(system, task)
     for node in system.nodes:
+        items += task_functions(system, node)
         items += order(system, node)
     for bus in system.buses:
         items += bus_terms(system, bus)
@@ -116,7 +120,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     package = Package(
         f"{ada_case(system.name)}.Timing_Certificate", tuple(items), (SPARK, Aspect("Pure"))
     )
-    return Unit(header, ("System",), package)
+    return Unit(header, ("System", UNIT), package)
 
 
 def blocker(system: System, task: Task) -> tuple[SharedObject, str] | None:
@@ -186,8 +190,7 @@ def _terms(system: System, task: Task) -> list[Decl]:
         items.append(stated(f"{own}_O", task.offset))
     items += table_terms(task)
     items.append(named(f"{own}_J", _jitter(system, task)))
-    items.append(arrivals(own))
-    items += [named(f"{own}_{letter}", value) for letter, value in costs(task).items()]
+    items += [named(name, value) for name, value in sums(task).items()]
     items.append(named(f"{own}_B", blocking))
     return items
 
@@ -195,7 +198,7 @@ def _terms(system: System, task: Task) -> list[Decl]:
 def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) -> str:
     """What the numbers of a task are."""
     if task.released_by is not None:
-        what = f"the driver's work, released by {task.released_by}, which is J late"
+        what = f"the driver, released by {task.released_by}"
     elif task.sporadic:
         what = "released by arrivals, no closer than T; it may wait for T to be over as well"
     else:
@@ -203,7 +206,7 @@ def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) ->
         if has_offset(system, task):
             what += ", first O after the epoch of its node"
     text = f"[{task.element}] {what}."
-    text += f" B: {held[1]} may be inside {held[0].element}." if held else " Nothing blocks it."
+    text += f" B: {held[1]} in {held[0].element}." if held else " Nothing blocks it."
     rare = sorted({slot.divisor for slot in task.slots if slot.divisor > 1})
     if rare:
         every = ", ".join(f"C_{n}: rows of every {n}th release" for n in rare)
@@ -232,9 +235,7 @@ def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[
     own, label = name_of(task.element), task.element
     windows = claims.of(label).windows
     jitter, period, bound = (Ref(f"{own}_{letter}") for letter in "JTR")
-    items: list[Decl] = [
-        Comment(f"[{label}] what can delay it: jobs of the same or higher priority")
-    ]
+    items: list[Decl] = [Comment(f"[{label}] what delays it")]
     last: Expr = Ref(f"{own}_W")
     ends: list[Expr] = []
     for job, window in enumerate(windows):
@@ -244,23 +245,26 @@ def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[
             items.append(named(f"{own}_W", Chain("-", (bound, jitter))))
         else:
             items.append(stated(f"{own}_W{tail}", window))
-        done = work(task, most(number(job + 1)))
-        if len(windows) == 1:
-            done = plus(*(Ref(f"{own}_{letter}") for letter in costs(task)))
-        items.append(named(needs, demand(system, task, last, done)))
-        items += bounded(Ref(needs), last, label)
-        ends.append(plus(jitter, last, *before(own, job)))
+        items.append(named(needs, demand(system, task, last, work(task, job + 1))))
+        items.append(exact(last, [Ref(needs)], label, RESPONSE))
+        ends.append(less_periods(plus(jitter, last), own, job))
     if len(windows) > 1:
-        items += least(bound, ends, label, SLOW)
-    limit = times(number(len(windows)), period)
-    problem = "can be released again before it completes"
-    items.append(refuse(plus(jitter, last), limit, label, problem))
+        items.append(exact(bound, ends, label, RESPONSE))
+    deadline: Expr = Ref(f"{own}_D")
+    if claims.of(label).since or len(windows) > 1:
+        limit = times(number(len(windows)), period)
+        items.append(refuse(plus(jitter, last), limit, label, OVERLAP))
+    held = Ref(f"{own}_Needs{tail}"), last
     if claims.of(label).since:
-        items.append(assured(Ref(f"{own}_Needs{tail}"), last))
+        items.append(assured(held))
         items += offset_claims(system, task, claims.of(label))
     else:
-        items.append(refuse(bound, Ref(f"{own}_D"), label, LATE))
-        items += [assured(Ref(f"{own}_Needs{tail}"), last), assured(bound, Ref(f"{own}_D"))]
+        if len(windows) == 1:
+            first = call("Time'Min", deadline, period)
+            items.append(refuse(bound, first, label, f"{LATE} or overlap"))
+        else:
+            items.append(refuse(bound, deadline, label, LATE))
+        items.append(assured(held, (bound, deadline)))
     for place, slot in enumerate(task.slots, 1):
         if slot.element in rows:
             items += _row(system, task, place, claims.rows.get(slot.element, 0))
@@ -275,9 +279,9 @@ def _row(system: System, task: Task, place: int, bound: int) -> list[Decl]:
     needed = plus(switches(task), *budgets)
     window = Ref(f"{done}_W")
     return [
-        Comment(f"[{row}] done, from the event that releases its processor"),
+        Comment(f"[{row}] done, from the event of its processor"),
         stated(f"{done}_Done", bound),
         named(f"{done}_W", Ref(f"{done}_Done - {own}_J")),
         named(f"{done}_Needs", demand(system, task, window, needed)),
-        *bounded(Ref(f"{done}_Needs"), window, row),
+        exact(window, [Ref(f"{done}_Needs")], row, RESPONSE),
     ]

@@ -15,7 +15,7 @@ from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.protection import Protection
 from ravenchart.gen.model.system import End, Message, System
 
-from .terms import ceiling, least, name_of, named, plus, stated, times
+from .terms import ceiling, exact, name_of, named, plus, stated, times
 
 HOUR = 3_600 * 10**9
 """In nanoseconds."""
@@ -70,7 +70,7 @@ def _residual(message: Message, own: Protection, claimed: int) -> list[Decl]:
         named(few.text, plus(*patterns)),
         stated(right.text, claimed),
         named(needs.text, ceiling(times(missed, number(10**18)), times(checks, whole))),
-        *least(right, [needs], message.element, "passes corruption more often than claimed"),
+        exact(right, [needs], message.element, "residual error"),
         named(
             f"{right.text}_Per_Hour",
             ceiling(times(right, number(HOUR)), times(number(10**9), Ref(f"{element}_T"))),
@@ -97,12 +97,11 @@ def _stale(system: System, message: Message, end: End, claimed: int) -> list[Dec
         f"[{end}] Looks: the distance at which the age of its value is looked at; Stale: the time "
         f"from when {message.name} was last due in good order until the port is known to be stale."
     )
-    problem = "can be stale for longer than claimed before it is known"
     return [
         Comment(words),
         stated(limit.text, age),
         stated(period.text, component.port_region.period),
         stated(f"{own}_Stale", claimed),
         named(f"{own}_Stale_Needs", needs),
-        *least(Ref(f"{own}_Stale"), [Ref(f"{own}_Stale_Needs")], str(end), problem),
+        exact(Ref(f"{own}_Stale"), [Ref(f"{own}_Stale_Needs")], str(end), "time until it is stale"),
     ]

@@ -8,25 +8,21 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from ravenchart.gen.emit.ada.syntax import Decl, Ref, number
+from ravenchart.gen.emit.ada.syntax import Chain, Decl, Expr, Ref, number
 from ravenchart.gen.model.system import Node, System, Task
 
-from .terms import ONE, differs, name_of, plus, refuse, stated
+from .interference import by_priority
+from .terms import name_of, none_of, stated
 
 
 def order(system: System, node: Node) -> list[Decl]:
     """The tasks of a node have the order of priority that their sums suppose."""
-    tasks = sorted((t for t in system.tasks if t.node == node.name), key=lambda t: -t.priority)
-    items: list[Decl] = []
-    for high, low in pairwise(tasks):
+    wrong: list[Expr] = []
+    for high, low in pairwise(by_priority(system, node)):
         above, below = (Ref(f"{name_of(t.element)}_Priority") for t in (high, low))
-        if high.priority == low.priority:
-            problem = f"must have the priority of {low.element}"
-            items.append(differs(above, below, high.element, problem))
-        else:
-            problem = f"must have a higher priority than {low.element}"
-            items.append(refuse(plus(below, ONE), above, high.element, problem))
-    return items
+        wrong.append(Chain("/=" if high.priority == low.priority else "<=", (above, below)))
+    problem = "must keep the order of its priorities"
+    return none_of(wrong, node.name, problem)
 
 
 def table_terms(task: Task) -> list[Decl]:
@@ -34,15 +30,13 @@ def table_terms(task: Task) -> list[Decl]:
     if task.sporadic:
         return []
     items: list[Decl] = []
+    wrong: list[Expr] = []
     for slot in task.slots:
         row = name_of(slot.element)
         divisor, phase = Ref(f"{row}_Divisor"), Ref(f"{row}_Phase")
-        letter = "C" if slot.divisor == 1 else f"C_{slot.divisor}"
-        problem = f"is in the sum {letter}, which its divisor contradicts"
-        items += [
-            stated(divisor.text, slot.divisor),
-            stated(phase.text, slot.phase),
-            differs(divisor, number(slot.divisor), slot.element, problem),
-            refuse(plus(phase, ONE), divisor, slot.element, "has a phase beyond its divisor"),
-        ]
-    return items
+        items += [stated(divisor.text, slot.divisor), stated(phase.text, slot.phase)]
+        wrong.append(Chain("/=", (divisor, number(slot.divisor))))
+        late: Expr = Chain(">=", (phase, divisor))
+        wrong.append(Chain("/=", (phase, number(0))) if slot.divisor == 1 else late)
+    problem = "must keep divisors and phases of its rows"
+    return items + none_of(wrong, task.element, problem)

@@ -2,37 +2,36 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import constant_name as name_of
-from ravenchart.gen.emit.ada.syntax import Chain, Decl, Expr, Object, Pragma, Ref, chain, number
+from collections.abc import Sequence
 
-__all__ = [
-    "LATE",
-    "LOOSE",
-    "ONE",
-    "SLOW",
-    "arrivals",
-    "assured",
-    "before",
-    "bounded",
-    "ceiling",
-    "differs",
-    "least",
-    "name_of",
-    "named",
-    "plus",
-    "refuse",
-    "stated",
-    "times",
-    "within",
-]
+from ravenchart.gen.emit.ada.naming import constant_name
+from ravenchart.gen.emit.ada.syntax import (
+    Chain,
+    Decl,
+    Expr,
+    Object,
+    Pragma,
+    Ref,
+    both,
+    call,
+    chain,
+    number,
+)
+
+name_of = constant_name
+"""An element's name in the certificate, to which a letter is added."""
 
 ONE = number(1)
 
 LATE = "can miss its deadline"
 
-SLOW = "can take longer than its claimed response time"
+OVERLAP = "can be released before it completes"
 
-LOOSE = "claims more than its terms add up to"
+RESPONSE = "response time"
+"""What most elements claim."""
+
+LONG = 69
+"""A message of more columns is broken behind the name of its element."""
 
 
 def named(name: str, value: Expr) -> Decl:
@@ -50,7 +49,7 @@ def plus(*terms: Expr) -> Expr:
     flat: list[Expr] = []
     for term in terms:
         flat += term.operands if isinstance(term, Chain) and term.operator == "+" else (term,)
-    return chain("+", flat, number(0))
+    return chain("+", [term for term in flat if term != number(0)], number(0))
 
 
 def times(*factors: Expr) -> Expr:
@@ -58,24 +57,14 @@ def times(*factors: Expr) -> Expr:
     return chain("*", [factor for factor in factors if factor != ONE], ONE)
 
 
-def before(own: str, job: int) -> list[Expr]:
-    """Less the periods that lie before a job, counted from 0."""
-    return [times(number(-job), Ref(f"{own}_T"))] if job else []
+def less_periods(time: Expr, own: str, jobs: int) -> Expr:
+    """Less the periods of an element that lie before a job, counted from 0."""
+    return Chain("-", (time, times(number(jobs), Ref(f"{own}_T")))) if jobs else time
 
 
 def ceiling(dividend: Expr, divisor: Expr) -> Expr:
     """The quotient of numbers that are not negative, rounded up."""
     return Chain("/", (plus(dividend, Chain("-", (divisor, ONE))), divisor))
-
-
-def arrivals(own: str) -> Decl:
-    """What makes a division count the releases of an element; see `within`."""
-    return named(f"{own}_A", plus(Ref(f"{own}_J"), Chain("-", (Ref(f"{own}_T"), ONE))))
-
-
-def within(own: str, window: Expr) -> Expr:
-    """Releases of an element in a window that begins with as many as its jitter allows."""
-    return Chain("/", (plus(window, Ref(f"{own}_A")), Ref(f"{own}_T")))
 
 
 def refuse(left: Expr, right: Expr, element: str, problem: str) -> Decl:
@@ -89,33 +78,33 @@ def differs(left: Expr, right: Expr, element: str, problem: str) -> Decl:
 
 
 def _refused(condition: Expr, element: str, problem: str) -> Decl:
-    words = Chain("&", (Ref(f'"{element} "'), Ref(f'"{problem}"')))
-    return Pragma("Compile_Time_Error", (condition, words))
+    words = f"{element} {problem}"
+    split: Expr = Ref(f'"{words}"')
+    if len(words) > LONG:
+        split = Chain("&", (Ref(f'"{element} "'), Ref(f'"{problem}"')))
+    return Pragma("Compile_Time_Error", (condition, split))
 
 
-def bounded(needs: Expr, window: Expr, element: str) -> list[Decl]:
-    """A window holds its demand and no more, and is none that ends before it begins.
+def none_of(conditions: Sequence[Expr], element: str, problem: str) -> list[Decl]:
+    """A build fails, with our words, when one of the conditions holds."""
+    return [_refused(chain("or else", conditions), element, problem)] if conditions else []
 
-    Ada rounds quotients towards zero: a negative window could hold the demand of what
-    needs more than all of the time. The least window that holds its demand equals it: a
-    longer one shows that a term is missing.
+
+def exact(claimed: Expr, terms: Sequence[Expr], element: str, what: str, least: int = 0) -> Decl:
+    """A build fails unless a claim is the longest of the terms, neither less nor more.
+
+    Of a window the demand within it is the only term: one that is shorter does not hold the
+    demand, and a longer one shows that a term is missing. It may have to be ``least`` at least.
     """
-    return [
-        refuse(number(0), window, element, SLOW),
-        refuse(needs, window, element, SLOW),
-        refuse(window, needs, element, LOOSE),
-    ]
+    longest = terms[-1]
+    for term in reversed(terms[:-1]):
+        longest = call("Time'Max", term, longest)
+    other: Expr = Chain("/=", (claimed, longest))
+    if least:
+        other = Chain("or else", (Chain("<", (claimed, number(least))), other))
+    return _refused(other, element, f"claims a wrong {what}")
 
 
-def least(bound: Expr, terms: list[Expr], element: str, problem: str) -> list[Decl]:
-    """A bound is the longest of the terms: not less than any, and not more than all."""
-    above = chain("and then", [Chain(">", (bound, term)) for term in terms])
-    return [
-        *(refuse(term, bound, element, problem) for term in terms),
-        _refused(above, element, LOOSE),
-    ]
-
-
-def assured(left: Expr, right: Expr) -> Decl:
-    """The same for gnatprove."""
-    return Pragma("Assert", (Chain("<=", (left, right)),))
+def assured(*pairs: tuple[Expr, Expr]) -> Decl:
+    """For gnatprove: of each pair the first is no more than the second."""
+    return Pragma("Assert", (both(*(Chain("<=", pair) for pair in pairs)),))

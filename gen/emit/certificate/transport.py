@@ -13,7 +13,7 @@ from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.system import Message, Reception, System
 from ravenchart.gen.model.transport import Transport
 
-from .terms import SLOW, assured, ceiling, least, name_of, named, plus, refuse, stated, times
+from .terms import assured, ceiling, exact, name_of, named, plus, refuse, stated, times
 
 
 def transferred(system: System) -> Iterator[tuple[Message, Transport, Reception, Reception]]:
@@ -49,12 +49,12 @@ def transfer_claims(system: System, claims: Claims) -> list[Decl]:
             Comment(words),
             stated(f"{own}_Row", transport.row),
             stated(f"{own}_Round_Trip", claim[0]),
-            *least(trip, [apart, times(ceiling(heard, row), row)], label, SLOW),
+            exact(trip, [apart, times(ceiling(heard, row), row)], label, "round trip"),
             stated(f"{own}_Transfer", claim[1]),
-            *least(bound, [plus(*last, segment)], label, SLOW),
+            exact(bound, [plus(*last, segment)], label, "transfer"),
             named(f"{own}_Renewal", plus(*last, apart)),
             stated(f"{own}_Timeout", transport.timeout),
             refuse(plus(trip, segment), Ref(f"{own}_Timeout"), label, "can be given up in time"),
-            assured(plus(trip, segment), Ref(f"{own}_Timeout")),
+            assured((plus(trip, segment), Ref(f"{own}_Timeout"))),
         ]
     return items

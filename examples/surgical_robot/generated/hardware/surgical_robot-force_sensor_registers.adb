@@ -10,9 +10,7 @@ with
   Refined_State =>
     (Registers => (Wrist_Control, Wrist_Status, Wrist_Sample))
 is
-   pragma Warnings
-     (GNATprove,
-      Off,
+   pragma Warnings (GNATprove, Off,
       "writing to * is assumed to have no effects on other*",
       Reason => "ASM-018, registers are where the model says");
 
@@ -34,8 +32,7 @@ is
      Address => System.Storage_Elements.To_Address (16#A000_5008#);
 
    procedure Write_Control
-     (Unit  : Force_Sensor_Units.Unit;
-      Value : Interfaces.Unsigned_32) is
+     (Unit  : Force_Sensor_Units.Unit; Value : Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Force_Sensor_Units.Wrist_Unit =>
@@ -44,8 +41,7 @@ is
    end Write_Control;
 
    procedure Read_Status
-     (Unit  : Force_Sensor_Units.Unit;
-      Value : out Interfaces.Unsigned_32) is
+     (Unit  : Force_Sensor_Units.Unit; Value : out Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Force_Sensor_Units.Wrist_Unit =>
@@ -54,8 +50,7 @@ is
    end Read_Status;
 
    procedure Read_Sample
-     (Unit  : Force_Sensor_Units.Unit;
-      Value : out Interfaces.Unsigned_16) is
+     (Unit  : Force_Sensor_Units.Unit; Value : out Interfaces.Unsigned_16) is
    begin
       case Unit is
          when Force_Sensor_Units.Wrist_Unit =>

@@ -22,9 +22,7 @@ with
         Right_Dac_1,
         Right_Dac_2))
 is
-   pragma Warnings
-     (GNATprove,
-      Off,
+   pragma Warnings (GNATprove, Off,
       "writing to * is assumed to have no effects on other*",
       Reason => "ASM-018, registers are where the model says");
 
@@ -93,8 +91,7 @@ is
      Address => System.Storage_Elements.To_Address (16#A000_1024#);
 
    procedure Read_Control
-     (Unit  : Io_Board_Units.Unit;
-      Value : out Interfaces.Unsigned_32) is
+     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Io_Board_Units.Left_Unit =>
@@ -105,8 +102,7 @@ is
    end Read_Control;
 
    procedure Write_Control
-     (Unit : Io_Board_Units.Unit;
-      Value : Interfaces.Unsigned_32) is
+     (Unit : Io_Board_Units.Unit; Value : Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Io_Board_Units.Left_Unit =>
@@ -117,8 +113,7 @@ is
    end Write_Control;
 
    procedure Read_Status
-     (Unit  : Io_Board_Units.Unit;
-      Value : out Interfaces.Unsigned_32) is
+     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Io_Board_Units.Left_Unit =>
@@ -129,8 +124,7 @@ is
    end Read_Status;
 
    procedure Read_Count_1
-     (Unit  : Io_Board_Units.Unit;
-      Value : out Interfaces.Unsigned_32) is
+     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Io_Board_Units.Left_Unit =>
@@ -141,8 +135,7 @@ is
    end Read_Count_1;
 
    procedure Read_Count_2
-     (Unit  : Io_Board_Units.Unit;
-      Value : out Interfaces.Unsigned_32) is
+     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Io_Board_Units.Left_Unit =>
@@ -153,8 +146,7 @@ is
    end Read_Count_2;
 
    procedure Write_Dac_1
-     (Unit : Io_Board_Units.Unit;
-      Value : Interfaces.Unsigned_32) is
+     (Unit : Io_Board_Units.Unit; Value : Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Io_Board_Units.Left_Unit =>
@@ -165,8 +157,7 @@ is
    end Write_Dac_1;
 
    procedure Write_Dac_2
-     (Unit : Io_Board_Units.Unit;
-      Value : Interfaces.Unsigned_32) is
+     (Unit : Io_Board_Units.Unit; Value : Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Io_Board_Units.Left_Unit =>

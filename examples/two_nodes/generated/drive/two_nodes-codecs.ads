@@ -78,8 +78,7 @@ is
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Wish)
           = Two_Nodes.Wish'Pos (Item.Wish)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Target)
             = Ravenchart.Number (Item.Target)
           and then (Pack'Result and 16#FFFFFFFFFFFC0000#) = 0;
@@ -99,8 +98,7 @@ is
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Wish)
                    = Two_Nodes.Wish'Pos (Item.Wish)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Target)
                      = Ravenchart.Number (Item.Target)
              else Item = Two_Nodes.Default_Servo_Order);
@@ -152,8 +150,7 @@ is
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Condition)
           = Two_Nodes.Condition'Pos (Item.Condition)
-          and then Ravenchart.Can.Layouts.Number_In
-              (Pack'Result,
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result,
                Signal_Position)
             = Ravenchart.Number (Item.Position)
           and then (Pack'Result and 16#FFFFFFFFFFF80000#) = 0;
@@ -169,17 +166,14 @@ is
           Valid
           = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Condition)
              in 0 .. 2
-             and then Ravenchart.Can.Layouts.Number_In
-                 (Word,
+             and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Position)
                in 0 .. 100_000)
           and then (if Valid
-                then Ravenchart.Can.Layouts.Number_In
-                     (Word,
+                then Ravenchart.Can.Layouts.Number_In (Word,
                       Signal_Condition)
                    = Two_Nodes.Condition'Pos (Item.Condition)
-                   and then Ravenchart.Can.Layouts.Number_In
-                       (Word,
+                   and then Ravenchart.Can.Layouts.Number_In (Word,
                         Signal_Position)
                      = Ravenchart.Number (Item.Position)
              else Item = Two_Nodes.Default_Servo_Report);

@@ -17,11 +17,7 @@ is
 
    --  [control.table] the activities, in the order in which they run
    type Row is
-     (Link_Watch_Drive,
-      Servo_Ports,
-      Servo_Drive,
-      Servo_Control,
-      Servo_Tell);
+     (Link_Watch_Drive, Servo_Ports, Servo_Drive, Servo_Control, Servo_Tell);
 
    procedure Execute (Item : Row);
 
@@ -64,16 +60,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Control_Priority,
-      "control " & "has another priority than its certificate");
+      "control has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Control_T,
-      "control " & "has another period than its certificate");
+      "control has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Control_D,
-      "control " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "control " & "has another offset than its certificate");
+      "control has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "control has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Link_Watch_Drive).Divisor
       = Timing_Certificate.Link_Watch_Drive_Divisor

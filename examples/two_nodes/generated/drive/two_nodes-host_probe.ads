@@ -23,8 +23,8 @@ is
 
    pragma Compile_Time_Error
      (Probe.Given_Period /= Timing_Certificate.Drive_Probe_T,
-      "drive.probe " & "has another period than its certificate");
+      "drive.probe has another period than its certificate");
    pragma Compile_Time_Error
      (Probe.Given_Priority /= Timing_Certificate.Drive_Probe_Priority,
-      "drive.probe " & "has another priority than its certificate");
+      "drive.probe has another priority than its certificate");
 end Two_Nodes.Host_Probe;

@@ -11,41 +11,30 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    function Select_Transition
-     (Leaf : Drive_States.Leaf;
-      Now : Occurrence;
-      Ins : Inputs)
+     (Leaf : Drive_States.Leaf; Now : Occurrence; Ins : Inputs)
      return Selection is
      (case Leaf is
         when Drive_States.Standing =>
            (if Now = On_Told
                and then Ins.Order.Value.Wish = Two_Nodes.Follow
                then Go
-            elsif Now = On_Nobody_Tells
-               then Lost_At_Rest
-            elsif Now = On_Bus_Failed
-               then Cut_Off_At_Rest
+            elsif Now = On_Nobody_Tells then Lost_At_Rest
+            elsif Now = On_Bus_Failed then Cut_Off_At_Rest
             else None),
         when Drive_States.Following =>
            (if Now = On_Told and then Ins.Order.Value.Wish = Two_Nodes.Rest
                then Rest
-            elsif Now = On_Nobody_Tells
-               then Lost
-            elsif Now = On_Bus_Failed
-               then Cut_Off
+            elsif Now = On_Nobody_Tells then Lost
+            elsif Now = On_Bus_Failed then Cut_Off
             else None),
         when Drive_States.Safe =>
-           (if Now = On_Bus_Failed
-               then Cut_Off_Besides
-            elsif Now = On_Told
-               then Back
+           (if Now = On_Bus_Failed then Cut_Off_Besides
+            elsif Now = On_Told then Back
             else None),
         when Drive_States.Safe_Off_Bus =>
-           (if Now = On_Bus_Failed
-               then Still_Cut_Off
-            elsif Now = On_Told
-               then Told_Off_Bus
-            elsif Now = On_Bus_Back
-               then Connected
+           (if Now = On_Bus_Failed then Still_Cut_Off
+            elsif Now = On_Told then Told_Off_Bus
+            elsif Now = On_Bus_Back then Connected
             else None))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins);
 
@@ -53,20 +42,13 @@ is
    with Ghost
    is
       type Node is
-        (Nowhere,
-         Standing,
-         Following,
-         Safe,
-         Safe_Off_Bus,
-         Disorder);
+        (Nowhere, Standing, Following, Safe, Safe_Off_Bus, Disorder);
 
       function Innermost (Leaf : Drive_States.Leaf) return Node is
         (Node'Val (Drive_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -83,16 +65,14 @@ is
    procedure Fire (Self : in out Region; Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
    begin
@@ -124,9 +104,7 @@ is
          when Cut_Off_Besides =>
             Active := Chart.Moved (Active, Chart.Safe, Chart.Safe_Off_Bus);
             Self.Leaf := Drive_States.Safe_Off_Bus;
-         when Still_Cut_Off =>
-            null;
-         when Told_Off_Bus =>
+         when Still_Cut_Off | Told_Off_Bus =>
             null;
          when Connected =>
             Active := Chart.Moved (Active, Chart.Safe_Off_Bus, Chart.Safe);

@@ -14,29 +14,14 @@ is
 
    --  [Linear_Servo.Drive] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_Told,
-      On_Nobody_Tells,
-      On_Bus_Failed,
-      On_Bus_Back,
+     (Start_Of_Region, On_Told, On_Nobody_Tells, On_Bus_Failed, On_Bus_Back,
       Conditions);
 
    --  [Linear_Servo.Drive.transitions] in order of precedence, innermost
    --  source first
    type Selection is
-     (Initial_Entry,
-      Go,
-      Rest,
-      Lost_At_Rest,
-      Lost,
-      Cut_Off_At_Rest,
-      Cut_Off,
-      Cut_Off_Besides,
-      Still_Cut_Off,
-      Told_Off_Bus,
-      Connected,
-      Back,
-      None);
+     (Initial_Entry, Go, Rest, Lost_At_Rest, Lost, Cut_Off_At_Rest, Cut_Off,
+      Cut_Off_Besides, Still_Cut_Off, Told_Off_Bus, Connected, Back, None);
 
    subtype Firing is Selection range Initial_Entry .. Back;
    subtype Transition is Selection range Go .. Back;
@@ -87,8 +72,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Drive_States.Leaf)
+     (T : Transition; Leaf : Drive_States.Leaf)
      return Boolean is
      (case T is
         when Go => Leaf = Drive_States.Standing,
@@ -105,8 +89,7 @@ is
    --  Is its source the leaf, or around it?
 
    function Target
-     (T : Firing;
-      Leaf : Drive_States.Leaf)
+     (T : Firing; Leaf : Drive_States.Leaf)
      return Drive_States.Leaf is
      (case T is
         when Initial_Entry => Drive_States.Standing,
@@ -161,11 +144,9 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old));
    --  One run-to-completion step.
 end Two_Nodes.Linear_Servo.Drive;

@@ -24,11 +24,8 @@ is
                     (Position
                      + Two_Nodes.Unit_Um'Min
                          (Two_Nodes.Unit_Um'Max
-                            (Order.Value.Target - Position,
-                             (-400)),
-                          400),
-                     0),
-                  100_000)
+                            (Order.Value.Target - Position, (-400)), 400),
+                     0), 100_000)
          else Position);
    end Control;
 

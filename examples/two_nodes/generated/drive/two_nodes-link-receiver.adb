@@ -16,7 +16,6 @@ is
    pragma Warnings (Off, "*can never be *");
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
-
    Frame : Ravenchart.Can.Any_Frames.Any_Frame :=
      Ravenchart.Can.Any_Frames.Null_Any_Frame;
 
@@ -39,22 +38,17 @@ is
       then
          Codecs.Type_Servo_Order.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Supervisor_Order_Item,
-            Valid);
+            Supervisor_Order_Item, Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Link_Supervisor_Order_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_Supervisor_Order));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Supervisor_Order_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Supervisor_Order_Message, 0);
             Servo.Put_Order (Supervisor_Order_Item);
          end if;
       end if;

@@ -37,15 +37,12 @@ is
       pragma Assert
         (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Servo_Report));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Servo_Report_Message,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Servo_Report_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Servo_Report_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));

@@ -21,28 +21,23 @@ is
    procedure Execute (Item : Row) is
       Executed : Ravenchart.Element_Id := 0;
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Activity,
-         Elements.Reception_Drive_Processor
-         + 1
-         + Ravenchart.Element_Id (Row'Pos (Item)),
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Activity,
+         Elements.Reception_Drive_Processor + 1
+         + Ravenchart.Element_Id (Row'Pos (Item)), 0);
       case Item is
          when Link_Receive_Drive =>
             Link.Receiver.Run_Receive (Executed);
       end case;
       pragma Assert
         (Executed
-         = (Elements.Reception_Drive_Processor
-            + 1
-            + Ravenchart.Element_Id (Row'Pos (Item))));
+         = Elements.Reception_Drive_Processor + 1
+           + Ravenchart.Element_Id (Row'Pos (Item)));
    end Execute;
 
    procedure On_Deadline_Miss is
    begin
       Health_Counts.Counters.Record_Fault (Ravenchart.Health.Deadline_Miss);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Fault,
+      Trace.Buffer.Note (Ravenchart.Traces.Fault,
          Elements.Reception_Drive_Processor,
          Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Deadline_Miss));
    end On_Deadline_Miss;

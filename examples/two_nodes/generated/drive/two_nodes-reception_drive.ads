@@ -41,11 +41,11 @@ is
    pragma Compile_Time_Error
      (Processor.Given_Priority
       /= Timing_Certificate.Reception_Drive_Priority,
-      "reception_drive " & "has another priority than its certificate");
+      "reception_drive has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Separation /= Timing_Certificate.Reception_Drive_T,
-      "reception_drive " & "has another separation than its certificate");
+      "reception_drive has another separation than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Reception_Drive_D,
-      "reception_drive " & "has another deadline than its certificate");
+      "reception_drive has another deadline than its certificate");
 end Two_Nodes.Reception_Drive;

@@ -43,15 +43,11 @@ is
       Found : Reception_Drive.Processor.Statistics;
    begin
       Reception_Drive.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Reception_Drive_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Reception_Drive_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Reception_Drive.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Reception_Drive_Processor
-            + 1
+           (Elements.Reception_Drive_Processor + 1
             + Ravenchart.Element_Id (Reception_Drive.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -62,15 +58,11 @@ is
       Found : Control.Processor.Statistics;
    begin
       Control.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Control_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Control_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Control.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Control_Processor
-            + 1
+           (Elements.Control_Processor + 1
             + Ravenchart.Element_Id (Control.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -99,8 +91,7 @@ is
       Link.Controller.Read_Counters (Link_Counters);
       Ravenchart.Hosts.Put_Lost ("link.lost_out", Link_Counters.Lost_Out);
       Ravenchart.Hosts.Put_Lost ("link.lost_in", Link_Counters.Lost_In);
-      Ravenchart.Hosts.Put_Lost
-        ("link.rejected_lines",
+      Ravenchart.Hosts.Put_Lost ("link.rejected_lines",
          Link_Counters.Rejected_Lines);
       Host_Probe.Probe.Read (Late);
       Ravenchart.Hosts.Put_Host_Latency (Late);

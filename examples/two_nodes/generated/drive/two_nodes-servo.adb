@@ -62,17 +62,12 @@ is
 
    procedure Put_Order (Item : Two_Nodes.Servo_Order) is
       Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings
-        (GNATprove,
-         Off,
+      pragma Warnings (GNATprove, Off,
          """Status"" is set by ""Put"" but not used*",
          Reason => "a new sample replaces the old one");
    begin
       Order_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Servo_Order,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Servo_Order, 0);
    end Put_Order;
 
    procedure Offer (Item : Linear_Servo.Event) is
@@ -85,61 +80,49 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Servo_Drive,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Servo_Told,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Servo_Told, 0);
          when Linear_Servo.Nobody_Tells =>
             Drive_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Servo_Drive,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Servo_Nobody_Tells,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Servo_Nobody_Tells, 0);
          when Linear_Servo.Bus_Failed =>
             Drive_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Servo_Drive,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Servo_Bus_Failed,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Servo_Bus_Failed, 0);
          when Linear_Servo.Bus_Back =>
             Drive_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Servo_Drive,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Servo_Bus_Back,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Servo_Bus_Back, 0);
       end case;
    end Offer;
 
@@ -167,16 +150,13 @@ is
          when Linear_Servo.Order_Port.Nothing =>
             null;
          when Linear_Servo.Order_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Servo_Order,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Servo_Order, 0);
             Offer (Linear_Servo.Told);
          when Linear_Servo.Order_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Servo_Order,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -204,16 +184,13 @@ is
       Linear_Servo.Drive.Step (Drive_Region, Now, Ins, Fired);
       if Fired /= Linear_Servo.Drive.None then
          if Fired in Linear_Servo.Drive.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Servo_Drive,
                Linear_Servo.Drive.Selection'Pos (Fired)
                - Linear_Servo.Drive.Selection'Pos
                    (Linear_Servo.Drive.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
-            Elements.Servo_Drive,
+         Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Servo_Drive,
             Linear_Servo.Drive_States.Leaf'Pos (Drive_Region.Leaf));
       end if;
    end Step_Drive;

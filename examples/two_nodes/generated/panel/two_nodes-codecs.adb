@@ -64,14 +64,12 @@ is
         Pre => Raw <= 16#1#,
         Post =>
           (Raw <= 1)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Wish)
              in 0 .. 1)
           and then (if Raw <= 1
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Wish)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Wish)
                    = Two_Nodes.Wish'Pos (Value_Of_Type_Wish (Raw)))
       is
       begin
@@ -79,8 +77,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Wish)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Wish;
@@ -102,14 +99,12 @@ is
         Pre => Raw <= 16#1FFFF#,
         Post =>
           (Raw <= 100_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Target)
              in 0 .. 100_000)
           and then (if Raw <= 100_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Target)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Target)
                    = Ravenchart.Number (Value_Of_Type_Position (Raw)))
       is
       begin
@@ -117,8 +112,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Target)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Target;
@@ -201,14 +195,12 @@ is
         Pre => Raw <= 16#3#,
         Post =>
           (Raw <= 2)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Condition)
              in 0 .. 2)
           and then (if Raw <= 2
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Condition)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Condition)
                    = Two_Nodes.Condition'Pos (Value_Of_Type_Condition (Raw)))
       is
       begin
@@ -216,8 +208,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Condition)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Condition;
@@ -239,14 +230,12 @@ is
         Pre => Raw <= 16#1FFFF#,
         Post =>
           (Raw <= 100_000)
-          = (Ravenchart.Can.Layouts.Counted
-               (Interfaces.Unsigned_64 (Raw),
+          = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Position)
              in 0 .. 100_000)
           and then (if Raw <= 100_000
                 then Ravenchart.Can.Layouts.Counted
-                     (Interfaces.Unsigned_64 (Raw),
-                      Signal_Position)
+                     (Interfaces.Unsigned_64 (Raw), Signal_Position)
                    = Ravenchart.Number (Value_Of_Type_Position (Raw)))
       is
       begin
@@ -254,8 +243,7 @@ is
            (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
             = Ravenchart.Number (Raw));
          pragma Assert
-           (Ravenchart.Can.Layouts.Counted
-              (Interfaces.Unsigned_64 (Raw),
+           (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                Signal_Position)
             = Ravenchart.Number (Raw));
       end Lemma_Value_Position;
@@ -265,8 +253,7 @@ is
          Local_Position  : Interfaces.Unsigned_32)
         return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Condition)
-         or Interfaces.Shift_Left
-             (Interfaces.Unsigned_64 (Local_Position),
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Position),
               2))
       with
         Pre => Local_Condition <= 16#3# and then Local_Position <= 16#1FFFF#,

@@ -23,8 +23,8 @@ is
 
    pragma Compile_Time_Error
      (Probe.Given_Period /= Timing_Certificate.Panel_Probe_T,
-      "panel.probe " & "has another period than its certificate");
+      "panel.probe has another period than its certificate");
    pragma Compile_Time_Error
      (Probe.Given_Priority /= Timing_Certificate.Panel_Probe_Priority,
-      "panel.probe " & "has another priority than its certificate");
+      "panel.probe has another priority than its certificate");
 end Two_Nodes.Host_Probe;

@@ -16,7 +16,6 @@ is
    pragma Warnings (Off, "*can never be *");
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
-
    Frame : Ravenchart.Can.Any_Frames.Any_Frame :=
      Ravenchart.Can.Any_Frames.Null_Any_Frame;
 
@@ -38,23 +37,18 @@ is
            = Ravenchart.Can.Standard
       then
          Codecs.Type_Servo_Report.Unpack
-           (Ravenchart.Can.Any_Frames.Payload (Frame),
-            Servo_Report_Item,
+           (Ravenchart.Can.Any_Frames.Payload (Frame), Servo_Report_Item,
             Valid);
          if Valid
-            and then Ravenchart.Can.Any_Frames.Carries
-                (Frame,
+            and then Ravenchart.Can.Any_Frames.Carries (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
                  Timing_Certificate.Link_Servo_Report_Length)
          then
             pragma Assert
-              (Ravenchart.Can.Layouts.Is_Framed
-                 (Frame,
+              (Ravenchart.Can.Layouts.Is_Framed (Frame,
                   Codecs.Frame_Servo_Report));
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Arrived,
-               Elements.Servo_Report_Message,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+               Elements.Servo_Report_Message, 0);
             Supervisor.Put_Report (Servo_Report_Item);
          end if;
       end if;

@@ -32,23 +32,20 @@ is
       Controller.Read_Faults (Now);
       Found := Ravenchart.Can.Fault_Notices.Between (Seen, Now);
       if Now.State /= Seen.State then
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
+         Trace.Buffer.Note (Ravenchart.Traces.State,
             Elements.Panel_Link_Bus,
             Ravenchart.Can.Controller_State'Pos (Now.State));
       end if;
       Seen := Now;
       if Found.Error_Passive then
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Panel_Link_Bus,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Can_Error_Passive));
          Two_Nodes.Supervisor.Offer (Two_Nodes.Traveller.Bus_Failed);
       end if;
       if Found.Bus_Off then
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Panel_Link_Bus,
             Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Can_Bus_Off));
          Two_Nodes.Supervisor.Offer (Two_Nodes.Traveller.Bus_Failed);
@@ -56,11 +53,7 @@ is
       if Found.Recovered then
          Two_Nodes.Supervisor.Offer (Two_Nodes.Traveller.Bus_Back);
       end if;
-      Ravenchart.Can.Fault_Notices.Count_Off
-        (Left,
-         Found,
-         Now.State,
-         5,
+      Ravenchart.Can.Fault_Notices.Count_Off (Left, Found, Now.State, 5,
          Is_Due);
       if Is_Due then
          Controller.Request_Recovery;

@@ -35,19 +35,15 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       pragma Assert
-        (Ravenchart.Can.Layouts.Is_Framed
-           (Frame,
+        (Ravenchart.Can.Layouts.Is_Framed (Frame,
             Codecs.Frame_Supervisor_Order));
       Controller.Send (Frame, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Supervisor_Order_Message,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent,
+         Elements.Supervisor_Order_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note
-           (Ravenchart.Traces.Fault,
+         Trace.Buffer.Note (Ravenchart.Traces.Fault,
             Elements.Supervisor_Order_Message,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));

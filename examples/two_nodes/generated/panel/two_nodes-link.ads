@@ -49,15 +49,14 @@ is
    pragma Compile_Time_Error
      (Controller.Given_Priority
       /= Timing_Certificate.Link_Driver_Tx_Supervisor_Order_Priority,
-      "link " & "has another priority of its driver than its certificate");
+      "link has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Link_Bit_Rate
       and then Controller.Given_Setting.Data_Rate = 0);
 
    --  [link] all that is received passes, and its frame holds its signals
    pragma Assert
-     (Accepts
-        (Codecs.Frame_Servo_Report.Id,
+     (Accepts (Codecs.Frame_Servo_Report.Id,
          Codecs.Frame_Servo_Report.Format)
       and then Codecs.Type_Servo_Report.Fits_In (Codecs.Frame_Servo_Report));
 
@@ -68,8 +67,7 @@ is
      return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
-       Ravenchart.Can.Layouts.Is_Framed
-         (Frame_Of_Supervisor_Order'Result,
+       Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Supervisor_Order'Result,
           Codecs.Frame_Supervisor_Order)
        and then Ravenchart.Can.Any_Frames.Payload
            (Frame_Of_Supervisor_Order'Result)

@@ -41,11 +41,11 @@ is
    pragma Compile_Time_Error
      (Processor.Given_Priority
       /= Timing_Certificate.Reception_Panel_Priority,
-      "reception_panel " & "has another priority than its certificate");
+      "reception_panel has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Separation /= Timing_Certificate.Reception_Panel_T,
-      "reception_panel " & "has another separation than its certificate");
+      "reception_panel has another separation than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Reception_Panel_D,
-      "reception_panel " & "has another deadline than its certificate");
+      "reception_panel has another deadline than its certificate");
 end Two_Nodes.Reception_Panel;

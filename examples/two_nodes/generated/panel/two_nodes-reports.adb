@@ -43,15 +43,11 @@ is
       Found : Reception_Panel.Processor.Statistics;
    begin
       Reception_Panel.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Reception_Panel_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Reception_Panel_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Reception_Panel.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Reception_Panel_Processor
-            + 1
+           (Elements.Reception_Panel_Processor + 1
             + Ravenchart.Element_Id (Reception_Panel.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -62,15 +58,11 @@ is
       Found : Supervision.Processor.Statistics;
    begin
       Supervision.Processor.Observe (Found);
-      Ravenchart.Hosts.Put_Processor
-        (Elements.Supervision_Processor,
-         Found.Releases,
-         Found.Misses,
-         Found.Worst_Response);
+      Ravenchart.Hosts.Put_Processor (Elements.Supervision_Processor,
+         Found.Releases, Found.Misses, Found.Worst_Response);
       for Row in Supervision.Row loop
          Ravenchart.Hosts.Put_Activity
-           (Elements.Supervision_Processor
-            + 1
+           (Elements.Supervision_Processor + 1
             + Ravenchart.Element_Id (Supervision.Row'Pos (Row)),
             Found.Worst_Execution (Row));
       end loop;
@@ -99,8 +91,7 @@ is
       Link.Controller.Read_Counters (Link_Counters);
       Ravenchart.Hosts.Put_Lost ("link.lost_out", Link_Counters.Lost_Out);
       Ravenchart.Hosts.Put_Lost ("link.lost_in", Link_Counters.Lost_In);
-      Ravenchart.Hosts.Put_Lost
-        ("link.rejected_lines",
+      Ravenchart.Hosts.Put_Lost ("link.rejected_lines",
          Link_Counters.Rejected_Lines);
       Host_Probe.Probe.Read (Late);
       Ravenchart.Hosts.Put_Host_Latency (Late);

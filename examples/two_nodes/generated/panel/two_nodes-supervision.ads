@@ -17,9 +17,7 @@ is
 
    --  [supervision.table] the activities, in the order in which they run
    type Row is
-     (Link_Watch_Panel,
-      Supervisor_Ports,
-      Supervisor_Mission,
+     (Link_Watch_Panel, Supervisor_Ports, Supervisor_Mission,
       Supervisor_Plan);
 
    procedure Execute (Item : Row);
@@ -60,16 +58,15 @@ is
 
    pragma Compile_Time_Error
      (Processor.Given_Priority /= Timing_Certificate.Supervision_Priority,
-      "supervision " & "has another priority than its certificate");
+      "supervision has another priority than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Period /= Timing_Certificate.Supervision_T,
-      "supervision " & "has another period than its certificate");
+      "supervision has another period than its certificate");
    pragma Compile_Time_Error
      (Processor.Given_Deadline /= Timing_Certificate.Supervision_D,
-      "supervision " & "has another deadline than its certificate");
-   pragma Compile_Time_Error
-     (Processor.Given_Offset /= 0,
-      "supervision " & "has another offset than its certificate");
+      "supervision has another deadline than its certificate");
+   pragma Compile_Time_Error (Processor.Given_Offset /= 0,
+      "supervision has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Link_Watch_Panel).Divisor
       = Timing_Certificate.Link_Watch_Panel_Divisor

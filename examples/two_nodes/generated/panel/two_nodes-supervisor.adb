@@ -59,17 +59,13 @@ is
 
    procedure Put_Report (Item : Two_Nodes.Servo_Report) is
       Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings
-        (GNATprove,
-         Off,
+      pragma Warnings (GNATprove, Off,
          """Status"" is set by ""Put"" but not used*",
          Reason => "a new sample replaces the old one");
    begin
       Report_Mailbox.Put (Item, Status);
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Arrived,
-         Elements.Supervisor_Report,
-         0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived,
+         Elements.Supervisor_Report, 0);
    end Put_Report;
 
    procedure Offer (Item : Traveller.Event) is
@@ -82,54 +78,43 @@ is
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Supervisor_Mission,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Supervisor_Servo_Lost,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Supervisor_Servo_Lost, 0);
          when Traveller.Bus_Failed =>
             Mission_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Supervisor_Mission,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Supervisor_Bus_Failed,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Supervisor_Bus_Failed, 0);
          when Traveller.Bus_Back =>
             Mission_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
                Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note
-                 (Ravenchart.Traces.Fault,
+               Trace.Buffer.Note (Ravenchart.Traces.Fault,
                   Elements.Supervisor_Mission,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Raised,
-               Elements.Supervisor_Bus_Back,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Raised,
+               Elements.Supervisor_Bus_Back, 0);
       end case;
    end Offer;
 
    procedure Send_Order (Item : Two_Nodes.Servo_Order) is
    begin
-      Trace.Buffer.Note
-        (Ravenchart.Traces.Sent,
-         Elements.Supervisor_Order,
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Supervisor_Order,
          0);
       Link.Send_Supervisor_Order (Item);
    end Send_Order;
@@ -152,15 +137,12 @@ is
          when Traveller.Report_Port.Nothing =>
             null;
          when Traveller.Report_Port.Arrival =>
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Handled,
-               Elements.Supervisor_Report,
-               0);
+            Trace.Buffer.Note (Ravenchart.Traces.Handled,
+               Elements.Supervisor_Report, 0);
          when Traveller.Report_Port.Became_Stale =>
             Health_Counts.Counters.Record_Fault
               (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Fault,
+            Trace.Buffer.Note (Ravenchart.Traces.Fault,
                Elements.Supervisor_Report,
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
@@ -188,15 +170,13 @@ is
       Traveller.Mission.Step (Mission_Region, Now, Ins, Fired);
       if Fired /= Traveller.Mission.None then
          if Fired in Traveller.Mission.Transition then
-            Trace.Buffer.Note
-              (Ravenchart.Traces.Transition,
+            Trace.Buffer.Note (Ravenchart.Traces.Transition,
                Elements.Supervisor_Mission,
                Traveller.Mission.Selection'Pos (Fired)
                - Traveller.Mission.Selection'Pos
                    (Traveller.Mission.Transition'First));
          end if;
-         Trace.Buffer.Note
-           (Ravenchart.Traces.State,
+         Trace.Buffer.Note (Ravenchart.Traces.State,
             Elements.Supervisor_Mission,
             Traveller.Mission_States.Leaf'Pos (Mission_Region.Leaf));
       end if;

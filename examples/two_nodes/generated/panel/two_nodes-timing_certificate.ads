@@ -2,7 +2,10 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+
 with System;
+with Ravenchart.Response_Times;
 
 package Two_Nodes.Timing_Certificate
 with SPARK_Mode, Pure
@@ -16,13 +19,16 @@ is
    Model_Digest : constant String :=
      "5e36900fdff3c011b2622ecf67cf6c8302468247b5bcc356cc99991444eefc3b";
 
+   use Ravenchart.Response_Times;
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period. A
-   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W, and equals it: where it is
-   --  more, W is too short; where it is less, a term is missing.
+   --  from the event, W the time claimed from the start of a busy period.
+   --  X_Up (W) is what X and all that goes before it ask for within W,
+   --  X_Rest (W) what X and those listed behind it at its level do. Needs
+   --  is the demand that arises within W, and equals it: where it is more,
+   --  W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_Panel_R : constant := 245_000;
@@ -47,34 +53,29 @@ is
    Drive_Critical_Section : constant := 5_000;
 
    --  [reception_panel] released by arrivals, no closer than T; it may wait
-   --  for T to be over as well. B: supervision may be inside
+   --  for T to be over as well. B: supervision in
    --  supervisor.report.mailbox.
    Reception_Panel_Priority : constant := System.Default_Priority + 4;
    Link_Receive_Panel_Budget : constant := 40_000;
    Reception_Panel_T : constant := 1_000_000;
    Reception_Panel_D : constant := 1_000_000;
    Reception_Panel_J : constant := 0;
-   Reception_Panel_A : constant :=
-     Reception_Panel_J + (Reception_Panel_T - 1);
    Reception_Panel_C : constant :=
      Link_Receive_Panel_Budget + 4 * Panel_Context_Switch;
    Reception_Panel_B : constant := Panel_Critical_Section;
 
    --  [reception_drive] released by arrivals, no closer than T; it may wait
-   --  for T to be over as well. B: control may be inside
-   --  servo.order.mailbox.
+   --  for T to be over as well. B: control in servo.order.mailbox.
    Reception_Drive_Priority : constant := System.Default_Priority + 3;
    Link_Receive_Drive_Budget : constant := 40_000;
    Reception_Drive_T : constant := 1_000_000;
    Reception_Drive_D : constant := 1_000_000;
    Reception_Drive_J : constant := 0;
-   Reception_Drive_A : constant :=
-     Reception_Drive_J + (Reception_Drive_T - 1);
    Reception_Drive_C : constant :=
      Link_Receive_Drive_Budget + 4 * Drive_Context_Switch;
    Reception_Drive_B : constant := Drive_Critical_Section;
 
-   --  [supervision] released every T. B: main may be inside panel.health.
+   --  [supervision] released every T. B: main in panel.health.
    Supervision_Priority : constant := System.Default_Priority + 1;
    Link_Watch_Panel_Budget : constant := 50_000;
    Supervisor_Ports_Budget : constant := 100_000;
@@ -84,57 +85,31 @@ is
    Supervision_D : constant := 20_000_000;
    Link_Watch_Panel_Divisor : constant := 1;
    Link_Watch_Panel_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Link_Watch_Panel_Divisor /= 1,
-      "link.watch_panel " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Link_Watch_Panel_Phase + 1) > Link_Watch_Panel_Divisor,
-      "link.watch_panel " & "has a phase beyond its divisor");
-
    Supervisor_Ports_Divisor : constant := 1;
    Supervisor_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Supervisor_Ports_Divisor /= 1,
-      "supervisor.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Supervisor_Ports_Phase + 1) > Supervisor_Ports_Divisor,
-      "supervisor.ports " & "has a phase beyond its divisor");
-
    Supervisor_Mission_Divisor : constant := 1;
    Supervisor_Mission_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Supervisor_Mission_Divisor /= 1,
-      "supervisor.Mission "
-      & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Supervisor_Mission_Phase + 1) > Supervisor_Mission_Divisor,
-      "supervisor.Mission " & "has a phase beyond its divisor");
-
    Supervisor_Plan_Divisor : constant := 1;
    Supervisor_Plan_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Supervisor_Plan_Divisor /= 1,
-      "supervisor.plan " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Supervisor_Plan_Phase + 1) > Supervisor_Plan_Divisor,
-      "supervisor.plan " & "has a phase beyond its divisor");
-
+     (Link_Watch_Panel_Divisor /= 1
+      or else Link_Watch_Panel_Phase /= 0
+      or else Supervisor_Ports_Divisor /= 1
+      or else Supervisor_Ports_Phase /= 0
+      or else Supervisor_Mission_Divisor /= 1
+      or else Supervisor_Mission_Phase /= 0
+      or else Supervisor_Plan_Divisor /= 1
+      or else Supervisor_Plan_Phase /= 0,
+      "supervision must keep divisors and phases of its rows");
    Supervision_J : constant := 0;
-   Supervision_A : constant := Supervision_J + (Supervision_T - 1);
    Supervision_C : constant :=
-     Link_Watch_Panel_Budget
-     + Supervisor_Ports_Budget
-     + Supervisor_Mission_Budget
-     + Supervisor_Plan_Budget
+     Link_Watch_Panel_Budget + Supervisor_Ports_Budget
+     + Supervisor_Mission_Budget + Supervisor_Plan_Budget
      + 2 * Panel_Context_Switch;
    Supervision_B : constant := Panel_Critical_Section;
 
-   --  [control] released every T. B: main may be inside drive.health. C:
-   --  what every release executes; C_2: rows of every 2th release.
+   --  [control] released every T. B: main in drive.health. C: what every
+   --  release executes; C_2: rows of every 2th release.
    Control_Priority : constant := System.Default_Priority + 2;
    Link_Watch_Drive_Budget : constant := 50_000;
    Servo_Ports_Budget : constant := 100_000;
@@ -145,187 +120,160 @@ is
    Control_D : constant := 10_000_000;
    Link_Watch_Drive_Divisor : constant := 2;
    Link_Watch_Drive_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Link_Watch_Drive_Divisor /= 2,
-      "link.watch_drive "
-      & "is in the sum C_2, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Link_Watch_Drive_Phase + 1) > Link_Watch_Drive_Divisor,
-      "link.watch_drive " & "has a phase beyond its divisor");
-
    Servo_Ports_Divisor : constant := 1;
    Servo_Ports_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Servo_Ports_Divisor /= 1,
-      "servo.ports " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Servo_Ports_Phase + 1) > Servo_Ports_Divisor,
-      "servo.ports " & "has a phase beyond its divisor");
-
    Servo_Drive_Divisor : constant := 1;
    Servo_Drive_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Servo_Drive_Divisor /= 1,
-      "servo.Drive " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Servo_Drive_Phase + 1) > Servo_Drive_Divisor,
-      "servo.Drive " & "has a phase beyond its divisor");
-
    Servo_Control_Divisor : constant := 1;
    Servo_Control_Phase : constant := 0;
-
-   pragma Compile_Time_Error
-     (Servo_Control_Divisor /= 1,
-      "servo.control " & "is in the sum C, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Servo_Control_Phase + 1) > Servo_Control_Divisor,
-      "servo.control " & "has a phase beyond its divisor");
-
    Servo_Tell_Divisor : constant := 2;
    Servo_Tell_Phase : constant := 0;
-
    pragma Compile_Time_Error
-     (Servo_Tell_Divisor /= 2,
-      "servo.tell " & "is in the sum C_2, which its divisor contradicts");
-   pragma Compile_Time_Error
-     ((Servo_Tell_Phase + 1) > Servo_Tell_Divisor,
-      "servo.tell " & "has a phase beyond its divisor");
-
+     (Link_Watch_Drive_Divisor /= 2
+      or else Link_Watch_Drive_Phase >= Link_Watch_Drive_Divisor
+      or else Servo_Ports_Divisor /= 1
+      or else Servo_Ports_Phase /= 0
+      or else Servo_Drive_Divisor /= 1
+      or else Servo_Drive_Phase /= 0
+      or else Servo_Control_Divisor /= 1
+      or else Servo_Control_Phase /= 0
+      or else Servo_Tell_Divisor /= 2
+      or else Servo_Tell_Phase >= Servo_Tell_Divisor,
+      "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
-   Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
-     Servo_Ports_Budget
-     + Servo_Drive_Budget
-     + Servo_Control_Budget
+     Servo_Ports_Budget + Servo_Drive_Budget + Servo_Control_Budget
      + 2 * Drive_Context_Switch;
    Control_C_2 : constant := Link_Watch_Drive_Budget + Servo_Tell_Budget;
    Control_B : constant := Drive_Critical_Section;
 
-   --  [link.driver_tx.supervisor_order] the driver's work, released by
-   --  supervision, which is J late. B: supervision may be inside
-   --  panel.link.transmit.
+   --  [link.driver_tx.supervisor_order] the driver, released by
+   --  supervision. B: supervision in panel.link.transmit.
    Link_Driver_Tx_Supervisor_Order_Priority : constant :=
      System.Default_Priority + 5;
    Link_Driver_Tx_Supervisor_Order_Budget : constant := 40_000;
    Link_Driver_Tx_Supervisor_Order_T : constant := 20_000_000;
    Link_Driver_Tx_Supervisor_Order_D : constant := 20_000_000;
    Link_Driver_Tx_Supervisor_Order_J : constant := Supervision_R;
-   Link_Driver_Tx_Supervisor_Order_A : constant :=
-     Link_Driver_Tx_Supervisor_Order_J
-     + (Link_Driver_Tx_Supervisor_Order_T - 1);
    Link_Driver_Tx_Supervisor_Order_C : constant :=
      Link_Driver_Tx_Supervisor_Order_Budget + 2 * Panel_Context_Switch;
    Link_Driver_Tx_Supervisor_Order_B : constant := Panel_Critical_Section;
 
-   --  [link.driver_rx.supervisor_order] the driver's work, released by
-   --  link.supervisor_order, which is J late. B: control may be inside
-   --  drive.link.transmit.
+   --  [link.driver_rx.supervisor_order] the driver, released by
+   --  link.supervisor_order. B: control in drive.link.transmit.
    Link_Driver_Rx_Supervisor_Order_Priority : constant :=
      System.Default_Priority + 5;
    Link_Driver_Rx_Supervisor_Order_Budget : constant := 40_000;
    Link_Driver_Rx_Supervisor_Order_T : constant := 20_000_000;
    Link_Driver_Rx_Supervisor_Order_D : constant := 20_000_000;
    Link_Driver_Rx_Supervisor_Order_J : constant := Link_Supervisor_Order_R;
-   Link_Driver_Rx_Supervisor_Order_A : constant :=
-     Link_Driver_Rx_Supervisor_Order_J
-     + (Link_Driver_Rx_Supervisor_Order_T - 1);
    Link_Driver_Rx_Supervisor_Order_C : constant :=
      Link_Driver_Rx_Supervisor_Order_Budget + 2 * Drive_Context_Switch;
    Link_Driver_Rx_Supervisor_Order_B : constant := Drive_Critical_Section;
 
-   --  [link.driver_tx.servo_report] the driver's work, released by control,
-   --  which is J late. B: control may be inside drive.link.transmit.
+   --  [link.driver_tx.servo_report] the driver, released by control. B:
+   --  control in drive.link.transmit.
    Link_Driver_Tx_Servo_Report_Priority : constant :=
      System.Default_Priority + 5;
    Link_Driver_Tx_Servo_Report_Budget : constant := 40_000;
    Link_Driver_Tx_Servo_Report_T : constant := 20_000_000;
    Link_Driver_Tx_Servo_Report_D : constant := 20_000_000;
    Link_Driver_Tx_Servo_Report_J : constant := Control_R;
-   Link_Driver_Tx_Servo_Report_A : constant :=
-     Link_Driver_Tx_Servo_Report_J + (Link_Driver_Tx_Servo_Report_T - 1);
    Link_Driver_Tx_Servo_Report_C : constant :=
      Link_Driver_Tx_Servo_Report_Budget + 2 * Drive_Context_Switch;
    Link_Driver_Tx_Servo_Report_B : constant := Drive_Critical_Section;
 
-   --  [link.driver_rx.servo_report] the driver's work, released by
-   --  link.servo_report, which is J late. B: supervision may be inside
-   --  panel.link.transmit.
+   --  [link.driver_rx.servo_report] the driver, released by
+   --  link.servo_report. B: supervision in panel.link.transmit.
    Link_Driver_Rx_Servo_Report_Priority : constant :=
      System.Default_Priority + 5;
    Link_Driver_Rx_Servo_Report_Budget : constant := 40_000;
    Link_Driver_Rx_Servo_Report_T : constant := 20_000_000;
    Link_Driver_Rx_Servo_Report_D : constant := 20_000_000;
    Link_Driver_Rx_Servo_Report_J : constant := Link_Servo_Report_R;
-   Link_Driver_Rx_Servo_Report_A : constant :=
-     Link_Driver_Rx_Servo_Report_J + (Link_Driver_Rx_Servo_Report_T - 1);
    Link_Driver_Rx_Servo_Report_C : constant :=
      Link_Driver_Rx_Servo_Report_Budget + 2 * Panel_Context_Switch;
    Link_Driver_Rx_Servo_Report_B : constant := Panel_Critical_Section;
 
-   --  [panel.probe] released every T. B: main may be inside
-   --  panel.probe.board.
+   --  [panel.probe] released every T. B: main in panel.probe.board.
    Panel_Probe_Priority : constant := System.Default_Priority + 6;
    Panel_Probe_Budget : constant := 20_000;
    Panel_Probe_T : constant := 1_000_000;
    Panel_Probe_D : constant := 1_000_000;
    Panel_Probe_J : constant := 0;
-   Panel_Probe_A : constant := Panel_Probe_J + (Panel_Probe_T - 1);
    Panel_Probe_C : constant :=
      Panel_Probe_Budget + 2 * Panel_Context_Switch;
    Panel_Probe_B : constant := Panel_Critical_Section;
 
-   --  [drive.probe] released every T. B: main may be inside
-   --  drive.probe.board.
+   --  [drive.probe] released every T. B: main in drive.probe.board.
    Drive_Probe_Priority : constant := System.Default_Priority + 6;
    Drive_Probe_Budget : constant := 20_000;
    Drive_Probe_T : constant := 1_000_000;
    Drive_Probe_D : constant := 1_000_000;
    Drive_Probe_J : constant := 0;
-   Drive_Probe_A : constant := Drive_Probe_J + (Drive_Probe_T - 1);
    Drive_Probe_C : constant :=
      Drive_Probe_Budget + 2 * Drive_Context_Switch;
    Drive_Probe_B : constant := Drive_Critical_Section;
 
-   pragma Compile_Time_Error
-     ((Link_Driver_Tx_Supervisor_Order_Priority + 1) > Panel_Probe_Priority,
-      "panel.probe "
-      & "must have a higher priority than link.driver_tx.supervisor_order");
-   pragma Compile_Time_Error
-     (Link_Driver_Tx_Supervisor_Order_Priority
-      /= Link_Driver_Rx_Servo_Report_Priority,
-      "link.driver_tx.supervisor_order "
-      & "must have the priority of link.driver_rx.servo_report");
-   pragma Compile_Time_Error
-     ((Reception_Panel_Priority + 1) > Link_Driver_Rx_Servo_Report_Priority,
-      "link.driver_rx.servo_report "
-      & "must have a higher priority than reception_panel");
-   pragma Compile_Time_Error
-     ((Supervision_Priority + 1) > Reception_Panel_Priority,
-      "reception_panel " & "must have a higher priority than supervision");
-   pragma Compile_Time_Error
-     ((Link_Driver_Rx_Supervisor_Order_Priority + 1) > Drive_Probe_Priority,
-      "drive.probe "
-      & "must have a higher priority than link.driver_rx.supervisor_order");
-   pragma Compile_Time_Error
-     (Link_Driver_Rx_Supervisor_Order_Priority
-      /= Link_Driver_Tx_Servo_Report_Priority,
-      "link.driver_rx.supervisor_order "
-      & "must have the priority of link.driver_tx.servo_report");
-   pragma Compile_Time_Error
-     ((Reception_Drive_Priority + 1) > Link_Driver_Tx_Servo_Report_Priority,
-      "link.driver_tx.servo_report "
-      & "must have a higher priority than reception_drive");
-   pragma Compile_Time_Error
-     ((Control_Priority + 1) > Reception_Drive_Priority,
-      "reception_drive " & "must have a higher priority than control");
+   function Panel_Probe_Up (W : Window) return Time is
+     (Demand (W, Panel_Probe_J, Panel_Probe_T, Panel_Probe_C)) with Static;
+   function Link_Driver_Tx_Supervisor_Order_Up (W : Window) return Time is
+     (Demand (W, Link_Driver_Tx_Supervisor_Order_J,
+         Link_Driver_Tx_Supervisor_Order_T,
+         Link_Driver_Tx_Supervisor_Order_C, Panel_Probe_Up (W))) with Static;
+   function Link_Driver_Rx_Servo_Report_Up (W : Window) return Time is
+     (Demand (W, Link_Driver_Rx_Servo_Report_J,
+         Link_Driver_Rx_Servo_Report_T, Link_Driver_Rx_Servo_Report_C,
+         Link_Driver_Tx_Supervisor_Order_Up (W))) with Static;
+   function Reception_Panel_Up (W : Window) return Time is
+     (Demand (W, Reception_Panel_J, Reception_Panel_T, Reception_Panel_C,
+         Link_Driver_Rx_Servo_Report_Up (W))) with Static;
+   function Link_Driver_Rx_Servo_Report_Rest (W : Window) return Time is
+     (Demand (W, Link_Driver_Rx_Servo_Report_J,
+         Link_Driver_Rx_Servo_Report_T, Link_Driver_Rx_Servo_Report_C))
+   with Static;
 
-   --  [link] bits in a second, and one bit in nanoseconds, rounded up. Of a
-   --  message, Stuffed: bits that stuffing can lengthen by a quarter; Bits:
-   --  the longest frame, with 10 bits that are not stuffed and 3 to the
-   --  next frame.
+   pragma Compile_Time_Error
+     (Panel_Probe_Priority <= Link_Driver_Tx_Supervisor_Order_Priority
+      or else Link_Driver_Tx_Supervisor_Order_Priority
+        /= Link_Driver_Rx_Servo_Report_Priority
+      or else Link_Driver_Rx_Servo_Report_Priority
+        <= Reception_Panel_Priority
+      or else Reception_Panel_Priority <= Supervision_Priority,
+      "panel must keep the order of its priorities");
+
+   function Drive_Probe_Up (W : Window) return Time is
+     (Demand (W, Drive_Probe_J, Drive_Probe_T, Drive_Probe_C)) with Static;
+   function Link_Driver_Rx_Supervisor_Order_Up (W : Window) return Time is
+     (Demand (W, Link_Driver_Rx_Supervisor_Order_J,
+         Link_Driver_Rx_Supervisor_Order_T,
+         Link_Driver_Rx_Supervisor_Order_C, Drive_Probe_Up (W))) with Static;
+   function Link_Driver_Tx_Servo_Report_Up (W : Window) return Time is
+     (Demand (W, Link_Driver_Tx_Servo_Report_J,
+         Link_Driver_Tx_Servo_Report_T, Link_Driver_Tx_Servo_Report_C,
+         Link_Driver_Rx_Supervisor_Order_Up (W))) with Static;
+   function Reception_Drive_Up (W : Window) return Time is
+     (Demand (W, Reception_Drive_J, Reception_Drive_T, Reception_Drive_C,
+         Link_Driver_Tx_Servo_Report_Up (W))) with Static;
+   function Link_Driver_Tx_Servo_Report_Rest (W : Window) return Time is
+     (Demand (W, Link_Driver_Tx_Servo_Report_J,
+         Link_Driver_Tx_Servo_Report_T, Link_Driver_Tx_Servo_Report_C))
+   with Static;
+
+   pragma Compile_Time_Error
+     (Drive_Probe_Priority <= Link_Driver_Rx_Supervisor_Order_Priority
+      or else Link_Driver_Rx_Supervisor_Order_Priority
+        /= Link_Driver_Tx_Servo_Report_Priority
+      or else Link_Driver_Tx_Servo_Report_Priority
+        <= Reception_Drive_Priority
+      or else Reception_Drive_Priority <= Control_Priority,
+      "drive must keep the order of its priorities");
+
+   --  [link] bits in a second, and one bit in nanoseconds, rounded up. A
+   --  message waits for the longest frame that goes behind it and has
+   --  begun, and for those that go before it. Of a message, Stuffed: bits
+   --  that stuffing can lengthen by a quarter; Bits: the longest frame,
+   --  with 10 bits that are not stuffed and 3 to the next frame.
    Link_Bit_Rate : constant := 500_000;
    Link_Bit : constant :=
      (1_000_000_000 + (Link_Bit_Rate - 1)) / Link_Bit_Rate;
@@ -339,15 +287,12 @@ is
    Link_Supervisor_Order_Stuffed : constant :=
      34 + 8 * Link_Supervisor_Order_Length;
    Link_Supervisor_Order_Bits : constant :=
-     Link_Supervisor_Order_Stuffed
-     + 13
-     + ((Link_Supervisor_Order_Stuffed - 1) / 4);
+     Link_Supervisor_Order_Stuffed + 13
+     + (Link_Supervisor_Order_Stuffed - 1) / 4;
    Link_Supervisor_Order_C : constant :=
-     ((Link_Supervisor_Order_Bits * 10**9) + (Link_Bit_Rate - 1))
+     (Link_Supervisor_Order_Bits * 10**9 + (Link_Bit_Rate - 1))
      / Link_Bit_Rate;
    Link_Supervisor_Order_J : constant := Link_Driver_Tx_Supervisor_Order_R;
-   Link_Supervisor_Order_A : constant :=
-     Link_Supervisor_Order_J + (Link_Supervisor_Order_T - 1);
 
    --  [link.servo_report] 11-bit identifier Id, Length bytes from
    --  servo.report
@@ -358,790 +303,375 @@ is
    Link_Servo_Report_Stuffed : constant :=
      34 + 8 * Link_Servo_Report_Length;
    Link_Servo_Report_Bits : constant :=
-     Link_Servo_Report_Stuffed + 13 + ((Link_Servo_Report_Stuffed - 1) / 4);
+     Link_Servo_Report_Stuffed + 13 + (Link_Servo_Report_Stuffed - 1) / 4;
    Link_Servo_Report_C : constant :=
-     ((Link_Servo_Report_Bits * 10**9) + (Link_Bit_Rate - 1))
-     / Link_Bit_Rate;
+     (Link_Servo_Report_Bits * 10**9 + (Link_Bit_Rate - 1)) / Link_Bit_Rate;
    Link_Servo_Report_J : constant := Link_Driver_Tx_Servo_Report_R;
-   Link_Servo_Report_A : constant :=
-     Link_Servo_Report_J + (Link_Servo_Report_T - 1);
 
-   pragma Compile_Time_Error
-     (((2**19 * Link_Supervisor_Order_Id) + 1)
-      > (2**19 * Link_Servo_Report_Id),
-      "link.supervisor_order "
-      & "must win the arbitration against link.servo_report");
-
-   --  [reception_panel] what can delay it: jobs of the same or higher
-   --  priority
+   --  [reception_panel] what delays it
    Reception_Panel_W : constant := Reception_Panel_R - Reception_Panel_J;
    Reception_Panel_Needs : constant :=
-     Reception_Panel_C
-     + Reception_Panel_B
-     + (((Reception_Panel_W + Link_Driver_Tx_Supervisor_Order_A)
-         / Link_Driver_Tx_Supervisor_Order_T)
-        * Link_Driver_Tx_Supervisor_Order_C)
-     + (((Reception_Panel_W + Link_Driver_Rx_Servo_Report_A)
-         / Link_Driver_Rx_Servo_Report_T)
-        * Link_Driver_Rx_Servo_Report_C)
-     + (((Reception_Panel_W + Panel_Probe_A) / Panel_Probe_T)
-        * Panel_Probe_C);
+     Reception_Panel_C + Reception_Panel_B
+     + Link_Driver_Rx_Servo_Report_Up (Reception_Panel_W);
+   pragma Compile_Time_Error (Reception_Panel_W /= Reception_Panel_Needs,
+      "reception_panel claims a wrong response time");
+   pragma Compile_Time_Error
+     (Reception_Panel_R > Time'Min (Reception_Panel_D, Reception_Panel_T),
+      "reception_panel can miss its deadline or overlap");
+   pragma Assert
+     (Reception_Panel_Needs <= Reception_Panel_W
+      and then Reception_Panel_R <= Reception_Panel_D);
 
-   pragma Compile_Time_Error
-     (0 > Reception_Panel_W,
-      "reception_panel " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_Panel_Needs > Reception_Panel_W,
-      "reception_panel " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_Panel_W > Reception_Panel_Needs,
-      "reception_panel " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Reception_Panel_J + Reception_Panel_W) > Reception_Panel_T,
-      "reception_panel " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Reception_Panel_R > Reception_Panel_D,
-      "reception_panel " & "can miss its deadline");
-   pragma Assert (Reception_Panel_Needs <= Reception_Panel_W);
-   pragma Assert (Reception_Panel_R <= Reception_Panel_D);
-
-   --  [reception_drive] what can delay it: jobs of the same or higher
-   --  priority
+   --  [reception_drive] what delays it
    Reception_Drive_W : constant := Reception_Drive_R - Reception_Drive_J;
    Reception_Drive_Needs : constant :=
-     Reception_Drive_C
-     + Reception_Drive_B
-     + (((Reception_Drive_W + Link_Driver_Rx_Supervisor_Order_A)
-         / Link_Driver_Rx_Supervisor_Order_T)
-        * Link_Driver_Rx_Supervisor_Order_C)
-     + (((Reception_Drive_W + Link_Driver_Tx_Servo_Report_A)
-         / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C)
-     + (((Reception_Drive_W + Drive_Probe_A) / Drive_Probe_T)
-        * Drive_Probe_C);
+     Reception_Drive_C + Reception_Drive_B
+     + Link_Driver_Tx_Servo_Report_Up (Reception_Drive_W);
+   pragma Compile_Time_Error (Reception_Drive_W /= Reception_Drive_Needs,
+      "reception_drive claims a wrong response time");
+   pragma Compile_Time_Error
+     (Reception_Drive_R > Time'Min (Reception_Drive_D, Reception_Drive_T),
+      "reception_drive can miss its deadline or overlap");
+   pragma Assert
+     (Reception_Drive_Needs <= Reception_Drive_W
+      and then Reception_Drive_R <= Reception_Drive_D);
 
-   pragma Compile_Time_Error
-     (0 > Reception_Drive_W,
-      "reception_drive " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_Drive_Needs > Reception_Drive_W,
-      "reception_drive " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Reception_Drive_W > Reception_Drive_Needs,
-      "reception_drive " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Reception_Drive_J + Reception_Drive_W) > Reception_Drive_T,
-      "reception_drive " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Reception_Drive_R > Reception_Drive_D,
-      "reception_drive " & "can miss its deadline");
-   pragma Assert (Reception_Drive_Needs <= Reception_Drive_W);
-   pragma Assert (Reception_Drive_R <= Reception_Drive_D);
-
-   --  [supervision] what can delay it: jobs of the same or higher priority
+   --  [supervision] what delays it
    Supervision_W : constant := Supervision_R - Supervision_J;
    Supervision_Needs : constant :=
-     Supervision_C
-     + Supervision_B
-     + (((Supervision_W + Reception_Panel_A) / Reception_Panel_T)
-        * Reception_Panel_C)
-     + (((Supervision_W + Link_Driver_Tx_Supervisor_Order_A)
-         / Link_Driver_Tx_Supervisor_Order_T)
-        * Link_Driver_Tx_Supervisor_Order_C)
-     + (((Supervision_W + Link_Driver_Rx_Servo_Report_A)
-         / Link_Driver_Rx_Servo_Report_T)
-        * Link_Driver_Rx_Servo_Report_C)
-     + (((Supervision_W + Panel_Probe_A) / Panel_Probe_T) * Panel_Probe_C);
+     Supervision_C + Supervision_B + Reception_Panel_Up (Supervision_W);
+   pragma Compile_Time_Error (Supervision_W /= Supervision_Needs,
+      "supervision claims a wrong response time");
+   pragma Compile_Time_Error
+     (Supervision_R > Time'Min (Supervision_D, Supervision_T),
+      "supervision can miss its deadline or overlap");
+   pragma Assert
+     (Supervision_Needs <= Supervision_W
+      and then Supervision_R <= Supervision_D);
 
-   pragma Compile_Time_Error
-     (0 > Supervision_W,
-      "supervision " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Supervision_Needs > Supervision_W,
-      "supervision " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Supervision_W > Supervision_Needs,
-      "supervision " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Supervision_J + Supervision_W) > Supervision_T,
-      "supervision " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Supervision_R > Supervision_D,
-      "supervision " & "can miss its deadline");
-   pragma Assert (Supervision_Needs <= Supervision_W);
-   pragma Assert (Supervision_R <= Supervision_D);
-
-   --  [supervisor.ports] done, from the event that releases its processor
+   --  [supervisor.ports] done, from the event of its processor
    Supervisor_Ports_Done : constant := 415_000;
    Supervisor_Ports_W : constant := Supervisor_Ports_Done - Supervision_J;
    Supervisor_Ports_Needs : constant :=
-     2 * Panel_Context_Switch
-     + Link_Watch_Panel_Budget
-     + Supervisor_Ports_Budget
-     + Supervision_B
-     + (((Supervisor_Ports_W + Reception_Panel_A) / Reception_Panel_T)
-        * Reception_Panel_C)
-     + (((Supervisor_Ports_W + Link_Driver_Tx_Supervisor_Order_A)
-         / Link_Driver_Tx_Supervisor_Order_T)
-        * Link_Driver_Tx_Supervisor_Order_C)
-     + (((Supervisor_Ports_W + Link_Driver_Rx_Servo_Report_A)
-         / Link_Driver_Rx_Servo_Report_T)
-        * Link_Driver_Rx_Servo_Report_C)
-     + (((Supervisor_Ports_W + Panel_Probe_A) / Panel_Probe_T)
-        * Panel_Probe_C);
+     2 * Panel_Context_Switch + Link_Watch_Panel_Budget
+     + Supervisor_Ports_Budget + Supervision_B
+     + Reception_Panel_Up (Supervisor_Ports_W);
+   pragma Compile_Time_Error (Supervisor_Ports_W /= Supervisor_Ports_Needs,
+      "supervisor.ports claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Supervisor_Ports_W,
-      "supervisor.ports " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Supervisor_Ports_Needs > Supervisor_Ports_W,
-      "supervisor.ports " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Supervisor_Ports_W > Supervisor_Ports_Needs,
-      "supervisor.ports " & "claims more than its terms add up to");
-
-   --  [supervisor.plan] done, from the event that releases its processor
+   --  [supervisor.plan] done, from the event of its processor
    Supervisor_Plan_Done : constant := 765_000;
    Supervisor_Plan_W : constant := Supervisor_Plan_Done - Supervision_J;
    Supervisor_Plan_Needs : constant :=
-     2 * Panel_Context_Switch
-     + Link_Watch_Panel_Budget
-     + Supervisor_Ports_Budget
-     + Supervisor_Mission_Budget
-     + Supervisor_Plan_Budget
-     + Supervision_B
-     + (((Supervisor_Plan_W + Reception_Panel_A) / Reception_Panel_T)
-        * Reception_Panel_C)
-     + (((Supervisor_Plan_W + Link_Driver_Tx_Supervisor_Order_A)
-         / Link_Driver_Tx_Supervisor_Order_T)
-        * Link_Driver_Tx_Supervisor_Order_C)
-     + (((Supervisor_Plan_W + Link_Driver_Rx_Servo_Report_A)
-         / Link_Driver_Rx_Servo_Report_T)
-        * Link_Driver_Rx_Servo_Report_C)
-     + (((Supervisor_Plan_W + Panel_Probe_A) / Panel_Probe_T)
-        * Panel_Probe_C);
+     2 * Panel_Context_Switch + Link_Watch_Panel_Budget
+     + Supervisor_Ports_Budget + Supervisor_Mission_Budget
+     + Supervisor_Plan_Budget + Supervision_B
+     + Reception_Panel_Up (Supervisor_Plan_W);
+   pragma Compile_Time_Error (Supervisor_Plan_W /= Supervisor_Plan_Needs,
+      "supervisor.plan claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Supervisor_Plan_W,
-      "supervisor.plan " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Supervisor_Plan_Needs > Supervisor_Plan_W,
-      "supervisor.plan " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Supervisor_Plan_W > Supervisor_Plan_Needs,
-      "supervisor.plan " & "claims more than its terms add up to");
-
-   --  [control] what can delay it: jobs of the same or higher priority
+   --  [control] what delays it
    Control_W : constant := Control_R - Control_J;
    Control_Needs : constant :=
-     Control_C
-     + Control_C_2
-     + Control_B
-     + (((Control_W + Reception_Drive_A) / Reception_Drive_T)
-        * Reception_Drive_C)
-     + (((Control_W + Link_Driver_Rx_Supervisor_Order_A)
-         / Link_Driver_Rx_Supervisor_Order_T)
-        * Link_Driver_Rx_Supervisor_Order_C)
-     + (((Control_W + Link_Driver_Tx_Servo_Report_A)
-         / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C)
-     + (((Control_W + Drive_Probe_A) / Drive_Probe_T) * Drive_Probe_C);
+     Control_C + Control_C_2 + Control_B + Reception_Drive_Up (Control_W);
+   pragma Compile_Time_Error (Control_W /= Control_Needs,
+      "control claims a wrong response time");
+   pragma Compile_Time_Error (Control_R > Time'Min (Control_D, Control_T),
+      "control can miss its deadline or overlap");
+   pragma Assert
+     (Control_Needs <= Control_W and then Control_R <= Control_D);
 
-   pragma Compile_Time_Error
-     (0 > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_Needs > Control_W,
-      "control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Control_W > Control_Needs,
-      "control " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Control_J + Control_W) > Control_T,
-      "control " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Control_R > Control_D,
-      "control " & "can miss its deadline");
-   pragma Assert (Control_Needs <= Control_W);
-   pragma Assert (Control_R <= Control_D);
-
-   --  [servo.ports] done, from the event that releases its processor
+   --  [servo.ports] done, from the event of its processor
    Servo_Ports_Done : constant := 415_000;
    Servo_Ports_W : constant := Servo_Ports_Done - Control_J;
    Servo_Ports_Needs : constant :=
-     2 * Drive_Context_Switch
-     + Link_Watch_Drive_Budget
-     + Servo_Ports_Budget
-     + Control_B
-     + (((Servo_Ports_W + Reception_Drive_A) / Reception_Drive_T)
-        * Reception_Drive_C)
-     + (((Servo_Ports_W + Link_Driver_Rx_Supervisor_Order_A)
-         / Link_Driver_Rx_Supervisor_Order_T)
-        * Link_Driver_Rx_Supervisor_Order_C)
-     + (((Servo_Ports_W + Link_Driver_Tx_Servo_Report_A)
-         / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C)
-     + (((Servo_Ports_W + Drive_Probe_A) / Drive_Probe_T) * Drive_Probe_C);
+     2 * Drive_Context_Switch + Link_Watch_Drive_Budget + Servo_Ports_Budget
+     + Control_B + Reception_Drive_Up (Servo_Ports_W);
+   pragma Compile_Time_Error (Servo_Ports_W /= Servo_Ports_Needs,
+      "servo.ports claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Servo_Ports_W,
-      "servo.ports " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Servo_Ports_Needs > Servo_Ports_W,
-      "servo.ports " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Servo_Ports_W > Servo_Ports_Needs,
-      "servo.ports " & "claims more than its terms add up to");
-
-   --  [servo.control] done, from the event that releases its processor
+   --  [servo.control] done, from the event of its processor
    Servo_Control_Done : constant := 765_000;
    Servo_Control_W : constant := Servo_Control_Done - Control_J;
    Servo_Control_Needs : constant :=
-     2 * Drive_Context_Switch
-     + Link_Watch_Drive_Budget
-     + Servo_Ports_Budget
-     + Servo_Drive_Budget
-     + Servo_Control_Budget
-     + Control_B
-     + (((Servo_Control_W + Reception_Drive_A) / Reception_Drive_T)
-        * Reception_Drive_C)
-     + (((Servo_Control_W + Link_Driver_Rx_Supervisor_Order_A)
-         / Link_Driver_Rx_Supervisor_Order_T)
-        * Link_Driver_Rx_Supervisor_Order_C)
-     + (((Servo_Control_W + Link_Driver_Tx_Servo_Report_A)
-         / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C)
-     + (((Servo_Control_W + Drive_Probe_A) / Drive_Probe_T) * Drive_Probe_C);
+     2 * Drive_Context_Switch + Link_Watch_Drive_Budget + Servo_Ports_Budget
+     + Servo_Drive_Budget + Servo_Control_Budget + Control_B
+     + Reception_Drive_Up (Servo_Control_W);
+   pragma Compile_Time_Error (Servo_Control_W /= Servo_Control_Needs,
+      "servo.control claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Servo_Control_W,
-      "servo.control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Servo_Control_Needs > Servo_Control_W,
-      "servo.control " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Servo_Control_W > Servo_Control_Needs,
-      "servo.control " & "claims more than its terms add up to");
-
-   --  [servo.tell] done, from the event that releases its processor
+   --  [servo.tell] done, from the event of its processor
    Servo_Tell_Done : constant := 865_000;
    Servo_Tell_W : constant := Servo_Tell_Done - Control_J;
    Servo_Tell_Needs : constant :=
-     2 * Drive_Context_Switch
-     + Link_Watch_Drive_Budget
-     + Servo_Ports_Budget
-     + Servo_Drive_Budget
-     + Servo_Control_Budget
-     + Servo_Tell_Budget
-     + Control_B
-     + (((Servo_Tell_W + Reception_Drive_A) / Reception_Drive_T)
-        * Reception_Drive_C)
-     + (((Servo_Tell_W + Link_Driver_Rx_Supervisor_Order_A)
-         / Link_Driver_Rx_Supervisor_Order_T)
-        * Link_Driver_Rx_Supervisor_Order_C)
-     + (((Servo_Tell_W + Link_Driver_Tx_Servo_Report_A)
-         / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C)
-     + (((Servo_Tell_W + Drive_Probe_A) / Drive_Probe_T) * Drive_Probe_C);
+     2 * Drive_Context_Switch + Link_Watch_Drive_Budget + Servo_Ports_Budget
+     + Servo_Drive_Budget + Servo_Control_Budget + Servo_Tell_Budget
+     + Control_B + Reception_Drive_Up (Servo_Tell_W);
+   pragma Compile_Time_Error (Servo_Tell_W /= Servo_Tell_Needs,
+      "servo.tell claims a wrong response time");
 
-   pragma Compile_Time_Error
-     (0 > Servo_Tell_W,
-      "servo.tell " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Servo_Tell_Needs > Servo_Tell_W,
-      "servo.tell " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Servo_Tell_W > Servo_Tell_Needs,
-      "servo.tell " & "claims more than its terms add up to");
-
-   --  [link.driver_tx.supervisor_order] what can delay it: jobs of the same
-   --  or higher priority
+   --  [link.driver_tx.supervisor_order] what delays it
    Link_Driver_Tx_Supervisor_Order_W : constant :=
      Link_Driver_Tx_Supervisor_Order_R - Link_Driver_Tx_Supervisor_Order_J;
    Link_Driver_Tx_Supervisor_Order_Needs : constant :=
-     Link_Driver_Tx_Supervisor_Order_C
-     + Link_Driver_Tx_Supervisor_Order_B
-     + (((Link_Driver_Tx_Supervisor_Order_W + Link_Driver_Rx_Servo_Report_A)
-         / Link_Driver_Rx_Servo_Report_T)
-        * Link_Driver_Rx_Servo_Report_C)
-     + (((Link_Driver_Tx_Supervisor_Order_W + Panel_Probe_A) / Panel_Probe_T)
-        * Panel_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Link_Driver_Tx_Supervisor_Order_W,
-      "link.driver_tx.supervisor_order "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Driver_Tx_Supervisor_Order_Needs
-      > Link_Driver_Tx_Supervisor_Order_W,
-      "link.driver_tx.supervisor_order "
-      & "can take longer than its claimed response time");
+     Link_Driver_Tx_Supervisor_Order_C + Link_Driver_Tx_Supervisor_Order_B
+     + Panel_Probe_Up (Link_Driver_Tx_Supervisor_Order_W)
+     + Link_Driver_Rx_Servo_Report_Rest (Link_Driver_Tx_Supervisor_Order_W);
    pragma Compile_Time_Error
      (Link_Driver_Tx_Supervisor_Order_W
-      > Link_Driver_Tx_Supervisor_Order_Needs,
-      "link.driver_tx.supervisor_order "
-      & "claims more than its terms add up to");
+      /= Link_Driver_Tx_Supervisor_Order_Needs,
+      "link.driver_tx.supervisor_order claims a wrong response time");
    pragma Compile_Time_Error
-     ((Link_Driver_Tx_Supervisor_Order_J + Link_Driver_Tx_Supervisor_Order_W)
-      > Link_Driver_Tx_Supervisor_Order_T,
-      "link.driver_tx.supervisor_order "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Link_Driver_Tx_Supervisor_Order_R > Link_Driver_Tx_Supervisor_Order_D,
-      "link.driver_tx.supervisor_order " & "can miss its deadline");
+     (Link_Driver_Tx_Supervisor_Order_R
+      > Time'Min (Link_Driver_Tx_Supervisor_Order_D,
+           Link_Driver_Tx_Supervisor_Order_T),
+      "link.driver_tx.supervisor_order can miss its deadline or overlap");
    pragma Assert
      (Link_Driver_Tx_Supervisor_Order_Needs
-      <= Link_Driver_Tx_Supervisor_Order_W);
-   pragma Assert
-     (Link_Driver_Tx_Supervisor_Order_R <= Link_Driver_Tx_Supervisor_Order_D);
+      <= Link_Driver_Tx_Supervisor_Order_W
+      and then Link_Driver_Tx_Supervisor_Order_R
+        <= Link_Driver_Tx_Supervisor_Order_D);
 
-   --  [link.driver_rx.supervisor_order] what can delay it: jobs of the same
-   --  or higher priority
+   --  [link.driver_rx.supervisor_order] what delays it
    Link_Driver_Rx_Supervisor_Order_W : constant :=
      Link_Driver_Rx_Supervisor_Order_R - Link_Driver_Rx_Supervisor_Order_J;
    Link_Driver_Rx_Supervisor_Order_Needs : constant :=
-     Link_Driver_Rx_Supervisor_Order_C
-     + Link_Driver_Rx_Supervisor_Order_B
-     + (((Link_Driver_Rx_Supervisor_Order_W + Link_Driver_Tx_Servo_Report_A)
-         / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C)
-     + (((Link_Driver_Rx_Supervisor_Order_W + Drive_Probe_A) / Drive_Probe_T)
-        * Drive_Probe_C);
-
-   pragma Compile_Time_Error
-     (0 > Link_Driver_Rx_Supervisor_Order_W,
-      "link.driver_rx.supervisor_order "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Driver_Rx_Supervisor_Order_Needs
-      > Link_Driver_Rx_Supervisor_Order_W,
-      "link.driver_rx.supervisor_order "
-      & "can take longer than its claimed response time");
+     Link_Driver_Rx_Supervisor_Order_C + Link_Driver_Rx_Supervisor_Order_B
+     + Drive_Probe_Up (Link_Driver_Rx_Supervisor_Order_W)
+     + Link_Driver_Tx_Servo_Report_Rest (Link_Driver_Rx_Supervisor_Order_W);
    pragma Compile_Time_Error
      (Link_Driver_Rx_Supervisor_Order_W
-      > Link_Driver_Rx_Supervisor_Order_Needs,
-      "link.driver_rx.supervisor_order "
-      & "claims more than its terms add up to");
+      /= Link_Driver_Rx_Supervisor_Order_Needs,
+      "link.driver_rx.supervisor_order claims a wrong response time");
    pragma Compile_Time_Error
-     ((Link_Driver_Rx_Supervisor_Order_J + Link_Driver_Rx_Supervisor_Order_W)
-      > Link_Driver_Rx_Supervisor_Order_T,
-      "link.driver_rx.supervisor_order "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Link_Driver_Rx_Supervisor_Order_R > Link_Driver_Rx_Supervisor_Order_D,
-      "link.driver_rx.supervisor_order " & "can miss its deadline");
+     (Link_Driver_Rx_Supervisor_Order_R
+      > Time'Min (Link_Driver_Rx_Supervisor_Order_D,
+           Link_Driver_Rx_Supervisor_Order_T),
+      "link.driver_rx.supervisor_order can miss its deadline or overlap");
    pragma Assert
      (Link_Driver_Rx_Supervisor_Order_Needs
-      <= Link_Driver_Rx_Supervisor_Order_W);
-   pragma Assert
-     (Link_Driver_Rx_Supervisor_Order_R <= Link_Driver_Rx_Supervisor_Order_D);
+      <= Link_Driver_Rx_Supervisor_Order_W
+      and then Link_Driver_Rx_Supervisor_Order_R
+        <= Link_Driver_Rx_Supervisor_Order_D);
 
-   --  [link.driver_tx.servo_report] what can delay it: jobs of the same or
-   --  higher priority
+   --  [link.driver_tx.servo_report] what delays it
    Link_Driver_Tx_Servo_Report_W : constant :=
      Link_Driver_Tx_Servo_Report_R - Link_Driver_Tx_Servo_Report_J;
    Link_Driver_Tx_Servo_Report_Needs : constant :=
-     Link_Driver_Tx_Servo_Report_C
-     + Link_Driver_Tx_Servo_Report_B
-     + (((Link_Driver_Tx_Servo_Report_W + Link_Driver_Rx_Supervisor_Order_A)
-         / Link_Driver_Rx_Supervisor_Order_T)
-        * Link_Driver_Rx_Supervisor_Order_C)
-     + (((Link_Driver_Tx_Servo_Report_W + Drive_Probe_A) / Drive_Probe_T)
-        * Drive_Probe_C);
-
+     Link_Driver_Tx_Servo_Report_C + Link_Driver_Tx_Servo_Report_B
+     + Link_Driver_Rx_Supervisor_Order_Up (Link_Driver_Tx_Servo_Report_W);
    pragma Compile_Time_Error
-     (0 > Link_Driver_Tx_Servo_Report_W,
-      "link.driver_tx.servo_report "
-      & "can take longer than its claimed response time");
+     (Link_Driver_Tx_Servo_Report_W /= Link_Driver_Tx_Servo_Report_Needs,
+      "link.driver_tx.servo_report claims a wrong response time");
    pragma Compile_Time_Error
-     (Link_Driver_Tx_Servo_Report_Needs > Link_Driver_Tx_Servo_Report_W,
-      "link.driver_tx.servo_report "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Driver_Tx_Servo_Report_W > Link_Driver_Tx_Servo_Report_Needs,
-      "link.driver_tx.servo_report "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Link_Driver_Tx_Servo_Report_J + Link_Driver_Tx_Servo_Report_W)
-      > Link_Driver_Tx_Servo_Report_T,
-      "link.driver_tx.servo_report "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Link_Driver_Tx_Servo_Report_R > Link_Driver_Tx_Servo_Report_D,
-      "link.driver_tx.servo_report " & "can miss its deadline");
+     (Link_Driver_Tx_Servo_Report_R
+      > Time'Min (Link_Driver_Tx_Servo_Report_D,
+           Link_Driver_Tx_Servo_Report_T),
+      "link.driver_tx.servo_report can miss its deadline or overlap");
    pragma Assert
-     (Link_Driver_Tx_Servo_Report_Needs <= Link_Driver_Tx_Servo_Report_W);
-   pragma Assert
-     (Link_Driver_Tx_Servo_Report_R <= Link_Driver_Tx_Servo_Report_D);
+     (Link_Driver_Tx_Servo_Report_Needs <= Link_Driver_Tx_Servo_Report_W
+      and then Link_Driver_Tx_Servo_Report_R
+        <= Link_Driver_Tx_Servo_Report_D);
 
-   --  [link.driver_rx.servo_report] what can delay it: jobs of the same or
-   --  higher priority
+   --  [link.driver_rx.servo_report] what delays it
    Link_Driver_Rx_Servo_Report_W : constant :=
      Link_Driver_Rx_Servo_Report_R - Link_Driver_Rx_Servo_Report_J;
    Link_Driver_Rx_Servo_Report_Needs : constant :=
-     Link_Driver_Rx_Servo_Report_C
-     + Link_Driver_Rx_Servo_Report_B
-     + (((Link_Driver_Rx_Servo_Report_W + Link_Driver_Tx_Supervisor_Order_A)
-         / Link_Driver_Tx_Supervisor_Order_T)
-        * Link_Driver_Tx_Supervisor_Order_C)
-     + (((Link_Driver_Rx_Servo_Report_W + Panel_Probe_A) / Panel_Probe_T)
-        * Panel_Probe_C);
-
+     Link_Driver_Rx_Servo_Report_C + Link_Driver_Rx_Servo_Report_B
+     + Link_Driver_Tx_Supervisor_Order_Up (Link_Driver_Rx_Servo_Report_W);
    pragma Compile_Time_Error
-     (0 > Link_Driver_Rx_Servo_Report_W,
-      "link.driver_rx.servo_report "
-      & "can take longer than its claimed response time");
+     (Link_Driver_Rx_Servo_Report_W /= Link_Driver_Rx_Servo_Report_Needs,
+      "link.driver_rx.servo_report claims a wrong response time");
    pragma Compile_Time_Error
-     (Link_Driver_Rx_Servo_Report_Needs > Link_Driver_Rx_Servo_Report_W,
-      "link.driver_rx.servo_report "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Driver_Rx_Servo_Report_W > Link_Driver_Rx_Servo_Report_Needs,
-      "link.driver_rx.servo_report "
-      & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Link_Driver_Rx_Servo_Report_J + Link_Driver_Rx_Servo_Report_W)
-      > Link_Driver_Rx_Servo_Report_T,
-      "link.driver_rx.servo_report "
-      & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Link_Driver_Rx_Servo_Report_R > Link_Driver_Rx_Servo_Report_D,
-      "link.driver_rx.servo_report " & "can miss its deadline");
+     (Link_Driver_Rx_Servo_Report_R
+      > Time'Min (Link_Driver_Rx_Servo_Report_D,
+           Link_Driver_Rx_Servo_Report_T),
+      "link.driver_rx.servo_report can miss its deadline or overlap");
    pragma Assert
-     (Link_Driver_Rx_Servo_Report_Needs <= Link_Driver_Rx_Servo_Report_W);
-   pragma Assert
-     (Link_Driver_Rx_Servo_Report_R <= Link_Driver_Rx_Servo_Report_D);
+     (Link_Driver_Rx_Servo_Report_Needs <= Link_Driver_Rx_Servo_Report_W
+      and then Link_Driver_Rx_Servo_Report_R
+        <= Link_Driver_Rx_Servo_Report_D);
 
-   --  [panel.probe] what can delay it: jobs of the same or higher priority
+   --  [panel.probe] what delays it
    Panel_Probe_W : constant := Panel_Probe_R - Panel_Probe_J;
    Panel_Probe_Needs : constant := Panel_Probe_C + Panel_Probe_B;
+   pragma Compile_Time_Error (Panel_Probe_W /= Panel_Probe_Needs,
+      "panel.probe claims a wrong response time");
+   pragma Compile_Time_Error
+     (Panel_Probe_R > Time'Min (Panel_Probe_D, Panel_Probe_T),
+      "panel.probe can miss its deadline or overlap");
+   pragma Assert
+     (Panel_Probe_Needs <= Panel_Probe_W
+      and then Panel_Probe_R <= Panel_Probe_D);
 
-   pragma Compile_Time_Error
-     (0 > Panel_Probe_W,
-      "panel.probe " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Panel_Probe_Needs > Panel_Probe_W,
-      "panel.probe " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Panel_Probe_W > Panel_Probe_Needs,
-      "panel.probe " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Panel_Probe_J + Panel_Probe_W) > Panel_Probe_T,
-      "panel.probe " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Panel_Probe_R > Panel_Probe_D,
-      "panel.probe " & "can miss its deadline");
-   pragma Assert (Panel_Probe_Needs <= Panel_Probe_W);
-   pragma Assert (Panel_Probe_R <= Panel_Probe_D);
-
-   --  [drive.probe] what can delay it: jobs of the same or higher priority
+   --  [drive.probe] what delays it
    Drive_Probe_W : constant := Drive_Probe_R - Drive_Probe_J;
    Drive_Probe_Needs : constant := Drive_Probe_C + Drive_Probe_B;
+   pragma Compile_Time_Error (Drive_Probe_W /= Drive_Probe_Needs,
+      "drive.probe claims a wrong response time");
+   pragma Compile_Time_Error
+     (Drive_Probe_R > Time'Min (Drive_Probe_D, Drive_Probe_T),
+      "drive.probe can miss its deadline or overlap");
+   pragma Assert
+     (Drive_Probe_Needs <= Drive_Probe_W
+      and then Drive_Probe_R <= Drive_Probe_D);
+
+   function Link_Supervisor_Order_Up_Drive (W : Window) return Time is
+     (Demand (W, Link_Supervisor_Order_R - Link_Supervisor_Order_C,
+         Link_Supervisor_Order_T, Link_Supervisor_Order_C)) with Static;
+   function Link_Servo_Report_Up_Drive (W : Window) return Time is
+     (Demand (W, Link_Servo_Report_J, Link_Servo_Report_T,
+         Link_Servo_Report_C, Link_Supervisor_Order_Up_Drive (W)))
+   with Static;
+   function Link_Servo_Report_Up_Panel (W : Window) return Time is
+     (Demand (W, Link_Servo_Report_R - Link_Servo_Report_C,
+         Link_Servo_Report_T, Link_Servo_Report_C)) with Static;
+   function Link_Supervisor_Order_Up_Panel (W : Window) return Time is
+     (Demand (W, Link_Supervisor_Order_J, Link_Supervisor_Order_T,
+         Link_Supervisor_Order_C, Link_Servo_Report_Up_Panel (W)))
+   with Static;
 
    pragma Compile_Time_Error
-     (0 > Drive_Probe_W,
-      "drive.probe " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Drive_Probe_Needs > Drive_Probe_W,
-      "drive.probe " & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Drive_Probe_W > Drive_Probe_Needs,
-      "drive.probe " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Drive_Probe_J + Drive_Probe_W) > Drive_Probe_T,
-      "drive.probe " & "can be released again before it completes");
-   pragma Compile_Time_Error
-     (Drive_Probe_R > Drive_Probe_D,
-      "drive.probe " & "can miss its deadline");
-   pragma Assert (Drive_Probe_Needs <= Drive_Probe_W);
-   pragma Assert (Drive_Probe_R <= Drive_Probe_D);
+     (Link_Supervisor_Order_Id >= Link_Servo_Report_Id,
+      "link must keep the order of its identifiers");
 
-   --  [link.supervisor_order] what can delay it: frames that go before it
+   --  [link.supervisor_order] what delays it
    Link_Supervisor_Order_Busy : constant := 340_000;
    Link_Supervisor_Order_Busy_Needs : constant :=
-     0
-     + (((Link_Supervisor_Order_Busy + Link_Supervisor_Order_A)
-         / Link_Supervisor_Order_T)
-        * Link_Supervisor_Order_C)
-     + (((Link_Supervisor_Order_Busy
-          + (Link_Servo_Report_R - Link_Servo_Report_C)
-          + (Link_Servo_Report_T - 1))
-         / Link_Servo_Report_T)
-        * Link_Servo_Report_C);
-
+     Link_Supervisor_Order_Up_Panel (Link_Supervisor_Order_Busy);
    pragma Compile_Time_Error
-     (1 > Link_Supervisor_Order_Busy,
-      "link.supervisor_order "
-      & "can keep others waiting for longer than claimed");
+     (Link_Supervisor_Order_Busy < 1
+      or else Link_Supervisor_Order_Busy /= Link_Supervisor_Order_Busy_Needs,
+      "link.supervisor_order claims a wrong busy period");
    pragma Compile_Time_Error
-     (Link_Supervisor_Order_Busy_Needs > Link_Supervisor_Order_Busy,
-      "link.supervisor_order "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Link_Supervisor_Order_Busy > Link_Supervisor_Order_Busy_Needs,
-      "link.supervisor_order " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Link_Supervisor_Order_Busy + Link_Supervisor_Order_J)
+     (Link_Supervisor_Order_Busy + Link_Supervisor_Order_J
       > Link_Supervisor_Order_T,
-      "link.supervisor_order " & "can come again before it is sent");
-
-   Link_Supervisor_Order_W : constant := 170_000;
+      "link.supervisor_order can come again before it is sent");
+   Link_Supervisor_Order_W : constant :=
+     Link_Supervisor_Order_R - Link_Supervisor_Order_J
+     - Link_Supervisor_Order_C;
    Link_Supervisor_Order_Needs : constant :=
-     0
-     + (((Link_Supervisor_Order_W
-          + Link_Bit
-          + (Link_Servo_Report_R - Link_Servo_Report_C)
-          + (Link_Servo_Report_T - 1))
-         / Link_Servo_Report_T)
-        * Link_Servo_Report_C);
-
+     Link_Servo_Report_Up_Panel (Link_Supervisor_Order_W + Link_Bit);
    pragma Compile_Time_Error
-     (0 > Link_Supervisor_Order_W,
-      "link.supervisor_order "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Supervisor_Order_Needs > Link_Supervisor_Order_W,
-      "link.supervisor_order "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Supervisor_Order_W > Link_Supervisor_Order_Needs,
-      "link.supervisor_order " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Link_Supervisor_Order_J
-       + Link_Supervisor_Order_W
-       + Link_Supervisor_Order_C)
-      > Link_Supervisor_Order_R,
-      "link.supervisor_order "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Supervisor_Order_R
-      > (Link_Supervisor_Order_J
-         + Link_Supervisor_Order_W
-         + Link_Supervisor_Order_C),
-      "link.supervisor_order " & "claims more than its terms add up to");
+     (Link_Supervisor_Order_W /= Link_Supervisor_Order_Needs,
+      "link.supervisor_order claims a wrong response time");
    pragma Compile_Time_Error
      (Link_Supervisor_Order_R > Link_Supervisor_Order_D,
-      "link.supervisor_order " & "can miss its deadline");
+      "link.supervisor_order can miss its deadline");
    pragma Assert (Link_Supervisor_Order_R <= Link_Supervisor_Order_D);
 
-   --  [link.servo_report] what can delay it: frames that go before it
+   --  [link.servo_report] what delays it
    Link_Servo_Report_Busy : constant := 340_000;
    Link_Servo_Report_Busy_Needs : constant :=
-     0
-     + (((Link_Servo_Report_Busy
-          + (Link_Supervisor_Order_R - Link_Supervisor_Order_C)
-          + (Link_Supervisor_Order_T - 1))
-         / Link_Supervisor_Order_T)
-        * Link_Supervisor_Order_C)
-     + (((Link_Servo_Report_Busy + Link_Servo_Report_A)
-         / Link_Servo_Report_T)
-        * Link_Servo_Report_C);
-
+     Link_Servo_Report_Up_Drive (Link_Servo_Report_Busy);
    pragma Compile_Time_Error
-     (1 > Link_Servo_Report_Busy,
-      "link.servo_report "
-      & "can keep others waiting for longer than claimed");
+     (Link_Servo_Report_Busy < 1
+      or else Link_Servo_Report_Busy /= Link_Servo_Report_Busy_Needs,
+      "link.servo_report claims a wrong busy period");
    pragma Compile_Time_Error
-     (Link_Servo_Report_Busy_Needs > Link_Servo_Report_Busy,
-      "link.servo_report "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Link_Servo_Report_Busy > Link_Servo_Report_Busy_Needs,
-      "link.servo_report " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Link_Servo_Report_Busy + Link_Servo_Report_J) > Link_Servo_Report_T,
-      "link.servo_report " & "can come again before it is sent");
-
-   Link_Servo_Report_W : constant := 170_000;
+     (Link_Servo_Report_Busy + Link_Servo_Report_J > Link_Servo_Report_T,
+      "link.servo_report can come again before it is sent");
+   Link_Servo_Report_W : constant :=
+     Link_Servo_Report_R - Link_Servo_Report_J - Link_Servo_Report_C;
    Link_Servo_Report_Needs : constant :=
-     0
-     + (((Link_Servo_Report_W
-          + Link_Bit
-          + (Link_Supervisor_Order_R - Link_Supervisor_Order_C)
-          + (Link_Supervisor_Order_T - 1))
-         / Link_Supervisor_Order_T)
-        * Link_Supervisor_Order_C);
-
+     Link_Supervisor_Order_Up_Drive (Link_Servo_Report_W + Link_Bit);
    pragma Compile_Time_Error
-     (0 > Link_Servo_Report_W,
-      "link.servo_report "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Servo_Report_Needs > Link_Servo_Report_W,
-      "link.servo_report "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Servo_Report_W > Link_Servo_Report_Needs,
-      "link.servo_report " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Link_Servo_Report_J + Link_Servo_Report_W + Link_Servo_Report_C)
-      > Link_Servo_Report_R,
-      "link.servo_report "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Servo_Report_R
-      > (Link_Servo_Report_J + Link_Servo_Report_W + Link_Servo_Report_C),
-      "link.servo_report " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Link_Servo_Report_R > Link_Servo_Report_D,
-      "link.servo_report " & "can miss its deadline");
+     (Link_Servo_Report_W /= Link_Servo_Report_Needs,
+      "link.servo_report claims a wrong response time");
+   pragma Compile_Time_Error (Link_Servo_Report_R > Link_Servo_Report_D,
+      "link.servo_report can miss its deadline");
    pragma Assert (Link_Servo_Report_R <= Link_Servo_Report_D);
 
-   --  [link.supervisor_order] its turn in the queue of reception_drive, and
-   --  when it is handed over
-   Link_Supervisor_Order_Turn_J : constant :=
-     Link_Driver_Rx_Supervisor_Order_R;
-   Link_Supervisor_Order_Turn_Busy : constant := 1_000_000;
-   Link_Supervisor_Order_Turn_Busy_Needs : constant :=
-     ((Link_Supervisor_Order_Turn_Busy
-       + Link_Driver_Rx_Supervisor_Order_R
-       + (Link_Supervisor_Order_T - 1))
-      / Link_Supervisor_Order_T)
-     * Reception_Drive_T;
+   --  [reception_panel] how long it is ever busy with what it receives
+   function Link_Servo_Report_Turn_Up (W : Window) return Time is
+     (Demand (W, Link_Driver_Rx_Servo_Report_R, Link_Servo_Report_T,
+         Reception_Panel_T)) with Static;
 
+   Reception_Panel_Busy : constant := 1_000_000;
+   Reception_Panel_Busy_Needs : constant :=
+     Link_Servo_Report_Turn_Up (Reception_Panel_Busy);
    pragma Compile_Time_Error
-     (1 > Link_Supervisor_Order_Turn_Busy,
-      "link.supervisor_order "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Link_Supervisor_Order_Turn_Busy_Needs
-      > Link_Supervisor_Order_Turn_Busy,
-      "link.supervisor_order "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Link_Supervisor_Order_Turn_Busy
-      > Link_Supervisor_Order_Turn_Busy_Needs,
-      "link.supervisor_order " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Link_Supervisor_Order_Turn_Busy + Link_Supervisor_Order_Turn_J)
-      > Link_Supervisor_Order_T,
-      "link.supervisor_order " & "can come again before it is sent");
+     (Reception_Panel_Busy < 1
+      or else Reception_Panel_Busy /= Reception_Panel_Busy_Needs,
+      "reception_panel claims a wrong busy period");
 
-   Link_Supervisor_Order_Turn_W : constant := 0;
-   Link_Supervisor_Order_Turn_Needs : constant := 0;
-
-   pragma Compile_Time_Error
-     (0 > Link_Supervisor_Order_Turn_W,
-      "link.supervisor_order "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Supervisor_Order_Turn_Needs > Link_Supervisor_Order_Turn_W,
-      "link.supervisor_order "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Supervisor_Order_Turn_W > Link_Supervisor_Order_Turn_Needs,
-      "link.supervisor_order " & "claims more than its terms add up to");
-
-   Link_Supervisor_Order_Turn : constant := 1_435_000;
-
-   pragma Compile_Time_Error
-     ((Link_Supervisor_Order_Turn_J + Link_Supervisor_Order_Turn_W)
-      > Link_Supervisor_Order_Turn,
-      "link.supervisor_order "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Supervisor_Order_Turn
-      > (Link_Supervisor_Order_Turn_J + Link_Supervisor_Order_Turn_W),
-      "link.supervisor_order " & "claims more than its terms add up to");
-
-   Link_Supervisor_Order_Handed : constant :=
-     Link_Supervisor_Order_Turn + (2 * Reception_Drive_R);
-
-   --  [link.servo_report] its turn in the queue of reception_panel, and
-   --  when it is handed over
+   --  [link.servo_report] its turn in reception_panel, and when it is
+   --  handed over
    Link_Servo_Report_Turn_J : constant := Link_Driver_Rx_Servo_Report_R;
-   Link_Servo_Report_Turn_Busy : constant := 1_000_000;
-   Link_Servo_Report_Turn_Busy_Needs : constant :=
-     ((Link_Servo_Report_Turn_Busy
-       + Link_Driver_Rx_Servo_Report_R
-       + (Link_Servo_Report_T - 1))
-      / Link_Servo_Report_T)
-     * Reception_Panel_T;
-
    pragma Compile_Time_Error
-     (1 > Link_Servo_Report_Turn_Busy,
-      "link.servo_report "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Link_Servo_Report_Turn_Busy_Needs > Link_Servo_Report_Turn_Busy,
-      "link.servo_report "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     (Link_Servo_Report_Turn_Busy > Link_Servo_Report_Turn_Busy_Needs,
-      "link.servo_report " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     ((Link_Servo_Report_Turn_Busy + Link_Servo_Report_Turn_J)
-      > Link_Servo_Report_T,
-      "link.servo_report " & "can come again before it is sent");
-
+     (Reception_Panel_Busy + Link_Servo_Report_Turn_J > Link_Servo_Report_T,
+      "link.servo_report can come again before it is sent");
    Link_Servo_Report_Turn_W : constant := 0;
    Link_Servo_Report_Turn_Needs : constant := 0;
-
    pragma Compile_Time_Error
-     (0 > Link_Servo_Report_Turn_W,
-      "link.servo_report "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Servo_Report_Turn_Needs > Link_Servo_Report_Turn_W,
-      "link.servo_report "
-      & "can take longer than its claimed response time");
-   pragma Compile_Time_Error
-     (Link_Servo_Report_Turn_W > Link_Servo_Report_Turn_Needs,
-      "link.servo_report " & "claims more than its terms add up to");
-
+     (Link_Servo_Report_Turn_W /= Link_Servo_Report_Turn_Needs,
+      "link.servo_report claims a wrong response time");
    Link_Servo_Report_Turn : constant := 1_535_000;
-
-   pragma Compile_Time_Error
-     ((Link_Servo_Report_Turn_J + Link_Servo_Report_Turn_W)
-      > Link_Servo_Report_Turn,
-      "link.servo_report "
-      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Link_Servo_Report_Turn
-      > (Link_Servo_Report_Turn_J + Link_Servo_Report_Turn_W),
-      "link.servo_report " & "claims more than its terms add up to");
-
+      /= Link_Servo_Report_Turn_J + Link_Servo_Report_Turn_W,
+      "link.servo_report claims a wrong response time");
    Link_Servo_Report_Handed : constant :=
-     Link_Servo_Report_Turn + (2 * Reception_Panel_R);
+     Link_Servo_Report_Turn + 2 * Reception_Panel_R;
+
+   --  [reception_drive] how long it is ever busy with what it receives
+   function Link_Supervisor_Order_Turn_Up (W : Window) return Time is
+     (Demand (W, Link_Driver_Rx_Supervisor_Order_R, Link_Supervisor_Order_T,
+         Reception_Drive_T)) with Static;
+
+   Reception_Drive_Busy : constant := 1_000_000;
+   Reception_Drive_Busy_Needs : constant :=
+     Link_Supervisor_Order_Turn_Up (Reception_Drive_Busy);
+   pragma Compile_Time_Error
+     (Reception_Drive_Busy < 1
+      or else Reception_Drive_Busy /= Reception_Drive_Busy_Needs,
+      "reception_drive claims a wrong busy period");
+
+   --  [link.supervisor_order] its turn in reception_drive, and when it is
+   --  handed over
+   Link_Supervisor_Order_Turn_J : constant :=
+     Link_Driver_Rx_Supervisor_Order_R;
+   pragma Compile_Time_Error
+     (Reception_Drive_Busy + Link_Supervisor_Order_Turn_J
+      > Link_Supervisor_Order_T,
+      "link.supervisor_order can come again before it is sent");
+   Link_Supervisor_Order_Turn_W : constant := 0;
+   Link_Supervisor_Order_Turn_Needs : constant := 0;
+   pragma Compile_Time_Error
+     (Link_Supervisor_Order_Turn_W /= Link_Supervisor_Order_Turn_Needs,
+      "link.supervisor_order claims a wrong response time");
+   Link_Supervisor_Order_Turn : constant := 1_435_000;
+   pragma Compile_Time_Error
+     (Link_Supervisor_Order_Turn
+      /= Link_Supervisor_Order_Turn_J + Link_Supervisor_Order_Turn_W,
+      "link.supervisor_order claims a wrong response time");
+   Link_Supervisor_Order_Handed : constant :=
+     Link_Supervisor_Order_Turn + 2 * Reception_Drive_R;
 
    --  [planned] from end to end. supervisor.plan samples. servo.ports
    --  samples.
    Chain_Planned_Reaction : constant := 32_690_000;
    Chain_Planned_Reaction_Limit : constant := 60_000_000;
    Chain_Planned_Reaction_Needs : constant :=
-     Supervision_T
-     + Link_Supervisor_Order_Handed
-     + Control_T
+     Supervision_T + Link_Supervisor_Order_Handed + Control_T
      + Servo_Control_Done;
-
    pragma Compile_Time_Error
-     (Chain_Planned_Reaction_Needs > Chain_Planned_Reaction,
-      "chain planned " & "can have a longer reaction than claimed");
-   pragma Compile_Time_Error
-     (Chain_Planned_Reaction > Chain_Planned_Reaction_Needs,
-      "chain planned " & "claims more than its terms add up to");
+     (Chain_Planned_Reaction /= Chain_Planned_Reaction_Needs,
+      "chain planned claims a wrong reaction");
    pragma Compile_Time_Error
      (Chain_Planned_Reaction > Chain_Planned_Reaction_Limit,
-      "chain planned " & "can exceed the limit of its reaction");
+      "chain planned can exceed the limit of its reaction");
    pragma Assert
      (Chain_Planned_Reaction_Needs <= Chain_Planned_Reaction_Limit);
-
    Chain_Planned_Age : constant := 22_690_000;
    Chain_Planned_Age_Limit : constant := 50_000_000;
    Chain_Planned_Age_Needs : constant :=
-     Link_Supervisor_Order_Handed
-     + Link_Supervisor_Order_T
+     Link_Supervisor_Order_Handed + Link_Supervisor_Order_T
      + Servo_Control_Done;
-
-   pragma Compile_Time_Error
-     (Chain_Planned_Age_Needs > Chain_Planned_Age,
-      "chain planned " & "can have a longer age than claimed");
-   pragma Compile_Time_Error
-     (Chain_Planned_Age > Chain_Planned_Age_Needs,
-      "chain planned " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Chain_Planned_Age > Chain_Planned_Age_Limit,
-      "chain planned " & "can exceed the limit of its age");
+   pragma Compile_Time_Error (Chain_Planned_Age /= Chain_Planned_Age_Needs,
+      "chain planned claims a wrong age");
+   pragma Compile_Time_Error (Chain_Planned_Age > Chain_Planned_Age_Limit,
+      "chain planned can exceed the limit of its age");
    pragma Assert (Chain_Planned_Age_Needs <= Chain_Planned_Age_Limit);
 
    --  [followed] from end to end. servo.control samples. servo.tell
@@ -1149,42 +679,25 @@ is
    Chain_Followed_Reaction : constant := 53_555_000;
    Chain_Followed_Reaction_Limit : constant := 70_000_000;
    Chain_Followed_Reaction_Needs : constant :=
-     Control_T
-     + Servo_Control_Done
-     + (2 * Control_T)
-     + Link_Servo_Report_Handed
-     + Supervision_T
-     + Supervisor_Plan_Done;
-
+     Control_T + Servo_Control_Done + 2 * Control_T
+     + Link_Servo_Report_Handed + Supervision_T + Supervisor_Plan_Done;
    pragma Compile_Time_Error
-     (Chain_Followed_Reaction_Needs > Chain_Followed_Reaction,
-      "chain followed " & "can have a longer reaction than claimed");
-   pragma Compile_Time_Error
-     (Chain_Followed_Reaction > Chain_Followed_Reaction_Needs,
-      "chain followed " & "claims more than its terms add up to");
+     (Chain_Followed_Reaction /= Chain_Followed_Reaction_Needs,
+      "chain followed claims a wrong reaction");
    pragma Compile_Time_Error
      (Chain_Followed_Reaction > Chain_Followed_Reaction_Limit,
-      "chain followed " & "can exceed the limit of its reaction");
+      "chain followed can exceed the limit of its reaction");
    pragma Assert
      (Chain_Followed_Reaction_Needs <= Chain_Followed_Reaction_Limit);
-
    Chain_Followed_Age : constant := 33_555_000;
    Chain_Followed_Age_Limit : constant := 60_000_000;
    Chain_Followed_Age_Needs : constant :=
-     Servo_Control_Done
-     + Control_T
-     + Link_Servo_Report_Handed
-     + Link_Servo_Report_T
-     + Supervisor_Plan_Done;
-
+     Servo_Control_Done + Control_T + Link_Servo_Report_Handed
+     + Link_Servo_Report_T + Supervisor_Plan_Done;
    pragma Compile_Time_Error
-     (Chain_Followed_Age_Needs > Chain_Followed_Age,
-      "chain followed " & "can have a longer age than claimed");
-   pragma Compile_Time_Error
-     (Chain_Followed_Age > Chain_Followed_Age_Needs,
-      "chain followed " & "claims more than its terms add up to");
-   pragma Compile_Time_Error
-     (Chain_Followed_Age > Chain_Followed_Age_Limit,
-      "chain followed " & "can exceed the limit of its age");
+     (Chain_Followed_Age /= Chain_Followed_Age_Needs,
+      "chain followed claims a wrong age");
+   pragma Compile_Time_Error (Chain_Followed_Age > Chain_Followed_Age_Limit,
+      "chain followed can exceed the limit of its age");
    pragma Assert (Chain_Followed_Age_Needs <= Chain_Followed_Age_Limit);
 end Two_Nodes.Timing_Certificate;

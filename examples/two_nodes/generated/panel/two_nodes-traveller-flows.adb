@@ -24,12 +24,9 @@ is
               Two_Nodes.Unit_Um'Min
                 (Two_Nodes.Unit_Um'Max
                    (Two_Nodes.Unit_Um'Min
-                      (Two_Nodes.Unit_Um'Max
-                         (Goal,
+                      (Two_Nodes.Unit_Um'Max (Goal,
                           Report.Value.Position - 5_000),
-                       Report.Value.Position + 5_000),
-                    0),
-                 100_000));
+                       Report.Value.Position + 5_000), 0), 100_000));
          Send_Order := True;
       else
          Order :=

@@ -11,45 +11,35 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    function Select_Transition
-     (Leaf : Mission_States.Leaf;
-      Now : Occurrence;
-      Ins : Inputs)
+     (Leaf : Mission_States.Leaf; Now : Occurrence; Ins : Inputs)
      return Selection is
      (case Leaf is
         when Mission_States.Waiting =>
            (if Now = Conditions and then Ins.Report.State = Ravenchart.Fresh
                then Go
-            elsif Now = On_Bus_Failed
-               then Cut_Off_Early
+            elsif Now = On_Bus_Failed then Cut_Off_Early
             else None),
         when Mission_States.Outward =>
            (if Now = Conditions and then Ins.Report.Value.Position = 20_000
                then There
-            elsif Now = On_Servo_Lost
-               then Lost
-            elsif Now = On_Bus_Failed
-               then Cut_Off
+            elsif Now = On_Servo_Lost then Lost
+            elsif Now = On_Bus_Failed then Cut_Off
             else None),
         when Mission_States.Homeward =>
            (if Now = Conditions and then Ins.Report.Value.Position = 0
                then Home
-            elsif Now = On_Servo_Lost
-               then Lost
-            elsif Now = On_Bus_Failed
-               then Cut_Off
+            elsif Now = On_Servo_Lost then Lost
+            elsif Now = On_Bus_Failed then Cut_Off
             else None),
         when Mission_States.Safe =>
-           (if Now = On_Bus_Failed
-               then Cut_Off_Besides
+           (if Now = On_Bus_Failed then Cut_Off_Besides
             elsif Now = Conditions
                and then Ins.Report.State = Ravenchart.Fresh
                then Again
             else None),
         when Mission_States.Safe_Off_Bus =>
-           (if Now = On_Bus_Failed
-               then Still_Cut_Off
-            elsif Now = On_Bus_Back
-               then Connected
+           (if Now = On_Bus_Failed then Still_Cut_Off
+            elsif Now = On_Bus_Back then Connected
             else None))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins);
 
@@ -57,22 +47,14 @@ is
    with Ghost
    is
       type Node is
-        (Nowhere,
-         Waiting,
-         Outward,
-         Homeward,
-         Safe,
-         Safe_Off_Bus,
-         Travelling,
-         Disorder);
+        (Nowhere, Waiting, Outward, Homeward, Safe, Safe_Off_Bus,
+         Travelling, Disorder);
 
       function Innermost (Leaf : Mission_States.Leaf) return Node is
         (Node'Val (Mission_States.Leaf'Pos (Leaf) + 1));
 
       function Moved
-        (Active_Node : Node;
-         From_Node : Node;
-         To_Node : Node)
+        (Active_Node : Node; From_Node : Node; To_Node : Node)
         return Node is
         (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
@@ -89,16 +71,14 @@ is
    procedure Fire (Self : in out Region; Chosen : Firing)
    with
      Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started
+       (if Chosen = Initial_Entry then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
      Post =>
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
       Active : Chart.Node :=
-        (if Self.Started
-            then Chart.Innermost (Self.Leaf)
+        (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
       procedure Enter_Outward
@@ -146,9 +126,7 @@ is
          when Lost =>
             Active :=
               (if Self.Leaf in Mission_States.Travelling
-                  then Chart.Moved
-                       (Active,
-                        Chart.Innermost (Self.Leaf),
+                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                         Chart.Travelling)
                else Chart.Disorder);
             Active := Chart.Moved (Active, Chart.Travelling, Chart.Safe);
@@ -160,9 +138,7 @@ is
          when Cut_Off =>
             Active :=
               (if Self.Leaf in Mission_States.Travelling
-                  then Chart.Moved
-                       (Active,
-                        Chart.Innermost (Self.Leaf),
+                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
                         Chart.Travelling)
                else Chart.Disorder);
             Active :=

@@ -15,27 +15,13 @@ is
 
    --  [Traveller.Mission] what a step can be made for
    type Occurrence is
-     (Start_Of_Region,
-      On_Servo_Lost,
-      On_Bus_Failed,
-      On_Bus_Back,
-      Conditions);
+     (Start_Of_Region, On_Servo_Lost, On_Bus_Failed, On_Bus_Back, Conditions);
 
    --  [Traveller.Mission.transitions] in order of precedence, innermost
    --  source first
    type Selection is
-     (Initial_Entry,
-      There,
-      Home,
-      Go,
-      Lost,
-      Cut_Off_Early,
-      Cut_Off,
-      Cut_Off_Besides,
-      Still_Cut_Off,
-      Connected,
-      Again,
-      None);
+     (Initial_Entry, There, Home, Go, Lost, Cut_Off_Early, Cut_Off,
+      Cut_Off_Besides, Still_Cut_Off, Connected, Again, None);
 
    subtype Firing is Selection range Initial_Entry .. Again;
    subtype Transition is Selection range There .. Again;
@@ -95,8 +81,7 @@ is
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
-     (T : Transition;
-      Leaf : Mission_States.Leaf)
+     (T : Transition; Leaf : Mission_States.Leaf)
      return Boolean is
      (case T is
         when There => Leaf = Mission_States.Outward,
@@ -112,8 +97,7 @@ is
    --  Is its source the leaf, or around it?
 
    function Target
-     (T : Firing;
-      Leaf : Mission_States.Leaf)
+     (T : Firing; Leaf : Mission_States.Leaf)
      return Mission_States.Leaf is
      (case T is
         when Initial_Entry => Mission_States.Waiting,
@@ -166,11 +150,9 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Now = Start_Of_Region
-             then Fired = Initial_Entry
+       and then (if Now = Start_Of_Region then Fired = Initial_Entry
           else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
-       and then (if Fired = None
-             then Self.Leaf = Self.Leaf'Old
+       and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old));
    --  One run-to-completion step.
 end Two_Nodes.Traveller.Mission;

@@ -1,0 +1,167 @@
+"""What can delay a task or a message within a window, as static functions of the certificate.
+
+Each of those that go before each other adds what it asks for to the function of the one before
+it. So the certificate grows with their number, not with its square.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import (
+    Aspect,
+    Call,
+    Decl,
+    Expr,
+    Param,
+    Ref,
+    Subprogram,
+    arguments,
+    call,
+    number,
+)
+from ravenchart.gen.model.system import Node, System, Task
+
+from .terms import name_of, times
+
+UNIT = "Ravenchart.Response_Times"
+"""Holds the functions below: Time, Window, Sum and Demand."""
+
+W = Ref("W")
+"""The parameter of each function."""
+
+
+def asked(window: Expr, jitter: Expr, period: Expr, cost: Expr) -> Expr:
+    """What releases within a window execute, the first as late as can be."""
+    return call("Demand", window, jitter, period, cost)
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One of those that delay others: its name, and what it asks for within W."""
+
+    name: str
+    terms: tuple[Expr, ...]
+    level: int
+    """Those of one level, who follow each other, delay each other."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ladder:
+    """Steps, the most urgent first, and their functions.
+
+    ``up`` is how the function of a step and of all before it is called, ``rest`` that of a step
+    and of those behind it on its level. ``base`` delays all of them.
+    """
+
+    steps: tuple[Step, ...]
+    up: str = "Up"
+    rest: str = "Rest"
+    base: str = ""
+
+    def _place(self, name: str) -> int:
+        return next(n for n, step in enumerate(self.steps) if step.name == name)
+
+    def _before(self, place: int, window: Expr) -> list[Expr]:
+        found = f"{self.steps[place - 1].name}_{self.up}" if place else self.base
+        return [call(found, window)] if found else []
+
+    def others(self, name: str, window: Expr) -> list[Expr]:
+        """What can delay a step within a window."""
+        place = self._place(name)
+        behind = self.steps[place + 1 : place + 2]
+        alike = [s.name for s in behind if s.level == self.steps[place].level]
+        return [
+            *self._before(place, window),
+            *(call(f"{other}_{self.rest}", window) for other in alike),
+        ]
+
+    def whole(self, name: str, window: Expr) -> list[Expr]:
+        """The same, and what the step itself asks for."""
+        level = self.steps[self._place(name)].level
+        last = max(n for n, step in enumerate(self.steps) if step.level == level)
+        return self._before(last + 1, window)
+
+    def functions(self, *, last: bool = True) -> list[Decl]:
+        """All that the others use; ``last``: that of the last step as well."""
+        items: list[Decl] = []
+        for place, step in enumerate(self.steps[: None if last else -1]):
+            before = self._before(place, W)
+            items.append(_function(f"{step.name}_{self.up}", step.terms, before))
+        for _, level in groupby(self.steps, key=lambda step: step.level):
+            later = list(level)[1:]
+            behind: list[Expr] = []
+            for step in reversed(later):
+                name = f"{step.name}_{self.rest}"
+                items.append(_function(name, step.terms, behind))
+                behind = [call(name, W)]
+        return items
+
+
+def _function(name: str, terms: Sequence[Expr], more: Sequence[Expr] = ()) -> Decl:
+    """The sum of the demands and of what is asked for besides: each takes the rest with it."""
+    *others, value = [*terms, *more]
+    for term in reversed(others):
+        assert isinstance(term, Call)
+        value = Call(term.name, (*term.args, *arguments(value)))
+    window = Param("W", "in", "Window")
+    return Subprogram(name, (window,), "Time", (Aspect("Static"),), expression=value)
+
+
+# --- Tasks ---------------------------------------------------------------------------
+
+
+def costs(task: Task) -> dict[int, str]:
+    """How the work of a task is called: of what every release executes, and of every n-th."""
+    own = name_of(task.element)
+    divisors = sorted({1, *(slot.divisor for slot in task.slots)})
+    return {n: f"{own}_C" if n == 1 else f"{own}_C_{n}" for n in divisors}
+
+
+def _released(task: Task, divisor: int, cost: Expr) -> Expr:
+    own = name_of(task.element)
+    return asked(W, Ref(f"{own}_J"), times(number(divisor), Ref(f"{own}_T")), cost)
+
+
+def by_priority(system: System, node: Node) -> list[Task]:
+    """The tasks of a node, the most urgent first."""
+    return sorted((t for t in system.tasks if t.node == node.name), key=lambda t: -t.priority)
+
+
+def platform(
+    system: System, node: Node, window: Expr, term: Callable[[Task, int, Expr], Expr]
+) -> list[Expr]:
+    """What a node's clock and the releases of its tasks take, of which ``term`` counts some."""
+    own = ada_case(node.name)
+    found: list[Expr] = []
+    if node.release:
+        for task in by_priority(system, node):
+            ready = times(number(1 + task.sporadic), Ref(f"{own}_Release"))
+            found.append(term(task, 1, ready))
+    if node.tick is not None and node.tick.wcet:
+        found.append(asked(window, number(0), Ref(f"{own}_Tick_T"), Ref(f"{own}_Tick_C")))
+    return found
+
+
+def of_tasks(system: System, node: Node) -> Ladder:
+    """The tasks of a node."""
+    steps = (
+        Step(
+            name_of(task.element),
+            tuple(_released(task, divisor, Ref(c)) for divisor, c in costs(task).items()),
+            task.priority,
+        )
+        for task in by_priority(system, node)
+    )
+    base = f"{ada_case(node.name)}_Platform"
+    return Ladder(tuple(steps), base=base if platform(system, node, W, _released) else "")
+
+
+def task_functions(system: System, node: Node) -> list[Decl]:
+    """The functions of a node: what its platform takes, and its tasks."""
+    ladder = of_tasks(system, node)
+    own = [_function(ladder.base, platform(system, node, W, _released))] if ladder.base else []
+    return [*own, *ladder.functions(last=False)]

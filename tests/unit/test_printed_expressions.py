@@ -1,0 +1,50 @@
+"""Expressions as they are printed: parentheses where Ada asks for them, and filled lines."""
+
+from __future__ import annotations
+
+import pytest
+
+from ravenchart.gen.emit.ada.layout import laid_out
+from ravenchart.gen.emit.ada.syntax import Chain, Expr, Prefix, Ref, call
+from ravenchart.gen.emit.ada.text import expression
+
+A, B, C = Ref("A"), Ref("B"), Ref("C")
+
+
+def _both(operator: str, left: Expr, right: Expr) -> Chain:
+    return Chain(operator, (left, right))
+
+
+@pytest.mark.parametrize(
+    ("made", "text"),
+    [
+        (_both("*", _both("/", _both("+", A, B), C), A), "(A + B) / C * A"),
+        (_both("/", A, _both("*", B, C)), "A / (B * C)"),
+        (_both("*", A, _both("/", B, C)), "A * (B / C)"),
+        (_both("-", A, _both("+", B, C)), "A - (B + C)"),
+        (_both("-", _both("+", A, B), C), "A + B - C"),
+        (_both("+", A, _both("-", B, C)), "A + (B - C)"),
+        (_both("**", A, _both("*", B, C)), "A ** (B * C)"),
+        (_both(">", _both("+", A, B), _both("*", B, C)), "A + B > B * C"),
+        (_both("=", _both("=", A, B), C), "(A = B) = C"),
+        (_both("and then", _both("or else", A, B), C), "(A or else B) and then C"),
+        (_both("and then", _both("and then", A, B), C), "(A and then B) and then C"),
+        (_both("or else", _both("in", A, Ref("B .. C")), B), "A in B .. C or else B"),
+        (Prefix("not", _both("=", A, B)), "not (A = B)"),
+        (Prefix("-", _both("*", A, B)), "-(A * B)"),
+        (_both("*", Prefix("-", A), B), "(-A) * B"),
+        (_both("&", A, _both("&", B, C)), "A & (B & C)"),
+    ],
+)
+def test_parentheses_stand_where_the_precedence_asks_for_them(made: Expr, text: str) -> None:
+    assert laid_out(expression(made), 76) == text
+
+
+def test_operands_and_positional_arguments_fill_lines() -> None:
+    names = [Ref(f"Name_{n}") for n in range(8)]
+    assert laid_out(expression(Chain("+", tuple(names))), 40) == (
+        "Name_0 + Name_1 + Name_2 + Name_3\n+ Name_4 + Name_5 + Name_6 + Name_7"
+    )
+    assert laid_out(expression(call("Sum_Of", *names)), 40) == (
+        "Sum_Of (Name_0, Name_1, Name_2, Name_3,\n   Name_4, Name_5, Name_6, Name_7)"
+    )
