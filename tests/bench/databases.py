@@ -33,7 +33,7 @@ FRAMES = 20
 """Random frames for each message."""
 PERIOD = "100 ms"
 MOST = 40
-"""Messages of a program: certificates grow with the square of their number."""
+"""Messages of a program at the most, so that one compiles in a minute."""
 
 Tally = Counter[str]
 
