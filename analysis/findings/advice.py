@@ -17,7 +17,7 @@ from ravenchart.analysis.core.changes import Change, Kind, Met, Part
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling, scaled_network
 from ravenchart.analysis.units import microseconds, percent
-from ravenchart.gen.model.system import PROBE, SUPERVISOR
+from ravenchart.gen.model.nodes import PROBE, SUPERVISOR
 
 if TYPE_CHECKING:
     from ravenchart.analysis.system.timing import Analysis

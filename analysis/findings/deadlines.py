@@ -13,7 +13,8 @@ from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import duration, microseconds, percent
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import Bus, Chain
+from ravenchart.gen.model.buses import Bus
+from ravenchart.gen.model.system import Chain
 from ravenchart.gen.origins import Origin
 
 MISSED = "RV-0901"

@@ -22,7 +22,7 @@ from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.supervision import watches
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import Bus
+from ravenchart.gen.model.buses import Bus
 
 from . import plots
 from .page import page

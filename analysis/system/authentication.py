@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.authentication import Authentication
-from ravenchart.gen.model.system import Message
+from ravenchart.gen.model.buses import Message
 
 from .protection import Silence, silences
 from .timing import Analysis

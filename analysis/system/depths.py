@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 from ravenchart.gen.derive.calls import callers_of, calls_from_afar
 from ravenchart.gen.model.commands import Provided
 from ravenchart.gen.model.component import Port, PortKind
+from ravenchart.gen.model.instances import Connection, Instance
 from ravenchart.gen.model.statechart import Overflow
-from ravenchart.gen.model.system import Connection, Instance
 from ravenchart.gen.origins import Origin
 
 from .commands import from_release

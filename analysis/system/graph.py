@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import networkx as nx
 
 from ravenchart.gen.model.component import Activity, Component, Direction
+from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Instance, System
+from ravenchart.gen.model.system import System
 
 FLOW = frozenset({"reads", "writes", "sends", "carries"})
 """The kinds of edges along which values travel."""

@@ -21,7 +21,8 @@ from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.frames import leading
 from ravenchart.analysis.units import duration, microseconds, percent
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.model.system import Bus, System
+from ravenchart.gen.model.buses import Bus
+from ravenchart.gen.model.system import System
 
 from .network import network_of
 

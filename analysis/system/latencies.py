@@ -27,9 +27,10 @@ from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Level, Response
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.gen.language.terms import named
+from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Message, Processor, Reception, System
+from ravenchart.gen.model.system import Processor, System
 
 from .transport import Transfer, transfers
 

@@ -18,8 +18,10 @@ from ravenchart.analysis.core.frames import Bits, classic_bits, fd_bits, rank
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.gen.model import buses, nodes
 from ravenchart.gen.model import system as model
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.buses import Message
+from ravenchart.gen.model.system import System
 
 SECOND = 10**9
 """Ticks are nanoseconds."""
@@ -72,14 +74,14 @@ def _task(task: model.Task, system: System) -> Task:
     )
 
 
-def _platform(node: model.Node) -> Platform:
+def _platform(node: nodes.Node) -> Platform:
     """The overheads of a node."""
     tick = node.tick
     period, cost = (0, 0) if tick is None else (tick.period, tick.wcet)
     return Platform(node.context_switch, node.release, period, cost)
 
 
-def _frame(message: Message, bus: model.Bus, system: System) -> Frame:
+def _frame(message: Message, bus: buses.Bus, system: System) -> Frame:
     """A message at its longest."""
     return Frame(
         name=message.element,
@@ -93,7 +95,7 @@ def _frame(message: Message, bus: model.Bus, system: System) -> Frame:
     )
 
 
-def frame_length(message: Message, bus: model.Bus) -> Bits:
+def frame_length(message: Message, bus: buses.Bus) -> Bits:
     """The longest frame of a message, to the beginning of the next frame."""
     if message.fd:
         switched = bus.data_rate is not None
@@ -101,7 +103,7 @@ def frame_length(message: Message, bus: model.Bus) -> Bits:
     return classic_bits(message.length, extended=message.extended)
 
 
-def _bus(bus: model.Bus) -> Bus:
+def _bus(bus: buses.Bus) -> Bus:
     """A bus; its bit time is rounded up."""
     errors = bus.errors
     model_of = None if errors is None else Errors(errors.period, errors.burst)

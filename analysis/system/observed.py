@@ -16,8 +16,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import NO_TIME
+from ravenchart.gen.language.terms import NO_TIME, Ns
 
 KINDS = frozenset(
     {"sent", "arrived", "handled", "raised", "activity", "transition", "state", "fault"}

@@ -11,8 +11,10 @@ from fractions import Fraction
 from math import comb
 
 from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.buses import Message
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.protection import Protection
-from ravenchart.gen.model.system import End, Message, System
+from ravenchart.gen.model.system import System
 
 from .timing import Analysis
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import SUPERVISOR
+from ravenchart.gen.model.nodes import SUPERVISOR
 
 from .timing import Analysis
 

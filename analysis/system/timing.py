@@ -14,7 +14,8 @@ from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.responses import Level, Response, RowResponse
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling
 from ravenchart.analysis.core.tasks import plain
-from ravenchart.gen.model.system import Bus, Chain, Message, System
+from ravenchart.gen.model.buses import Bus, Message
+from ravenchart.gen.model.system import Chain, System
 from ravenchart.gen.model.system import Task as ModelTask
 from ravenchart.gen.origins import Origin
 

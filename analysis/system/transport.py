@@ -19,7 +19,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import Message, Reception, System
+from ravenchart.gen.model.buses import Message, Reception
+from ravenchart.gen.model.system import System
 from ravenchart.gen.model.transport import Transport
 
 if TYPE_CHECKING:

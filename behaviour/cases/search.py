@@ -20,8 +20,9 @@ from ravenchart.behaviour.interpreter.stimuli import Arrived, Raised, Stimuli
 from ravenchart.behaviour.rules.cells import every
 from ravenchart.gen.language.terms import Ns, Raise, Value
 from ravenchart.gen.model.component import Component, PortKind
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.statechart import OnEvent
-from ravenchart.gen.model.system import End, Slot, System
+from ravenchart.gen.model.system import Slot, System
 
 from .goals import Coverage, Element, Goal, Kind, goals
 from .stimulation import Choice, choices

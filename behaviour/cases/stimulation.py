@@ -23,7 +23,8 @@ from ravenchart.gen.language.terms import (
     Value,
 )
 from ravenchart.gen.model.component import Component
-from ravenchart.gen.model.system import End, Instance, System
+from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.system import System
 
 
 @dataclass(frozen=True, slots=True)

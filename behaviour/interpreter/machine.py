@@ -15,8 +15,9 @@ from collections.abc import Iterable, Iterator
 from ravenchart.gen.language.terms import Ns, Value
 from ravenchart.gen.model.component import Activity, PortKind
 from ravenchart.gen.model.component import Port as InputPort
+from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.statechart import DONE, OnEvent, Overflow, Region
-from ravenchart.gen.model.system import End, Instance, Slot, System, Work
+from ravenchart.gen.model.system import Slot, System, Work
 
 from .expressions import Outbox, Port, View, default, perform
 from .region import RegionRun

@@ -20,6 +20,7 @@ from ravenchart.gen.files.located import Map, grow_list
 from ravenchart.gen.language.quantities import duration, shown
 from ravenchart.gen.language.terms import (
     BOOLEAN,
+    NO_TIME,
     EnumerationType,
     IntegerType,
     Named,
@@ -31,8 +32,9 @@ from ravenchart.gen.language.terms import (
     Value,
     named,
 )
+from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.statechart import DONE
-from ravenchart.gen.model.system import NO_TIME, End, Instance, System
+from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
 N = TypeVar("N", bound=Named)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import (
     Binding,
     Device,
@@ -14,7 +15,7 @@ from ravenchart.gen.model.commands import (
 )
 from ravenchart.gen.model.component import Activity, Component
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.system import System
 
 
 def readers(component: Component, need: Need) -> tuple[Region | Activity, ...]:

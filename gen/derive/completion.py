@@ -10,11 +10,9 @@ from dataclasses import replace
 from functools import lru_cache
 
 from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.buses import Bus
+from ravenchart.gen.model.nodes import PROBE, SUPERVISOR, Node
 from ravenchart.gen.model.system import (
-    PROBE,
-    SUPERVISOR,
-    Bus,
-    Node,
     Processor,
     SharedObject,
     Slot,

@@ -13,15 +13,13 @@ from typing import TypeVar
 
 from ravenchart.gen.language.names import problem_of
 from ravenchart.gen.model.authentication import Authentication
+from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.commands import Remote, RemoteRead
+from ravenchart.gen.model.instances import Connection, Instance
+from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.protection import Protection
 from ravenchart.gen.model.signals import fits_classic, length_of, signals_of
 from ravenchart.gen.model.system import (
-    Bus,
-    Connection,
-    Instance,
-    Message,
-    Node,
     Processor,
     Shutdown,
     Slot,

@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import count
 
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.buses import Message
+from ravenchart.gen.model.system import System
 
 OPEN = -1
 """Stands where the model gives no identifier."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import Message, Processor, Slot, System, Work
+from ravenchart.gen.model.buses import Message
+from ravenchart.gen.model.system import Processor, Slot, System, Work
 
 from .senders import sending_rows
 

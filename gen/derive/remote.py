@@ -17,12 +17,23 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ravenchart.gen.language.names import problem_of
-from ravenchart.gen.language.terms import BUILT_IN, Field, IntegerType, Ns, RecordType, Type, named
+from ravenchart.gen.language.terms import (
+    BUILT_IN,
+    NO_TIME,
+    Field,
+    IntegerType,
+    Ns,
+    RecordType,
+    Type,
+    named,
+)
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Binding, Remote, RemoteRead, Server
 from ravenchart.gen.model.component import Activity
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.signals import fits_classic, length_of, signals_of
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import NO_TIME, Chain, End, Message, System
+from ravenchart.gen.model.system import Chain, System
 from ravenchart.gen.origins import Origin
 
 from .calls import awaited, published_by, readers

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.buses import Message
+from ravenchart.gen.model.system import System
 
 
 def sender_of(system: System, message: Message) -> str | None:

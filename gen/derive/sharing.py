@@ -6,19 +6,13 @@ from collections.abc import Iterable, Set
 from dataclasses import dataclass, replace
 
 from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.commands import Remote, RemoteRead
 from ravenchart.gen.model.component import Activity
+from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.nodes import PROBE, SUPERVISOR
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import (
-    PROBE,
-    SUPERVISOR,
-    Bus,
-    Instance,
-    Processor,
-    SharedObject,
-    System,
-    Work,
-)
+from ravenchart.gen.model.system import Processor, SharedObject, System, Work
 
 from .calls import (
     callers,

@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ravenchart.gen.language.terms import BOOLEAN
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.buses import Message
+from ravenchart.gen.model.system import System
 
 
 def _flows(system: System) -> Iterator[Message]:

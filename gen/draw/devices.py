@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ravenchart.gen.derive.calls import called
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Device, Server
-from ravenchart.gen.model.system import End, Instance, Message, System
+from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.system import System
 
 from .dot import Attributes, Edge, Html, html
 from .dot import Node as Drawn

@@ -17,8 +17,11 @@ from itertools import pairwise, product, zip_longest
 import networkx as nx
 
 from ravenchart.gen.language.quantities import BITS_PER_SECOND, shown
+from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.component import Direction, Port
-from ravenchart.gen.model.system import Bus, End, Instance, Message, Node, Processor, System
+from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.system import Processor, System
 
 from .devices import (
     DASHED,

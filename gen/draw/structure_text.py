@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.component import Direction
-from ravenchart.gen.model.system import End, Instance, Message, System
+from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.system import System
 
 from .devices import devices_of, kind_of, links
 

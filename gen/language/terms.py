@@ -15,6 +15,8 @@ from ravenchart.gen.origins import Origin
 Ns = NewType("Ns", int)
 """A duration in nanoseconds."""
 
+NO_TIME = Ns(0)
+
 
 class Named(Protocol):
     """Anything with a name."""

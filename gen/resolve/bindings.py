@@ -25,8 +25,9 @@ from ravenchart.gen.model.commands import (
     wcet_of,
 )
 from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.instances import Connection, End, Instance
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Connection, End, Instance, Processor, Slot, System
+from ravenchart.gen.model.system import Processor, Slot, System
 
 from .devices import (
     Devices,

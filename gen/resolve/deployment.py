@@ -23,22 +23,16 @@ from ravenchart.gen.files.schema_frames import (
 from ravenchart.gen.language.names import Findings, Scope
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns, Scalar
+from ravenchart.gen.model.buses import Bus, BusErrors, Message
 from ravenchart.gen.model.component import Direction, Port
+from ravenchart.gen.model.instances import Connection, End, Instance
+from ravenchart.gen.model.nodes import Node, Supervision, Tick
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
-    Bus,
-    BusErrors,
     Chain,
-    Connection,
-    End,
-    Instance,
-    Message,
-    Node,
     Processor,
     Shutdown,
     Slot,
-    Supervision,
-    Tick,
     Work,
 )
 from ravenchart.gen.origins import Origin

@@ -22,7 +22,7 @@ from ravenchart.gen.model.commands import (
     Published,
     Server,
 )
-from ravenchart.gen.model.system import Instance
+from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.origins import Origin
 
 from .equipment import address_of, apart, lifecycle_of, parameters_of, registers_of, values_of

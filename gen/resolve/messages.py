@@ -12,10 +12,11 @@ from ravenchart.gen.files.schema_frames import (
 )
 from ravenchart.gen.language.terms import BOOLEAN, Ns
 from ravenchart.gen.model.authentication import Authentication
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.component import Direction, Port
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.protection import Protection
 from ravenchart.gen.model.signals import Signal
-from ravenchart.gen.model.system import End, Message
 from ravenchart.gen.model.transmission import Transmission
 from ravenchart.gen.model.transport import Transport
 from ravenchart.gen.origins import Origin

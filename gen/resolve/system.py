@@ -19,8 +19,10 @@ from ravenchart.gen.files.schema import ModelFile
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
 from ravenchart.gen.language.names import CHILDREN, GNAT_PREFIXES, PREDEFINED_TYPES, Findings, Scope
 from ravenchart.gen.language.terms import BOOLEAN, EnumerationType, Type
+from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.commands import Binding, DeviceType, Poll
-from ravenchart.gen.model.system import Bus, Connection, Instance, Message, Shutdown, System
+from ravenchart.gen.model.instances import Connection, Instance
+from ravenchart.gen.model.system import Shutdown, System
 from ravenchart.gen.origins import Origin
 
 from .bindings import bindings_of, event_wires, given_bindings, with_bindings

@@ -6,7 +6,9 @@ from collections.abc import Iterator, Sequence
 
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.names import alike_in_databases
-from ravenchart.gen.model.system import Bus, Message, Node, Slot, System, Work
+from ravenchart.gen.model.buses import Bus, Message
+from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.system import Slot, System, Work
 from ravenchart.gen.resolve.authentication import AUTHENTICATION
 from ravenchart.gen.resolve.layouts import DATABASE
 from ravenchart.gen.resolve.protection import PROTECTION

@@ -14,9 +14,11 @@ from itertools import product
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import EnumerationType
+from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.component import Component, Direction
+from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.signals import bits_of, room_of
-from ravenchart.gen.model.system import Bus, Instance, Message, Processor, Slot, System, Work
+from ravenchart.gen.model.system import Processor, Slot, System, Work
 from ravenchart.gen.origins import Origin
 from ravenchart.gen.parallel import MANY, made_by_all
 from ravenchart.gen.resolve.system import Resolved

@@ -17,7 +17,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from ravenchart.failures import Refused, ToolFailed, Unusable
 from ravenchart.gen.files.schema_base import PositiveSpan, Span
 from ravenchart.gen.language.quantities import shown
-from ravenchart.gen.model.system import Node, System
+from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import ROOT, work
 from ravenchart.tools import children

@@ -16,7 +16,8 @@ from cantools.database.can import Message as DbcMessage
 from cantools.database.can.formats.dbc.dbc_specifics import DbcSpecifics
 
 from ravenchart.gen.emit.buses.dbc import emit_dbc
-from ravenchart.gen.model.system import Bus, Message, System
+from ravenchart.gen.model.buses import Bus, Message
+from ravenchart.gen.model.system import System
 
 from .database import read
 from .fields import fields_of, raw_fields

@@ -17,8 +17,9 @@ from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.emit.tables.trace_map import CONTROLLER_STATES, elements
+from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Instance, System
+from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
 from ravenchart.hw_can.bench.naming import as_in_model
 from ravenchart.hw_can.bench.peer import OUTSIDE, BenchError, Codec

@@ -23,8 +23,9 @@ from ravenchart.building import checking, generation, programs
 from ravenchart.gen.emit.ada.naming import ada_case, type_name
 from ravenchart.gen.emit.buses.codecs import codec_name
 from ravenchart.gen.language.terms import EnumerationType
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import Signal
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
 

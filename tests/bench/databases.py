@@ -26,7 +26,8 @@ from cantools.database.can import Message as DbcMessage
 from ravenchart.building import checking
 from ravenchart.databases import database, exporting
 from ravenchart.failures import Failure, Refused
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.buses import Message
+from ravenchart.gen.model.system import System
 from tests.support.codec_runner import Runner, literal, runners_of
 
 FRAMES = 20

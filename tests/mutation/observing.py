@@ -32,7 +32,8 @@ from ravenchart.gen.language.terms import (
     Value,
 )
 from ravenchart.gen.model.component import Event, Port
-from ravenchart.gen.model.system import End, System
+from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
 from ravenchart.running.runs import controller, run_controller, run_nodes
 

@@ -16,18 +16,16 @@ from ravenchart.gen.emit.ada.text import print_unit
 from ravenchart.gen.emit.certificate.package import emit_certificate
 from ravenchart.gen.emit.program import HEADER
 from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.buses import BusErrors, Message, Reception
+from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.nodes import Tick
 from ravenchart.gen.model.signals import FD_SIZES
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
-    BusErrors,
-    End,
-    Message,
     Processor,
-    Reception,
     Slot,
     System,
     Task,
-    Tick,
     Work,
 )
 from ravenchart.paths import ROOT

@@ -19,8 +19,9 @@ from ravenchart.gen.emit.ada.naming import ada_case, default_value, type_name
 from ravenchart.gen.emit.ada.syntax import Ref
 from ravenchart.gen.emit.buses.codecs import WORDS, codec_name, words_of
 from ravenchart.gen.emit.buses.coding import literal_name
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import Signal
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
 from tests.support import compiler
 

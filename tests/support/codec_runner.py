@@ -18,8 +18,9 @@ from ravenchart.gen.emit.ada.naming import ada_case, type_name
 from ravenchart.gen.emit.buses.codecs import WORDS, codec_name, words_of
 from ravenchart.gen.emit.program import folder_of, generate
 from ravenchart.gen.language.terms import EnumerationType
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import Signal
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
 from tests.hardware.machines import HERE, Machine
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ravenchart.gen.derive.completion import completed
 from ravenchart.gen.language.terms import IntegerType, Ns
+from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.component import (
     Activity,
     Component,
@@ -13,6 +14,8 @@ from ravenchart.gen.model.component import (
     Parameter,
     Port,
 )
+from ravenchart.gen.model.instances import Connection, End, Instance
+from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.statechart import (
     Initial,
     OnEvent,
@@ -24,12 +27,6 @@ from ravenchart.gen.model.statechart import (
 )
 from ravenchart.gen.model.statechart import Overflow as Full
 from ravenchart.gen.model.system import (
-    Bus,
-    Connection,
-    End,
-    Instance,
-    Message,
-    Node,
     Processor,
     Shutdown,
     Slot,

@@ -5,18 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ravenchart.gen.language.terms import IntegerType, Ns
+from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.component import Component
-from ravenchart.gen.model.system import (
-    Bus,
-    End,
-    Instance,
-    Message,
-    Node,
-    SharedObject,
-    Shutdown,
-    System,
-    Task,
-)
+from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.system import SharedObject, Shutdown, System, Task
 from ravenchart.gen.origins import Origin
 
 HERE = Origin("model.yaml", 1, 1)

@@ -13,8 +13,9 @@ from ravenchart.building import checking
 from ravenchart.gen.emit.ada.text import print_unit
 from ravenchart.gen.emit.certificate.package import emit_certificate
 from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.claims import ChainClaim, Claim, Claims
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
 from tests.support.certificates import certificate, changed, compiled, numbers
 from tests.support.systems import bus, message, system, task

@@ -20,8 +20,8 @@ from ravenchart.gen.emit.program import generate
 from ravenchart.gen.language.terms import IntegerType
 from ravenchart.gen.language.units import count_of
 from ravenchart.gen.model.authentication import FRESHNESS, MAC, REST
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import Signal
-from ravenchart.gen.model.system import Message
 from ravenchart.hw_can.bench.protection import HEADER
 from ravenchart.paths import ROOT
 from tests.hardware.machines import HERE, OTHERS, Machine

@@ -15,7 +15,7 @@ import pytest
 
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
 from ravenchart.building import checking, generation, programs
-from ravenchart.gen.model.system import Message
+from ravenchart.gen.model.buses import Message
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.paths import ROOT
 from ravenchart.running import server as bus

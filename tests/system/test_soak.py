@@ -20,7 +20,7 @@ from ravenchart.behaviour.interpreter.traces import Record
 from ravenchart.building import checking
 from ravenchart.commands.simulate import build_simulation, run_simulation
 from ravenchart.gen.language.terms import Ns, Value
-from ravenchart.gen.model.system import End
+from ravenchart.gen.model.instances import End
 from ravenchart.paths import ROOT
 from tests.support.faults import shows
 

@@ -18,7 +18,9 @@ from ravenchart.analysis.core.responses import Reason
 from ravenchart.analysis.present.words import growth_line
 from ravenchart.analysis.system.timing import Analysis, Verdict, analyse
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import BusErrors, SharedObject, System, Task, Tick
+from ravenchart.gen.model.buses import BusErrors
+from ravenchart.gen.model.nodes import Tick
+from ravenchart.gen.model.system import SharedObject, System, Task
 from tests.support.core_cases import cases
 from tests.support.pump import system_of
 from tests.support.simulation import longest_responses

@@ -14,8 +14,9 @@ from ravenchart.command_line import main
 from ravenchart.databases.database import Imported, Periods, imported
 from ravenchart.failures import OK, WRONG
 from ravenchart.gen.emit.buses.dbc import emit_dbc
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import positions
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.system import System
 from tests.unit.test_import_database import database, system_of, whole
 
 

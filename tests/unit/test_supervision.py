@@ -13,7 +13,8 @@ from ravenchart.analysis.system.observed import Observation, Releases, TraceMap,
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.gen.emit.nodes.supervision import END_MARGIN
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import SUPERVISOR, System
+from ravenchart.gen.model.nodes import SUPERVISOR
+from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
 from ravenchart.running import judge

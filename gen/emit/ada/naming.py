@@ -15,8 +15,9 @@ from ravenchart.gen.language.terms import (
     default,
 )
 from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Instance, Processor, Slot, System
+from ravenchart.gen.model.system import Processor, Slot, System
 
 from .syntax import Aggregate, Arg, Expr, Ref, number
 

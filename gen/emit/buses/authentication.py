@@ -36,7 +36,8 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.model.authentication import Authentication
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.buses import Message
+from ravenchart.gen.model.system import System
 
 AUTHENTICATION = "Ravenchart.Can.Authentication"
 

@@ -47,8 +47,9 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.language.terms import RecordType, default
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import RAW_LIMIT, Signal, bits_of, signals_of
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.system import System
 
 from .coding import (
     NUMBER,

@@ -17,7 +17,8 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.emit.certificate.certified import agrees, fact
-from ravenchart.gen.model.system import Bus, Task
+from ravenchart.gen.model.buses import Bus
+from ravenchart.gen.model.system import Task
 
 
 def controller_checks(bus: Bus, driver: Task) -> list[Decl]:

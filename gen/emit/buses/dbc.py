@@ -23,9 +23,11 @@ from cantools.database.namedsignalvalue import NamedSignalValue
 from ravenchart.gen.language.terms import EnumerationType, IntegerType
 from ravenchart.gen.language.units import count_of
 from ravenchart.gen.model.authentication import Authentication
+from ravenchart.gen.model.buses import Bus, Message
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.protection import Protection
 from ravenchart.gen.model.signals import ByteOrder, Signal, range_of
-from ravenchart.gen.model.system import Bus, End, Message, System
+from ravenchart.gen.model.system import System
 
 OUTSIDE = "Outside"
 """The sender of what comes from beyond the system."""

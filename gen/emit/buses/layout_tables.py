@@ -34,8 +34,9 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.language.terms import EnumerationType, IntegerType
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import ByteOrder, Signal
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.system import System
 
 LAYOUTS = "Ravenchart.Can.Layouts"
 """What the rows of layout tables mean."""

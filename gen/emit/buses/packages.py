@@ -40,7 +40,9 @@ from ravenchart.gen.emit.certificate.certified import CERTIFICATE, fact
 from ravenchart.gen.emit.commands.remote_calls import received_as
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
 from ravenchart.gen.emit.tables.trace_calls import note, traced
-from ravenchart.gen.model.system import Bus, End, Message, System, Work
+from ravenchart.gen.model.buses import Bus, Message
+from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.system import System, Work
 
 from . import authentication
 from .authentication import AUTHENTICATION

@@ -24,7 +24,7 @@ from ravenchart.gen.emit.ada.syntax import (
     member,
     number,
 )
-from ravenchart.gen.model.system import Message
+from ravenchart.gen.model.buses import Message
 
 PROTECTION = "Ravenchart.Can.Protection"
 

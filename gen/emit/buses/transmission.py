@@ -21,7 +21,8 @@ from ravenchart.gen.emit.ada.syntax import (
     call,
     number,
 )
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.buses import Message
+from ravenchart.gen.model.system import System
 from ravenchart.gen.model.transmission import Mode
 
 TRANSMISSIONS = "Ravenchart.Can.Transmissions"

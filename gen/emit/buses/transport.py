@@ -35,7 +35,8 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.emit.certificate.certified import fact
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.buses import Message
+from ravenchart.gen.model.system import System
 from ravenchart.gen.model.transport import MICROSECOND, Transport, code_of
 
 from .codecs import codec_name

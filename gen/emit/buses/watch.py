@@ -27,7 +27,8 @@ from ravenchart.gen.emit.ada.syntax import (
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
 from ravenchart.gen.emit.tables.trace_calls import note, traced
-from ravenchart.gen.model.system import Bus, Slot, System, Work
+from ravenchart.gen.model.buses import Bus
+from ravenchart.gen.model.system import Slot, System, Work
 
 NOTICES = "Ravenchart.Can.Fault_Notices"
 

@@ -18,8 +18,10 @@ from itertools import pairwise
 from ravenchart.gen.derive.identifiers import leading
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import Chain, Comment, Decl, Expr, Ref, number
+from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.claims import Claim, Claims
-from ravenchart.gen.model.system import Bus, Message, Node, System
+from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.system import System
 
 from .frames import explained, length_terms, rate_terms, span
 from .interference import Ladder, Step, W, asked

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import Chain, Decl, Expr, Ref, number
-from ravenchart.gen.model.system import Bus, Message
+from ravenchart.gen.model.buses import Bus, Message
 
 from .terms import ONE, ceiling, name_of, named, plus, stated, times
 

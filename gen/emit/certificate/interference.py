@@ -23,7 +23,8 @@ from ravenchart.gen.emit.ada.syntax import (
     call,
     number,
 )
-from ravenchart.gen.model.system import Node, System, Task
+from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.system import System, Task
 
 from .terms import name_of, times
 

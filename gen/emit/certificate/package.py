@@ -30,7 +30,8 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.model.claims import ChainClaim, Claims
-from ravenchart.gen.model.system import SUPERVISOR, Node, SharedObject, System, Task
+from ravenchart.gen.model.nodes import SUPERVISOR, Node
+from ravenchart.gen.model.system import SharedObject, System, Task
 
 from .buses import bus_claims, bus_terms
 from .chains import chain_claims

@@ -11,9 +11,11 @@ from __future__ import annotations
 from math import comb
 
 from ravenchart.gen.emit.ada.syntax import Chain, Comment, Decl, Expr, Ref, number
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.claims import Claims
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.protection import Protection
-from ravenchart.gen.model.system import End, Message, System
+from ravenchart.gen.model.system import System
 
 from .terms import ceiling, exact, name_of, named, plus, stated, times
 

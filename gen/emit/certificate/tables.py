@@ -9,7 +9,8 @@ from __future__ import annotations
 from itertools import pairwise
 
 from ravenchart.gen.emit.ada.syntax import Chain, Decl, Expr, Ref, number
-from ravenchart.gen.model.system import Node, System, Task
+from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.system import System, Task
 
 from .interference import by_priority
 from .terms import name_of, none_of, stated

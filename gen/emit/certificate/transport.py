@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, Ref, number
+from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.claims import Claims
-from ravenchart.gen.model.system import Message, Reception, System
+from ravenchart.gen.model.system import System
 from ravenchart.gen.model.transport import Transport
 
 from .terms import assured, ceiling, exact, name_of, named, plus, refuse, stated, times

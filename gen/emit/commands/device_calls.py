@@ -48,7 +48,8 @@ from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.language.terms import Type, named
 from ravenchart.gen.model.commands import Binding, Device, Need, Provided, Remote, Server
 from ravenchart.gen.model.component import Component, Port
-from ravenchart.gen.model.system import Instance, System
+from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.system import System
 
 from .remote_calls import (
     answers,

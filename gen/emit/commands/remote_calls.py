@@ -35,10 +35,12 @@ from ravenchart.gen.emit.ada.syntax import (
 from ravenchart.gen.emit.ada.syntax import Chain as Operation
 from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
 from ravenchart.gen.language.terms import RecordType, Type
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, Provided, Remote, RemoteRead
 from ravenchart.gen.model.component import Activity
+from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Instance, Message, System
+from ravenchart.gen.model.system import System
 
 CALLS = "Ravenchart.Calls"
 STATUS = "Ravenchart.Queueing.Put_Status"

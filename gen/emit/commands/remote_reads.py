@@ -20,10 +20,12 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, RemoteRead
 from ravenchart.gen.model.component import Activity
+from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Instance, Message, System
+from ravenchart.gen.model.system import System
 
 from .remote_calls import CALLS
 

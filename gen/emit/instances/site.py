@@ -9,8 +9,9 @@ from ravenchart.gen.emit.ada.syntax import Call, Do, Expr, Ref, Stmt, arguments
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.trace_calls import note
 from ravenchart.gen.model.component import Activity, Data, Port
+from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import End, Instance, Slot, System
+from ravenchart.gen.model.system import Slot, System
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import Do
 from ravenchart.gen.model.component import Activity
+from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import End, Instance, System
+from ravenchart.gen.model.system import System
 
 
 def transmits(system: System, instance: Instance, row: Region | Activity) -> tuple[Do, ...]:

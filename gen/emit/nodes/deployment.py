@@ -45,7 +45,8 @@ from ravenchart.gen.emit.certificate.certified import CERTIFICATE, agrees, fact,
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID
 from ravenchart.gen.emit.tables.trace_calls import element_constant, note, row_number, traced
 from ravenchart.gen.emit.tables.trace_map import elements
-from ravenchart.gen.model.system import Node, Processor, Slot, System, Work
+from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.system import Processor, Slot, System, Work
 
 from .reports import emit_main, emit_reports
 from .supervision import emit_supervision, offer

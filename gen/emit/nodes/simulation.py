@@ -44,7 +44,8 @@ from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID
 from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType, Type, Value
 from ravenchart.gen.model.component import Port
-from ravenchart.gen.model.system import Instance, System
+from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.system import System
 
 Stimulus = tuple[str, str, Type | None]
 """Instance, event or input port, and the type of its value."""

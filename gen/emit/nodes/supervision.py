@@ -38,7 +38,8 @@ from ravenchart.gen.emit.certificate.certified import agrees, fact
 from ravenchart.gen.emit.commands.lifecycle import UNIT, ends_devices
 from ravenchart.gen.emit.language.own_names import event_literal
 from ravenchart.gen.emit.tables.trace_calls import note, traced
-from ravenchart.gen.model.system import SUPERVISOR, Node, Processor, Supervision, System
+from ravenchart.gen.model.nodes import SUPERVISOR, Node, Supervision
+from ravenchart.gen.model.system import Processor, System
 
 STACK = 32_768
 """Bytes of stack for the supervisor."""

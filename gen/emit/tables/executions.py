@@ -20,7 +20,8 @@ from ravenchart.gen.emit.ada.syntax import (
     equal,
     number,
 )
-from ravenchart.gen.model.system import Bus, Slot, System, Work
+from ravenchart.gen.model.buses import Bus
+from ravenchart.gen.model.system import Slot, System, Work
 
 from .trace_calls import element_constant
 

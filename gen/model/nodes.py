@@ -1,0 +1,76 @@
+"""The nodes of a system: what the platform takes of each, and who watches over it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ravenchart.gen.language.terms import NO_TIME, Ns
+from ravenchart.gen.origins import Origin
+
+from .statechart import Timing
+
+PROBE = "probe"
+"""A node's host probe, as a task."""
+
+
+SUPERVISOR = "supervisor"
+"""The liveness supervision of a node, as a task."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """A timer that interrupts a node every ``period`` for up to ``wcet``."""
+
+    period: Ns
+    wcet: Ns
+
+
+@dataclass(frozen=True, slots=True)
+class Supervision:
+    """The liveness supervision of a node: a task that looks at all processors every ``period``.
+
+    A processor is silent when a release has not completed by its deadline and ``margin``.
+    """
+
+    period: Ns
+    wcet: Ns
+    margin: Ns
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """One processor core or several alike, with platform figures, all worst cases in ns."""
+
+    name: str
+    origin: Origin
+    context_switch: Ns
+    critical_section: Ns
+    """Longest time inside any protected operation of the runtime on this node."""
+    trace_depth: int
+    """Records that the trace holds between two looks at it; 0: no trace."""
+    probe: Timing | None = None
+    """The host probe: a task above all others that measures how late it wakes."""
+    release: Ns = NO_TIME
+    """Work above all tasks that makes one job ready."""
+    tick: Tick | None = None
+    """What makes timed releases late by up to its period; None: a timer that is exact."""
+    cores: int = 1
+    supervision: Supervision | None = None
+    database_name: str | None = None
+    """What databases call it; None: as the model does."""
+
+    @property
+    def in_database(self) -> str:
+        """Its name in the databases of its buses."""
+        return self.database_name or self.name
+
+    @property
+    def core_names(self) -> tuple[str, ...]:
+        """The cores by name: that of the node where there is one, ``node.1`` and on otherwise."""
+        if self.cores == 1:
+            return (self.name,)
+        return tuple(f"{self.name}.{number}" for number in range(1, self.cores + 1))
+
+    def core_name(self, number: int) -> str:
+        """The name of the core with that number, from 1."""
+        return self.core_names[number - 1]
