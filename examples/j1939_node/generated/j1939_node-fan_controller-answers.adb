@@ -137,7 +137,13 @@ is
             Exit_Sending;
             Active := Chart.Moved (Active, Chart.Nowhere, Chart.Silent);
             Self.Leaf := Answers_States.Silent;
-         when Cyclic | Answer_All | Answer =>
+         when Cyclic =>
+            Self.Data.Due :=
+              (if Self.Data.Due = 255 then 0 else Self.Data.Due + 1);
+         when Answer_All =>
+            Self.Data.Due :=
+              (if Self.Data.Due = 255 then 0 else Self.Data.Due + 1);
+         when Answer =>
             Self.Data.Due :=
               (if Self.Data.Due = 255 then 0 else Self.Data.Due + 1);
          when Refuse =>

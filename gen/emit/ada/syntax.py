@@ -384,14 +384,6 @@ def equal(left: Expr, right: Expr) -> Expr:
     return Chain("=", (left, right))
 
 
-def case_of(selector: Expr, rows: Sequence[tuple[str, tuple[Stmt, ...]]]) -> Case:
-    """A case statement; choices with the same statements stand together."""
-    found: dict[tuple[Stmt, ...], list[str]] = {}
-    for choice, statements in rows:
-        found.setdefault(statements, []).append(choice)
-    return Case(selector, tuple((" | ".join(names), body) for body, names in found.items()))
-
-
 def names_in(construct: object) -> Iterator[str]:
     """The text of each name and literal in it."""
     if isinstance(construct, Ref):

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
+    Case,
     CaseExpr,
     Comment,
     Decl,
@@ -24,7 +25,6 @@ from ravenchart.gen.emit.ada.syntax import (
     Subprogram,
     both,
     call,
-    case_of,
     equal,
 )
 from ravenchart.gen.emit.language.compound import PASSED, Enter, Place, Step
@@ -180,7 +180,7 @@ class Restoring:
             for leaf in self.shape.literals_in(place)
         )
         default = self._steps(self.shape.compounds.default(place))
-        known = (case_of(Ref(f"Past.{memory.last}"), rows),)
+        known = (Case(Ref(f"Past.{memory.last}"), rows),)
         return (If(((Ref(f"Past.{memory.known}"), known),), default),)
 
     def _steps(self, steps: tuple[Step, ...]) -> tuple[Stmt, ...]:

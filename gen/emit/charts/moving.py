@@ -13,6 +13,7 @@ from ravenchart.gen.emit.ada.syntax import (
     TRUE,
     Aspect,
     Assign,
+    Case,
     Decl,
     Do,
     Expr,
@@ -23,7 +24,6 @@ from ravenchart.gen.emit.ada.syntax import (
     arguments,
     both,
     call,
-    case_of,
     chain,
     equal,
     number,
@@ -268,5 +268,5 @@ class Moving:
                     ),
                 ),
             ),
-            body=(case_of(Ref(leaf), rows),),
+            body=(Case(Ref(leaf), tuple(rows)),),
         )
