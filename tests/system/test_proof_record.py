@@ -60,12 +60,15 @@ def test_nothing_is_unproved_justified_or_assumed(path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", house.MODELS)
-def test_every_model_of_the_tests_gives_what_was_proved(name: str) -> None:
+def test_a_model_of_the_tests_gives_what_was_proved(name: str) -> None:
+    found = [path for path in RECORDS if path.match(f"{name}.toml") or path.match(f"{name}-*.toml")]
+    if not found:
+        pytest.skip(f"it has no record: `make prove ONLY={name}` proves it")
     folder = house.made(name)
     names = house.record_names(name, folder)
-    for age in {path.parent.name for path in RECORDS if path.stem in names}:
-        for record in names:
-            assert proving.stale_sources(house.RECORDS / age / f"{record}.toml") == ()
+    assert {path.stem for path in found} == set(names)
+    for path in found:
+        assert proving.stale_sources(path) == ()
     _bodies_recorded(name, folder)
 
 
