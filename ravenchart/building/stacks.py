@@ -33,8 +33,6 @@ FRAMES = ROOT / "spark_runtime" / "frames.toml"
 ENDINGS = frozenset({"__gnat_last_chance_handler"})
 ATTACHING = "system__interrupts__install_restricted_handlers"
 """What attaches handlers of interrupts. Which, the call graph does not say."""
-TASK = "TKB"
-"""How the symbol of a task body ends."""
 SAFE = 1_024
 """Sizes are suggested in whole KiB."""
 
@@ -219,20 +217,25 @@ def _tasks(made: Made, depths: Depths, by_name: Mapping[str, symbols.Symbol]) ->
     """The stack of each task, in the order of the model."""
     values = symbols.Values(made.image, by_name)
     known = _known(made.system)
-    roots = [title for title, one in depths.graph.items() if one.name.endswith(TASK)]
+    roots = [title for title, one in depths.graph.items() if graph.is_task(one.name)]
     order = {name: number for number, name in enumerate(known)}
     for root in sorted(roots, key=lambda r: (order.get(_unit(r), len(order)), r)):
         task, _, declared = known.get(_unit(root), (graph.ada_name(root), None, None))
         name = graph.symbol(root)
         if any(task == bus.name for bus in made.system.buses):  # several tasks of one driver
-            task = f"{task}.{name.rpartition('__')[2].removesuffix(TASK)}"
-        size = values.number(f"{name.rpartition('__')[0]}__stack_bytes")
-        if size is None:
-            size = values.number(f"{name.removesuffix('B')}Z")
-        size = declared if size is None else size
+            task = f"{task}.{graph.ada_name(root).rpartition('.')[2].lower()}"
+        size = _size(name, values) or declared
         if size is None:
             raise ToolFailed(f"{made.image}: the size of the stack of {task} is not in the program")
         yield _stack(made, depths, task, root, size, _ending(made, depths))
+
+
+def _size(body: str, values: symbols.Values) -> int | None:
+    """The size of the stack of a task: its own, or `Stack_Bytes` of a package around it."""
+    around = body.split("__")[:-1]
+    names = ["__".join((*around[:count], "stack_bytes")) for count in range(len(around), 0, -1)]
+    found = (values.number(name) for name in (body.replace("TKB", "TKZ"), *names))
+    return next((size for size in found if size is not None), None)
 
 
 def _unit(root: str) -> str:

@@ -99,9 +99,18 @@ def plain(name: str) -> str:
     return _CLONE.sub("", name)
 
 
+_TASK = re.compile(r"TKB(X[bn]*)?$")
+"""GNAT's symbol of a task body; `X` and letters follow inside a body."""
+
+
+def is_task(name: str) -> bool:
+    """Whether a symbol is that of a task body."""
+    return _TASK.search(plain(name)) is not None
+
+
 def ada_name(name: str) -> str:
     """A symbol as people read it: `pump_1__run_ports` is `Pump_1.Run_Ports`."""
-    base = re.sub(r"(TKB|\.\d+)$", "", plain(name).removeprefix("_ada_"))
+    base = re.sub(r"(TKB(X[bn]*)?|\.\d+)$", "", plain(name).removeprefix("_ada_"))
     parts = [p for p in base.split("__") if p]
     if len(parts) < 2:
         return name

@@ -14,7 +14,7 @@ import pytest
 from ravenchart.building import checking, generation, programs, stacks
 from ravenchart.failures import Refused
 from ravenchart.paths import ROOT
-from ravenchart.stacks import symbols
+from ravenchart.stacks import graph, symbols
 from ravenchart.stacks.report import Memory
 from tests.support import stack_use
 
@@ -60,7 +60,7 @@ def _observed(image: Path, seconds: float, tmp_path: Path) -> dict[str, int]:
     listing = subprocess.run(["nm", "-S", image], capture_output=True, text=True, check=True)
     found = symbols.read(listing.stdout)
     main = f"_ada_{image.name}"
-    bodies = {s.name: (s.at, s.size) for s in found if s.name.endswith("TKB") or s.name == main}
+    bodies = {s.name: (s.at, s.size) for s in found if graph.is_task(s.name) or s.name == main}
     told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(tmp_path / "trace")}
     process = subprocess.Popen([image], env=os.environ | told, stdout=subprocess.DEVNULL)
     try:
@@ -92,8 +92,8 @@ def test_no_task_of_the_robot_uses_more_than_its_bound(mode: str, tmp_path: Path
              ("reception", "trajectory", "control", "supervision")}  # fmt: skip
     known[f"{root}__liveness_supervision__supervisor__supervisorTKB"] = "controller.supervisor"
     known[f"{root}__host_probe__probe__probeTKB"] = "controller.probe"
-    known[f"{root}__robot_bus__controller__readerTKB"] = "robot_bus.reader"
-    known[f"{root}__robot_bus__controller__writerTKB"] = "robot_bus.writer"
+    known[f"{root}__robot_bus__controller__driver__readerTKBXnn"] = "robot_bus.reader"
+    known[f"{root}__robot_bus__controller__driver__writerTKBXnn"] = "robot_bus.writer"
     known[f"_ada_{image.name}"] = "environment task"
     observed = _observed(image, 2.0, tmp_path)
     assert observed.keys() == known.keys()

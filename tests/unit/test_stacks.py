@@ -189,6 +189,7 @@ def test_a_function_that_calls_itself_can_have_a_bound() -> None:
     ("symbol", "name"),
     [
         ("robot__control__processor__processorTKB", "Robot.Control.Processor.Processor"),
+        ("robot__bus__controller__driver__readerTKBXnn", "Robot.Bus.Controller.Driver.Reader"),
         ("robot__joint_x__run_position_control", "Robot.Joint_X.Run_Position_Control"),
         ("robot__joint__fire__enter_idle.21", "Robot.Joint.Fire.Enter_Idle"),
         ("memcpy", "memcpy"),
