@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import sys
 from collections.abc import Iterator
@@ -12,7 +11,7 @@ import pytest
 from xdist.workermanage import WorkerController
 
 from ravenchart.paths import work
-from tests.support import compiler, scheduling
+from tests.support import compiler, live, scheduling
 
 ALL = "RAVENCHART_ALL_TESTS"
 """Set in the environment, nothing is left out for its time; so it is where files are named."""
@@ -48,11 +47,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
-    """One live test at a time: two controllers would share a core, two benches another one."""
+    """A live test runs while no other does."""
     if item.get_closest_marker("live") is None:
         return (yield)
-    with (work() / "build" / "live").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    with live.alone():
         return (yield)
 
 

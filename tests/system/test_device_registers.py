@@ -22,6 +22,8 @@ from ravenchart.paths import ROOT
 from tests.support.faults import shows
 from tests.support.stopped import raise_in
 
+pytestmark = pytest.mark.live
+
 CASE = ROOT / "tests" / "feature" / "registers"
 
 FLOW = """\

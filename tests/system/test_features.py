@@ -16,6 +16,7 @@ import yaml
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
 from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
+from tests.support import live
 
 FOLDERS = sorted(p.parent for p in (ROOT / "tests" / "feature").glob("*/model.yaml"))
 QUICK = {"charts", "devices", "faults", "passes", "registers", "requests", "signals"}
@@ -42,12 +43,12 @@ def _run(folder: Path, expected: dict[str, Any]) -> tuple[checking.Checked, Obse
     assert re.findall(r"\[(RV-\d+)\]", checked.warnings) == expected.get("warnings", [])
     generation.write_program(checked)
     trace = folder / "trace"
-    process = subprocess.Popen(
-        [programs.programs_of(checked)[0].build()], env={"RAVENCHART_TRACE": str(trace)}
-    )
-    time.sleep(expected["seconds"])
-    process.send_signal(signal.SIGTERM)
-    assert process.wait(5) == 0
+    program = programs.programs_of(checked)[0].build()
+    with live.alone():
+        process = subprocess.Popen([program], env={"RAVENCHART_TRACE": str(trace)})
+        time.sleep(expected["seconds"])
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(5) == 0
     names = read_map((folder / "generated" / "trace.json").read_text())
     return checked, read_trace(trace.read_text().splitlines(), names)
 

@@ -46,6 +46,7 @@ def test_a_first_body_is_written_once_and_named_until_it_is_changed(
     assert body.read_text() == _block("ada")
 
 
+@pytest.mark.live
 def test_the_tank_builds_runs_and_keeps_its_level(
     tank: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -33,6 +33,7 @@ def test_a_program_that_was_built_is_named(model: Path, capsys: PRINTED) -> None
     answered(capsys, "clean", model)
 
 
+@pytest.mark.live
 def test_a_run_answers_with_its_verdict(model: Path, capsys: PRINTED) -> None:
     result = answered(capsys, "run", model, "--seconds", "1")["result"]
     assert result["passed"] and result["verdict"].startswith("verdict: PASS")

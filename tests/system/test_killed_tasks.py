@@ -18,7 +18,7 @@ from ravenchart.paths import ROOT
 from tests.support.faults import shows
 from tests.support.stopped import raise_in
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.live, pytest.mark.slow]
 
 LONG = "RAVENCHART_LONG_TESTS" in os.environ
 

@@ -19,6 +19,8 @@ from ravenchart.running.runs import controller
 from tests.support.faults import shows
 from tests.support.processes import LAUNCHER, PYTHON, ROOT, Marked
 
+pytestmark = pytest.mark.live
+
 TWO_NODES = ROOT / "examples" / "two_nodes" / "model.yaml"
 LIMIT = 2.0
 """So long anything may go on, in s."""

@@ -16,7 +16,7 @@ from ravenchart.failures import Refused
 from ravenchart.paths import ROOT
 from ravenchart.stacks import graph, symbols
 from ravenchart.stacks.report import Memory
-from tests.support import stack_use
+from tests.support import live, stack_use
 
 BODY = "devices_feature-servo-activities.adb"
 DAMPED = "   begin\n      return\n        Current\n"
@@ -62,14 +62,15 @@ def _observed(image: Path, seconds: float, tmp_path: Path) -> dict[str, int]:
     main = f"_ada_{image.name}"
     bodies = {s.name: (s.at, s.size) for s in found if graph.is_task(s.name) or s.name == main}
     told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(tmp_path / "trace")}
-    process = subprocess.Popen([image], env=os.environ | told, stdout=subprocess.DEVNULL)
-    try:
-        time.sleep(seconds)
-        assert process.poll() is None
-        return stack_use.depths(process.pid, image, bodies)
-    finally:
-        process.kill()
-        process.wait()
+    with live.alone():
+        process = subprocess.Popen([image], env=os.environ | told, stdout=subprocess.DEVNULL)
+        try:
+            time.sleep(seconds)
+            assert process.poll() is None
+            return stack_use.depths(process.pid, image, bodies)
+        finally:
+            process.kill()
+            process.wait()
 
 
 def _compared(found: Memory, observed: dict[str, int], known: dict[str, str]) -> dict[str, int]:
