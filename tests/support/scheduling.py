@@ -1,5 +1,7 @@
 """In which order the workers of pytest-xdist get the tests, and which test runs alone.
 
+A test marked ``live`` waits until no other live test runs: one worker gets those, while the
+others get what is not live, as long as there is any.
 A test marked ``alone`` judges times of the host's clock, and one that needs gnatprove has provers
 with limits of time: they run after the others, while no other test runs. The rest is given to the
 workers in short runs of one module, so that what a module sets up once is rarely set up twice.
@@ -19,9 +21,10 @@ RUN = 12
 
 
 def say(tests: Sequence[pytest.Item], path: Path) -> None:
-    """In a worker: write the names of the tests that run alone, for the scheduler."""
-    alone = [test.nodeid for test in tests if _runs_alone(test)]
-    path.write_text("".join(f"{name}\n" for name in alone), encoding="utf-8")
+    """In a worker: write the names of the tests that run alone or are live, for the scheduler."""
+    alone = [f"alone {test.nodeid}" for test in tests if _runs_alone(test)]
+    live = [f"live {test.nodeid}" for test in tests if test.get_closest_marker("live") is not None]
+    path.write_text("".join(f"{line}\n" for line in (*alone, *live)), encoding="utf-8")
 
 
 def _runs_alone(test: pytest.Item) -> bool:
@@ -41,6 +44,7 @@ class AloneLast(LoadScheduling):
         super().__init__(config)
         self._said = said
         self._alone: frozenset[str] = frozenset()
+        self._live: frozenset[str] = frozenset()
 
     def schedule(self) -> None:
         """Start, or go on after a worker was replaced."""
@@ -48,7 +52,9 @@ class AloneLast(LoadScheduling):
             if not self._check_nodes_have_same_collection():
                 return
             self.collection = next(iter(self.node2collection.values()))
-            self._alone = frozenset(self._said.read_text(encoding="utf-8").splitlines())
+            said = [line.partition(" ") for line in self._said.read_text("utf-8").splitlines()]
+            self._alone = frozenset(name for kind, _, name in said if kind == "alone")
+            self._live = frozenset(name for kind, _, name in said if kind == "live") - self._alone
             self.pending[:] = sorted(range(len(self.collection)), key=self._is_alone)
         self._check_all()
 
@@ -64,6 +70,9 @@ class AloneLast(LoadScheduling):
         own = self.node2pending[node]
         others = [other for other in self.nodes if other is not node]
         while self._shared() and len(own) < 2 and not node.shutting_down:
+            self._put_live_first(
+                not any(self._is_live(t) for other in others for t in self.node2pending[other])
+            )
             self._send_tests(node, self._length_of_run())
         if len(own) > 1 or node.shutting_down:
             return
@@ -86,8 +95,16 @@ class AloneLast(LoadScheduling):
     def _length_of_run(self) -> int:
         assert self.collection is not None
         names = [self.collection[test] for test in self.pending[:RUN]]
-        modules = [name.partition("::")[0] for name in names if name not in self._alone]
-        return sum(module == modules[0] for module in modules)
+        runs = [(n.partition("::")[0], n in self._live) for n in names if n not in self._alone]
+        return next((at for at, one in enumerate(runs) if one != runs[0]), len(runs))
+
+    def _put_live_first(self, first: bool) -> None:
+        """Of the tests that run beside others, those that are live come first, or last."""
+        self.pending.sort(key=lambda t: (self._is_alone(t), self._is_live(t) is not first))
+
+    def _is_live(self, test: int) -> bool:
+        assert self.collection is not None
+        return self.collection[test] in self._live
 
     def _is_alone(self, test: int) -> bool:
         assert self.collection is not None

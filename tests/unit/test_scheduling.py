@@ -25,6 +25,13 @@ def test_alone(number):
     time.sleep(0.1)
     note(f"alone-{number} ends")
 
+@pytest.mark.live
+@pytest.mark.parametrize("number", range(20))
+def test_live(number):
+    note(f"live-{number} begins")
+    time.sleep(0.05)
+    note(f"live-{number} ends")
+
 @pytest.mark.parametrize("number", range(30))
 def test_shared(number):
     note(f"shared-{number} begins")
@@ -58,7 +65,14 @@ def test_what_runs_alone_comes_last_and_runs_beside_nothing(
     lines = [line.split() for line in (tmp_path / "noted").read_text().splitlines()]
     noted = [(name, what) for _, name, what in sorted(lines, key=lambda line: float(line[0]))]
     begun = [name for name, what in noted if what == "begins"]
-    assert len(begun) == len(set(begun)) == {(): 32, ("alone",): 2}.get(chosen, len(chosen))
+    assert len(begun) == len(set(begun)) == {(): 52, ("alone",): 2}.get(chosen, len(chosen))
     alone = [one for one in noted if one[0].startswith("alone")]
     assert noted[len(noted) - len(alone) :] == alone
     assert [what for _, what in alone] == ["begins", "ends"] * (len(alone) // 2)
+    live = [one for one in noted if one[0].startswith("live")]
+    assert [what for _, what in live] == ["begins", "ends"] * (len(live) // 2)
+    if not chosen:
+        #  nobody waits for a live test while there is another one
+        names = [name.partition("-")[0] for name, _ in noted]
+        assert names.index("shared") < len(names) - names[::-1].index("live")
+        assert names.index("live") < len(names) - names[::-1].index("shared")
