@@ -16,7 +16,7 @@ from tests.support.ada_programs import ran
 from tests.support.on_bus import Play, runner
 from tests.support.secoc import PUMP, VALVE, Secured
 
-pytestmark = pytest.mark.live
+pytestmark = pytest.mark.alone
 
 FIRST = Secured(VALVE, 0x123, 1, 3)
 SECOND = Secured(VALVE, 0x124, 8, 16)

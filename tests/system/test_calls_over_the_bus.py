@@ -13,7 +13,7 @@ from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
 from ravenchart.running.runs import controller, run_nodes
 
-pytestmark = pytest.mark.live
+pytestmark = pytest.mark.alone
 
 
 @pytest.fixture

@@ -21,7 +21,7 @@ from ravenchart.running import server as bus
 from ravenchart.running.process import ControllerProcess
 from ravenchart.running.runs import controller, run_controller, run_nodes
 
-pytestmark = pytest.mark.live
+pytestmark = pytest.mark.alone
 
 TUNING: dict[str, int | str] = {
     "gain": 4711,

@@ -14,7 +14,7 @@ import pytest
 
 from tests.support.examples import becomes, bus_of, running
 
-pytestmark = [pytest.mark.live, pytest.mark.slow]
+pytestmark = [pytest.mark.alone, pytest.mark.slow]
 
 ADDRESS, ENGINE, TOOL, GLOBAL = 128, 0, 249, 255
 CLAIMED, FAN, UNSUPPORTED = 0xEE00, 0xFEBD, 0xFEE3

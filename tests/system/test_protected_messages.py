@@ -25,7 +25,7 @@ from ravenchart.running.runs import controller, run_controller
 from tests.support.ada_programs import ran
 from tests.support.on_bus import runner
 
-pytestmark = pytest.mark.live
+pytestmark = pytest.mark.alone
 
 P1_MODES = {
     "BOTH": e2e.p01.E2E_P01_DATAID_BOTH,

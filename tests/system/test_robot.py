@@ -16,7 +16,7 @@ from ravenchart.running.process import ControllerProcess
 from ravenchart.running.runs import run_controller
 from tests.support.faults import shows
 
-pytestmark = pytest.mark.live
+pytestmark = pytest.mark.alone
 
 HERE = Path("examples/cartesian_robot")
 

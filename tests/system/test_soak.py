@@ -24,7 +24,7 @@ from ravenchart.gen.model.instances import End
 from ravenchart.paths import ROOT
 from tests.support.faults import shows
 
-pytestmark = [pytest.mark.live, pytest.mark.slow]
+pytestmark = [pytest.mark.alone, pytest.mark.slow]
 
 SEED = 2026
 EPISODE = 2_500

@@ -20,7 +20,7 @@ from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
 from tests.support import can_bus
 
-pytestmark = [pytest.mark.live, pytest.mark.slow]
+pytestmark = [pytest.mark.alone, pytest.mark.slow]
 
 HERE = ROOT / "examples" / "surgical_robot"
 SUPERVISOR = "supervisor_1.Task_Of_Arm"

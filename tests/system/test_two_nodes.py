@@ -20,7 +20,7 @@ from ravenchart.running.runs import RunRequest, controller, run_model
 from tests.support.faults import shows
 from tests.support.two_nodes import by_chart
 
-pytestmark = pytest.mark.live
+pytestmark = pytest.mark.alone
 
 EXAMPLE = ROOT / "examples" / "two_nodes"
 SERVO = "servo: {component: Linear_Servo, node: "
