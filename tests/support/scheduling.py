@@ -2,9 +2,11 @@
 
 A test marked ``live`` waits until no other live test runs: one worker gets those, while the
 others get what is not live, as long as there is any.
-A test marked ``alone`` judges times of the host's clock or has a bench, and one that needs gnatprove has provers
-with limits of time: they run after the others, while no other test runs. The rest is given to the
-workers in short runs of one module, so that what a module sets up once is rarely set up twice.
+
+A test marked ``alone`` judges times of the host's clock or has a bench, and one that needs
+gnatprove has provers with limits of time: they run after the others, while no other test runs.
+The rest is given to the workers in short runs of one module, so that what a module sets up once is
+rarely set up twice.
 """
 
 from __future__ import annotations
