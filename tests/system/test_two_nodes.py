@@ -59,7 +59,10 @@ def played(checked: checking.Checked, scenario: str, to: Path) -> str:
         0.0,
         to,
     )
-    outcome = run_model(request, Console(file=shown, width=80))
+    for _ in range(3):  # again where the host withheld the core
+        outcome = run_model(request, Console(file=shown, width=80))
+        if outcome is None or outcome.passed or not outcome.not_judged:
+            break
     assert outcome is not None and outcome.passed, shown.getvalue()
     assert (to / "report.html").is_file()
     return shown.getvalue()
