@@ -43,12 +43,10 @@ EXAMPLES = (
 )
 MODELS = {
     f"{kind}-{path.parent.name}": path.parent
-    for kind, folder in (("feature", "feature"), ("nodes", "nodes"))
-    for path in sorted((ROOT / "tests" / folder).glob("*/model.yaml"))
+    for kind in ("feature", "nodes")
+    for path in sorted((ROOT / "tests" / kind).glob("*/model.yaml"))
 }
 """The models of the tests: all of them are proved. Their programs are not kept: see `made`."""
-GROUPS = ("runtime", "examples", "models")
-"""What can be named as a whole: all that no model has made; the examples; the models of tests."""
 DRIVERS = tuple(programs.DRIVER_FOLDERS)
 PROVED_WITH = {"bus": ("protocol",)}
 """Folders of hw_can/ that only this driver uses, though every project has them."""
@@ -84,7 +82,8 @@ class Target:
 def targets(names: Sequence[str] = ()) -> Iterator[Target]:
     """Runtime with each driver, bus server, analysis, examples, models of tests.
 
-    Only those named, if some are; a name is that of a target, an example, a model or a group.
+    Only those named, if some are; a name is that of a target, an example, a model or a group:
+    ``runtime`` (all that no model has made), ``examples``, ``models``.
     """
 
     def wanted(group: str, name: str) -> bool:
@@ -101,7 +100,7 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
             yield from _programs(example, ROOT / "examples" / example)
     for model in MODELS:
         if wanted("models", model):
-            yield from _programs(model, made(model), warnings="continue")
+            yield from _programs(model, _copied(model), warnings="continue")
 
 
 def made(name: str) -> Path:
@@ -109,11 +108,23 @@ def made(name: str) -> Path:
 
     The folder is the same for each checkout, so a record can name what is in it.
     """
+    folder = _copied(name)
+    _written(folder)
+    return folder
+
+
+def _copied(name: str) -> Path:
     folder = ROOT / "build" / "proved" / name
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(MODELS[name], folder)
-    generation.write_program(checking.check(folder / "model.yaml", patience=PATIENCE))
     return folder
+
+
+def _written(folder: Path) -> checking.Checked:
+    """The model in a folder, checked, and its program written."""
+    checked = checking.check(folder / "model.yaml", patience=PATIENCE)
+    generation.write_program(checked)
+    return checked
 
 
 def record_names(name: str, folder: Path) -> tuple[str, ...]:
@@ -182,8 +193,7 @@ def _runtime(driver: str) -> Target:
 
 
 def _programs(name: str, folder: Path, *, warnings: str = "error") -> Iterator[Target]:
-    checked = checking.check(folder / "model.yaml", patience=PATIENCE)
-    generation.write_program(checked)
+    checked = _written(folder)
     driver = programs.default_driver(checked)
     for program in programs.programs_of(checked):
         target = f"{name}-{program.folder}" if program.folder else name
