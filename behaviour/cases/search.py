@@ -89,7 +89,7 @@ class Found:
     open: list[Goal]
     executed: int
     stuck: list[Stuck] = field(default_factory=list)
-    """Pseudostates without a way out that were met; the model is wrong."""
+    """One for each pseudostate that was met without a way out; the model is wrong."""
 
 
 class Search:
@@ -110,25 +110,21 @@ class Search:
         self.instants: list[Instant] = []
         start = watched(system, self.coverage)
         self._coming = start.instants(Ns(2**62))
-        self.start = Branch(start, 0, ())
         self.near: dict[Element, list[Branch]] = {}
         """By component, region and active state."""
         self.known: dict[object, list[Branch]] = {}
         """By the condition of the system."""
-        self.alike: list[list[Branch]] = [[self.start]]
+        self.alike: list[list[Branch]] = [[Branch(start, 0, ())]]
         self.paths: list[Stimuli] = []
         self.executed = 0
         self.stuck: list[Stuck] = []
         self.causes = {i.name: _causes(i.component) for i in system.instances}
-        self.cuts = {i.name: _cuts(c.numbers for c in self.choices) for i in system.instances}
+        self.cuts = sorted({number for choice in self.choices for number in choice.numbers})
 
     def found(self) -> Found:
         """Search, and choose the cases."""
-        if self.choices:
-            while self.open and self.executed < self.effort:
-                self._go_on(self._best())
-        else:
-            self._go_on(self.start)
+        while self.open and self.executed < self.effort:
+            self._go_on(self._best())
         cases = list(self._chosen())
         met = {goal for case in cases for goal in case.shows}
         left = [goal for goal in self.goals if goal not in met]
@@ -194,15 +190,16 @@ class Search:
                 now, slots = self._instant(at)
                 coming = (*coming, *(entry for one in fed for entry in one.due(now)))
                 entries = (*entries, *coming)
+                self.executed += 1
                 try:
                     for _ in machine.execute(now, slots, coming):
                         pass
                 except Stuck as stuck:
-                    self.stuck.append(stuck)
+                    if all(one.origin != stuck.origin for one in self.stuck):
+                        self.stuck.append(stuck)
                     return
                 coming = ()
                 at += 1
-                self.executed += 1
                 if self.coverage.size > before:
                     self.paths.append(Stimuli(entries, now))
                     self.open = [goal for goal in self.open if not self.coverage.shows(goal)]
@@ -265,15 +262,14 @@ class Search:
     # --- what is new
 
     def _condition(self, run: InstanceRun) -> Iterator[object]:
-        cuts = self.cuts[run.instance.name]
         for region in run.regions.values():
             yield region.configuration(), len(region.deferred), bool(region.queue)
         for name, value in run.data.items():
-            yield name, _cell(value, cuts)
+            yield name, _cell(value, self.cuts)
         for port in run.component.inputs():
             if port.kind is PortKind.SAMPLED:
                 seen = run.ports[port.name]
-                yield port.name, seen.state, _cell(seen.value, cuts)
+                yield port.name, seen.state, _cell(seen.value, self.cuts)
 
     # --- the cases
 
@@ -309,10 +305,6 @@ def _causes(component: Component) -> dict[str, set[str]]:
                     if isinstance(action, Raise):
                         found.setdefault(action.event, set()).add(transition.trigger.event)
     return found
-
-
-def _cuts(numbers: Iterator[tuple[int, ...]]) -> Sequence[int]:
-    return sorted({number for some in numbers for number in some})
 
 
 def _cell(value: Value, cuts: Sequence[int]) -> object:

@@ -71,9 +71,14 @@ def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[Record]:
     try:
         return list(Machine(as_one(system)).run(stimuli))
     except Stuck as stuck:
-        hint = "give it a segment with the guard `else`"
-        found = error("RV-1007", stuck.origin, str(stuck), hint=hint)
-        raise Refused(render(found, {}), [found]) from stuck
+        raise refused_as(stuck) from stuck
+
+
+def refused_as(stuck: Stuck) -> Refused:
+    """The error about a pseudostate that has no way out."""
+    hint = "give it a segment with the guard `else`"
+    found = error("RV-1007", stuck.origin, str(stuck), hint=hint)
+    return Refused(render(found, {}), [found])
 
 
 def simulated_by_program(checked: Checked, stimuli: Stimuli) -> list[Record]:

@@ -26,6 +26,7 @@ from .simulate import (
     interpreted_alone,
     left_out,
     played_by_program,
+    refused_as,
     simulated_by_interpreter,
 )
 
@@ -50,10 +51,9 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 
 
 def _positive(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise ValueError
-    return number
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1")
+    return int(text)
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -81,6 +81,8 @@ def execute(options: argparse.Namespace) -> int:
         [goal.text() for goal in found.open],
         [str(file) for file in different],
     )
+    if found.stuck:
+        raise refused_as(found.stuck[0])
     return WRONG if different else OK
 
 

@@ -135,6 +135,48 @@ def test_what_cannot_be_is_left_open() -> None:
     assert "the guard of Part.Main.stay is false" in [goal.text() for goal in left]
 
 
+STUCK = """
+events: {Go: {external: true}}
+data: {x: {type: Small, initial: 0}}
+regions:
+  Main:
+    period: 10 ms
+    wcet: 1 us
+    queue: 4
+    initial: A
+    states: {A: {}, P: {kind: choice}}
+    transitions: {go: {from: A, to: P, on: Go}, only: {from: P, to: A, guard: x = 1}}
+"""
+
+
+def test_a_choice_without_a_way_out_is_told_once_and_ends_no_search() -> None:
+    found = Search(component_system(STUCK), 20_000).found()
+    assert [str(one) for one in found.stuck] == ["P has no way out: no guard holds"]
+    #  what ends so is no case
+    assert "Part.Main.go is taken" in [goal.text() for goal in found.open]
+
+
+def test_a_chart_that_only_time_moves_is_searched() -> None:
+    part = """
+regions:
+  Main:
+    period: 10 ms
+    wcet: 1 us
+    queue: 1
+    initial: A
+    states: {A: {}, B: {}}
+    transitions: {late: {from: A, to: B, after: 2 s}, back: {from: B, to: A, after: 10 ms}}
+"""
+    assert Search(component_system(part), 20_000).found().open == []
+
+
+def test_an_effort_is_a_whole_number_from_1(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["tests", "model.yaml", "--effort", "0"])
+    assert ended.value.code == 2
+    assert "'0' is not a whole number from 1" in capsys.readouterr().err
+
+
 def test_a_written_file_is_read_back(system: System, found: Found) -> None:
     for case in found.cases:
         text = written(case.stimuli, ["one comment"])
