@@ -20,7 +20,6 @@ from ravenchart.gen.emit.program import (
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT, work
 from ravenchart.proof.proving import Task
-from ravenchart.stacks.report import Memory
 from ravenchart.tools import toolchain
 
 from . import images, stacks, targets
@@ -143,10 +142,6 @@ class Program:
     def digests(self) -> dict[str, str]:
         """SHA-256 of each of its Ada sources, by the name from the folder of the model."""
         return stacks.digests((self.generated, *self._user_folders()), self.checked.folder)
-
-    def memory(self, made: Path) -> Memory:
-        """The stacks and the memory of a program that was built."""
-        return stacks.kept(made)
 
     def _examine(
         self, made: Path, mode: str, target: targets.Target, board: targets.Board | None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import re
@@ -19,12 +18,13 @@ from ravenchart.gen.model.statechart import After, Every
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import ROOT
+from ravenchart.proof.proving import digest
 from ravenchart.stacks import graph, longest, machine, memory, symbols
 from ravenchart.stacks.longest import LIBRARY, Bound, Depths, Rules
 from ravenchart.stacks.report import Memory, MemoryPart, PathStep, Stack
 from ravenchart.tools import children
 
-from .targets import Target
+from .targets import Target, file_of
 
 CALL_GRAPHS = "-fcallgraph-info=su,da"
 """With it the compiler writes a call graph with frames beside each object."""
@@ -70,17 +70,21 @@ def without_graph(objects: Iterable[Path]) -> bool:
 
     The compiler writes it behind the ALI file.
     """
-    return any(not _is_fresh(one) for one in objects)
+    return _stale(objects) is not None
 
 
 def must_have_graphs(objects: Iterable[Path]) -> None:
     """ToolFailed where the compiler has written no call graph of an object."""
-    missing = next((one for one in objects if not _is_fresh(one)), None)
+    missing = _stale(objects)
     if missing is not None:
         raise ToolFailed(
             f"{missing}: error: the compiler has written no call graph: {CALL_GRAPHS} needs GCC "
             "10 or later"
         )
+
+
+def _stale(objects: Iterable[Path]) -> Path | None:
+    return next((one for one in objects if not _is_fresh(one)), None)
 
 
 def _is_fresh(item: Path) -> bool:
@@ -121,8 +125,7 @@ def read_record(path: Path) -> Memory:
 def is_known(image: Path, target: Target) -> bool:
     """Was this very program found to have stacks that are large enough?"""
     kept = record_of(image)
-    facts = ROOT / "spark_runtime" / target.name / "target.toml"
-    read = (image, FRAMES, facts, Path(__file__))
+    read = (image, FRAMES, file_of(target.name), Path(__file__))
     return kept.is_file() and kept.stat().st_mtime_ns >= max(r.stat().st_mtime_ns for r in read)
 
 
@@ -166,7 +169,7 @@ def examine(made: Made) -> Memory:
 def digests(folders: Iterable[Path], folder: Path) -> dict[str, str]:
     """SHA-256 of each Ada source in folders, by its name from the folder of the model."""
     files = sorted(path for home in folders for path in home.glob("*.ad[sb]"))
-    return {named(p, folder): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
+    return {named(p, folder): digest(p) for p in files}
 
 
 def _said(made: Made, tool: str, *options: str) -> str:

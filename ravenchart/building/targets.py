@@ -151,11 +151,16 @@ def names() -> tuple[str, ...]:
     return (NATIVE, *(name for name in found if name != NATIVE))
 
 
+def file_of(name: str) -> Path:
+    """The data file of a target."""
+    return RUNTIME / name / "target.toml"
+
+
 def target(name: str) -> Target:
     """The target of that name. Unusable where its file is wrong, or there is none."""
     if name not in names():
         raise Unusable(f"there is no target {name}; the targets are {', '.join(names())}")
-    path = RUNTIME / name / "target.toml"
+    path = file_of(name)
     try:
         return Target(name, TargetForm.model_validate(tomllib.loads(path.read_text("utf-8"))))
     except (tomllib.TOMLDecodeError, ValidationError) as fault:

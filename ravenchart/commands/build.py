@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from ravenchart.building import generation, programs
-from ravenchart.building.stacks import write
+from ravenchart.building.stacks import kept, write
 from ravenchart.failures import OK
 from ravenchart.terminal import progress
 
@@ -46,7 +46,7 @@ def execute(options: argparse.Namespace) -> int:
     for made in found:
         with progress(f"compile {made.node}"):
             program = made.build(options.mode, options.driver, options.registers, warn, board)
-        memory = made.memory(program)
+        memory = kept(program)
         answer.programs.append(Built(made.node, str(program), memory))
         if options.memory:
             write(memory, _file(options.memory, made.node if len(found) > 1 else ""))

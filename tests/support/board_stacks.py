@@ -8,7 +8,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from ravenchart.stacks import symbols
+from ravenchart.stacks import graph, symbols
 
 WORD, UNUSED = 8, 256
 """Bytes of a word, and how many words of zeros are below a stack that has not been deeper."""
@@ -35,8 +35,8 @@ def depths(memory: bytes, found: Sequence[symbols.Symbol]) -> dict[str, int]:
     """Body of a task to the bytes of its stack below the frame of the body."""
     by_name = {one.name: one for one in found}
     used = {}
-    for name in (one for one in by_name if one.endswith("TKB")):
-        body, task = by_name[name], by_name[name.removesuffix("TKB")]
+    for name in (one for one in by_name if graph.is_task(one)):
+        body, task = by_name[name], by_name[name.replace("TKB", "")]
         count = task.size // WORD
         words = struct.unpack_from(f"<{count}Q", memory, task.at)
         inside = range(body.at, body.at + body.size)

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart import command_line
-from ravenchart.building import checking, programs, targets
+from ravenchart.building import checking, programs, stacks, targets
 from ravenchart.failures import Unusable
 from ravenchart.paths import ROOT
 from ravenchart.running import boards
@@ -81,7 +81,7 @@ def test_no_stack_is_deeper_than_its_bound(board: targets.Board, tmp_path: Path)
     words = boards.command(board, emulator, image, tmp_path / "serial.txt", 3_600.0)
     end = max(one.at + one.size for one in found if one.kind in "bB" and one.size)
     used = board_stacks.depths(board_stacks.memory_after(words, 10.0, end, tmp_path), found)
-    bounds = {one.task: one for one in program.memory(image).stacks}
+    bounds = {one.task: one for one in stacks.kept(image).stacks}
     tasks = {f"cartesian_robot__{n}__processor__processorTKB": n for n in
              ("reception", "trajectory", "control", "supervision")}  # fmt: skip
     assert tasks.keys() <= used.keys()

@@ -7,13 +7,16 @@ import shutil
 import signal
 import subprocess
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from ravenchart.building import checking
 from ravenchart.running.process import ControllerProcess
+from ravenchart.running.result import RunResult
 from ravenchart.running.runs import run_controller
+from tests.support import live
 from tests.support.faults import shows
 
 pytestmark = pytest.mark.alone
@@ -21,19 +24,11 @@ pytestmark = pytest.mark.alone
 HERE = Path("examples/cartesian_robot")
 
 
-def _run(robot: tuple[checking.Checked, Path], scenario: str, folder: Path):  # type: ignore[no-untyped-def]
-    """A run; where the host withheld the core and something failed, it is played again."""
-    for _ in range(3):
-        outcome = _played(robot, scenario, folder)
-        if not (outcome.failures and outcome.not_judged):
-            break
-    return outcome
-
-
-def _played(robot: tuple[checking.Checked, Path], scenario: str, folder: Path):  # type: ignore[no-untyped-def]
+def _run(robot: tuple[checking.Checked, Path], scenario: str, folder: Path) -> RunResult:
     checked, executable = robot
     generated = checked.folder / "generated"
-    return run_controller(
+    play = partial(
+        run_controller,
         executable,
         generated / "trace.json",
         generated / "robot_bus.dbc",
@@ -43,6 +38,7 @@ def _played(robot: tuple[checking.Checked, Path], scenario: str, folder: Path): 
         lambda _text: None,
         analysis=checked.analysis,
     )
+    return live.played(play)
 
 
 def test_it_homes_reaches_its_targets_and_fails_safe_on_a_limit_switch(

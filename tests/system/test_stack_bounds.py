@@ -105,7 +105,7 @@ def test_no_task_of_the_robot_uses_more_than_its_bound(mode: str, tmp_path: Path
     known[f"_ada_{image.name}"] = "environment task"
     observed = _observed(image, 2.0, tmp_path)
     assert observed.keys() == known.keys()
-    used = _compared(program.memory(image), observed, known)
+    used = _compared(stacks.kept(image), observed, known)
     print(used)
 
 
@@ -125,7 +125,7 @@ def test_an_exception_that_is_handled_stays_within_the_allowance(tmp_path: Path)
     image = program.build()
     known = "devices_feature__fast__processor__processorTKB"
     observed = _observed(image, 1.0, tmp_path)[known]
-    found = program.memory(image)
+    found = stacks.kept(image)
     one = next(s for s in found.stacks if s.task == "fast")
     assert found.library is not None
     own = one.bound - found.library
@@ -143,7 +143,7 @@ def test_a_stack_of_half_its_bound_fails_the_build(tmp_path: Path) -> None:
     home = _devices(tmp_path, WIDE, USED)
     program = _program(home)
     image = program.build()
-    one = next(s for s in program.memory(image).stacks if s.task == "fast")
+    one = next(s for s in stacks.kept(image).stacks if s.task == "fast")
     assert 16_000 + 12_288 < one.bound <= (one.size or 0) == 32_768
     half = one.bound // 2 // 1024
     _edit(home, r"(fast:\n    node: board\n    stack:) 32 KiB", rf"\1 {half} KiB")
@@ -218,7 +218,7 @@ def test_what_has_no_bound_is_refused_where_it_stands(
 @pytest.mark.parametrize("driver", ["loopback", "slcan", "bus", "socketcan", "ctucanfd"])
 def test_with_each_driver_every_stack_has_a_bound(driver: str, mode: str) -> None:
     program = _program(ROOT / "examples" / "cartesian_robot")
-    found = program.memory(program.build(mode, driver))
+    found = stacks.kept(program.build(mode, driver))
     assert all(one.size is None or one.bound <= one.size for one in found.stacks)
     drivers = [one for one in found.stacks if one.task.startswith("robot_bus.")]
     assert drivers and all(one.size == 65_536 for one in drivers)

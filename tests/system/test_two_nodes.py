@@ -16,7 +16,9 @@ from ravenchart.building import checking, generation, programs
 from ravenchart.commands import simulate
 from ravenchart.hw_can.bench.peer import Codec
 from ravenchart.paths import ROOT
+from ravenchart.running.result import RunResult
 from ravenchart.running.runs import RunRequest, controller, run_model
+from tests.support import live
 from tests.support.faults import shows
 from tests.support.two_nodes import by_chart
 
@@ -59,11 +61,14 @@ def played(checked: checking.Checked, scenario: str, to: Path) -> str:
         0.0,
         to,
     )
-    for _ in range(3):  # again where the host withheld the core
+
+    def play() -> RunResult:
+        shown.truncate(shown.seek(0))
         outcome = run_model(request, Console(file=shown, width=80))
-        if outcome is None or outcome.passed or not outcome.not_judged:
-            break
-    assert outcome is not None and outcome.passed, shown.getvalue()
+        assert outcome is not None, shown.getvalue()
+        return outcome
+
+    assert live.played(play).passed, shown.getvalue()
     assert (to / "report.html").is_file()
     return shown.getvalue()
 
