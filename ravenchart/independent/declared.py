@@ -330,7 +330,7 @@ class _Comparison:
             states = {words("D /= Beginning"), *self.active("Before", one.source)}
             around = {domain_of(region) for region in self.chart.around(one.source)} & domains
             wanted_ends = around | {"everything", "beginning"}
-            said = {t.low for t in parts[1]} - {"d", "=", "or", "else"}
+            said = {t.low for t in parts[1]} - {"d", "=", "in", "|"}
             text = f"the time-out of {one.name} does not end with {one.source}: wanted "
             text += ", ".join(sorted(wanted_ends))
             self.agree("timers", found[0].line, before == states and said == wanted_ends, text)

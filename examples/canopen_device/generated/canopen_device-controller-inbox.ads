@@ -73,9 +73,7 @@ is
      (T : Transition; Leaf : Inbox_States.Leaf)
      return Boolean is
      (case T is
-        when Ask => Leaf = Inbox_States.Open,
-        when Order => Leaf = Inbox_States.Open,
-        when Synchronise => Leaf = Inbox_States.Open);
+        when Ask | Order | Synchronise => Leaf = Inbox_States.Open);
    --  Is its source the leaf, or around it?
 
    function Target
@@ -83,9 +81,7 @@ is
      return Inbox_States.Leaf is
      (case T is
         when Initial_Entry => Inbox_States.Open,
-        when Ask => Leaf,
-        when Order => Leaf,
-        when Synchronise => Leaf);
+        when Ask | Order | Synchronise => Leaf);
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection

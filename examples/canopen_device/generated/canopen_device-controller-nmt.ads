@@ -107,23 +107,18 @@ is
      (case T is
         when Initialised => Leaf = Nmt_States.Initialisation,
         when Booted => Leaf = Nmt_States.Boot_Up_Due,
-        when Start => Leaf in Nmt_States.Ready,
-        when Stop => Leaf in Nmt_States.Ready,
-        when Prepare => Leaf in Nmt_States.Ready,
-        when Reset_Node => Leaf in Nmt_States.Ready,
-        when Reset_Communication => Leaf in Nmt_States.Ready);
+        when Start | Stop | Prepare | Reset_Node | Reset_Communication =>
+           Leaf in Nmt_States.Ready);
    --  Is its source the leaf, or around it?
 
    function Target (T : Firing) return Nmt_States.Leaf is
      (case T is
-        when Initial_Entry => Nmt_States.Initialisation,
+        when Initial_Entry | Reset_Node | Reset_Communication =>
+           Nmt_States.Initialisation,
         when Initialised => Nmt_States.Boot_Up_Due,
-        when Booted => Nmt_States.Pre_Operational,
+        when Booted | Prepare => Nmt_States.Pre_Operational,
         when Start => Nmt_States.Operational,
-        when Stop => Nmt_States.Stopped,
-        when Prepare => Nmt_States.Pre_Operational,
-        when Reset_Node => Nmt_States.Initialisation,
-        when Reset_Communication => Nmt_States.Initialisation);
+        when Stop => Nmt_States.Stopped);
    --  The leaf it leads to; that of a composite is its default.
 
    --  The innermost region that holds all that a transition leaves and
@@ -133,13 +128,9 @@ is
    function Domain_Of (T : Firing) return Domain is
      (case T is
         when Initial_Entry => Beginning,
-        when Initialised => Everything,
-        when Booted => Everything,
-        when Start => Everything,
-        when Stop => Everything,
-        when Prepare => Everything,
-        when Reset_Node => Everything,
-        when Reset_Communication => Everything);
+        when Initialised | Booted | Start | Stop | Prepare | Reset_Node
+           | Reset_Communication =>
+           Everything);
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
@@ -152,8 +143,7 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D = Everything or else D = Beginning,
+           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
               D /= Beginning and then Before = Nmt_States.Initialisation,
               After = Nmt_States.Initialisation,
               Ravenchart.Timers.Started (40)),

@@ -125,13 +125,7 @@ is
             Event_Lists.Append (Box.Raised, Joint.Strayed);
             pragma Assert (Active = Chart.Nowhere);
             Enter_Alarmed;
-         when Limit_Hit =>
-            Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
-            Event_Lists.Append (Box.Raised, Joint.Limit_Hit);
-            pragma Assert (Active = Chart.Nowhere);
-            Enter_Alarmed;
-         when End_Reached =>
+         when Limit_Hit | End_Reached =>
             Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Limit_Hit);

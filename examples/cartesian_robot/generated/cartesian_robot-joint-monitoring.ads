@@ -80,21 +80,16 @@ is
      (T : Transition; Leaf : Monitoring_States.Leaf)
      return Boolean is
      (case T is
-        when Strayed => Leaf = Monitoring_States.Watching,
-        when Limit_Hit => Leaf = Monitoring_States.Watching,
-        when End_Reached => Leaf = Monitoring_States.Watching,
-        when Drive_Failed => Leaf = Monitoring_States.Watching,
+        when Strayed | Limit_Hit | End_Reached | Drive_Failed =>
+           Leaf = Monitoring_States.Watching,
         when Calm => Leaf = Monitoring_States.Alarmed);
    --  Is its source the leaf, or around it?
 
    function Target (T : Firing) return Monitoring_States.Leaf is
      (case T is
-        when Initial_Entry => Monitoring_States.Watching,
-        when Strayed => Monitoring_States.Alarmed,
-        when Limit_Hit => Monitoring_States.Alarmed,
-        when End_Reached => Monitoring_States.Alarmed,
-        when Drive_Failed => Monitoring_States.Alarmed,
-        when Calm => Monitoring_States.Watching);
+        when Initial_Entry | Calm => Monitoring_States.Watching,
+        when Strayed | Limit_Hit | End_Reached | Drive_Failed =>
+           Monitoring_States.Alarmed);
    --  The leaf it leads to; that of a composite is its default.
 
    --  The innermost region that holds all that a transition leaves and
@@ -104,11 +99,8 @@ is
    function Domain_Of (T : Firing) return Domain is
      (case T is
         when Initial_Entry => Beginning,
-        when Strayed => Everything,
-        when Limit_Hit => Everything,
-        when End_Reached => Everything,
-        when Drive_Failed => Everything,
-        when Calm => Everything);
+        when Strayed | Limit_Hit | End_Reached | Drive_Failed | Calm =>
+           Everything);
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
@@ -121,8 +113,7 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D = Everything or else D = Beginning,
+           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
               D /= Beginning and then Before = Monitoring_States.Alarmed,
               After = Monitoring_States.Alarmed,
               Ravenchart.Timers.Started (50)),

@@ -374,21 +374,7 @@ is
             Active :=
               Chart.Moved (Active, Chart.Operational, Chart.Operational);
             Enter_Idle;
-         when Lost =>
-            Leave_Operational;
-            Active :=
-              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
-            Enter_Fault;
-            Active := Chart.Moved (Active, Chart.Fault, Chart.Drive);
-            Self.Leaf := Motion_States.Drive;
-         when Failed =>
-            Leave_Operational;
-            Active :=
-              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
-            Enter_Fault;
-            Active := Chart.Moved (Active, Chart.Fault, Chart.Drive);
-            Self.Leaf := Motion_States.Drive;
-         when Strayed =>
+         when Lost | Failed | Strayed =>
             Leave_Operational;
             Active :=
               Chart.Moved (Active, Chart.Operational, Chart.Nowhere);

@@ -122,39 +122,27 @@ is
      (case T is
         when End_Found => Leaf = Motion_States.Seeking,
         when End_Left => Leaf = Motion_States.Backing_Off,
-        when At_Speed => Leaf = Motion_States.Accelerating,
-        when No_Cruise => Leaf = Motion_States.Accelerating,
+        when At_Speed | No_Cruise => Leaf = Motion_States.Accelerating,
         when Brake => Leaf = Motion_States.Cruising,
-        when Start_Homing => Leaf = Motion_States.Idle,
+        when Start_Homing | Start_Move => Leaf = Motion_States.Idle,
         when No_End => Leaf in Motion_States.Homing,
-        when Start_Move => Leaf = Motion_States.Idle,
         when Arrived => Leaf in Motion_States.Moving,
-        when Halt => Leaf in Motion_States.Operational,
-        when Lost => Leaf in Motion_States.Operational,
-        when Failed => Leaf in Motion_States.Operational,
-        when Strayed => Leaf in Motion_States.Operational,
-        when Limit => Leaf in Motion_States.Operational,
+        when Halt | Lost | Failed | Strayed | Limit =>
+           Leaf in Motion_States.Operational,
         when Reset => Leaf in Motion_States.Fault);
    --  Is its source the leaf, or around it?
 
    function Target (T : Firing) return Motion_States.Leaf is
      (case T is
-        when Initial_Entry => Motion_States.Idle,
+        when Initial_Entry | End_Left | Arrived | Halt | Reset =>
+           Motion_States.Idle,
         when End_Found => Motion_States.Backing_Off,
-        when End_Left => Motion_States.Idle,
         when At_Speed => Motion_States.Cruising,
-        when No_Cruise => Motion_States.Braking,
-        when Brake => Motion_States.Braking,
+        when No_Cruise | Brake => Motion_States.Braking,
         when Start_Homing => Motion_States.Seeking,
-        when No_End => Motion_States.Drive,
+        when No_End | Lost | Failed | Strayed => Motion_States.Drive,
         when Start_Move => Motion_States.Accelerating,
-        when Arrived => Motion_States.Idle,
-        when Halt => Motion_States.Idle,
-        when Lost => Motion_States.Drive,
-        when Failed => Motion_States.Drive,
-        when Strayed => Motion_States.Drive,
-        when Limit => Motion_States.Limit,
-        when Reset => Motion_States.Idle);
+        when Limit => Motion_States.Limit);
    --  The leaf it leads to; that of a composite is its default.
 
    --  The innermost region that holds all that a transition leaves and
@@ -167,20 +155,11 @@ is
      (case T is
         when Initial_Entry => Beginning,
         when End_Found => Inside_Homing,
-        when End_Left => Inside_Operational,
-        when At_Speed => Inside_Moving,
-        when No_Cruise => Inside_Moving,
-        when Brake => Inside_Moving,
-        when Start_Homing => Inside_Operational,
-        when No_End => Everything,
-        when Start_Move => Inside_Operational,
-        when Arrived => Inside_Operational,
-        when Halt => Everything,
-        when Lost => Everything,
-        when Failed => Everything,
-        when Strayed => Everything,
-        when Limit => Everything,
-        when Reset => Everything);
+        when End_Left | Start_Homing | Start_Move | Arrived =>
+           Inside_Operational,
+        when At_Speed | No_Cruise | Brake => Inside_Moving,
+        when No_End | Halt | Lost | Failed | Strayed | Limit | Reset =>
+           Everything);
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
@@ -194,9 +173,7 @@ is
      (case I is
         when 1 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_Operational
-              or else D = Everything
-              or else D = Beginning,
+              D in Inside_Operational | Everything | Beginning,
               D /= Beginning and then Before in Motion_States.Homing,
               After in Motion_States.Homing,
               Ravenchart.Timers.Started (1_000)),

@@ -446,13 +446,7 @@ is
             Exit_Recovering;
             Active := Chart.Moved (Active, Chart.Stopped, Chart.Shut_Down);
             Self.Leaf := Mission_States.Shut_Down;
-         when Joint_Failed =>
-            Leave_Active;
-            Active := Chart.Moved (Active, Chart.Active, Chart.Nowhere);
-            Enter_Stopped;
-            Active := Chart.Moved (Active, Chart.Stopped, Chart.Failed);
-            Self.Leaf := Mission_States.Failed;
-         when Joint_Lost =>
+         when Joint_Failed | Joint_Lost =>
             Leave_Active;
             Active := Chart.Moved (Active, Chart.Active, Chart.Nowhere);
             Enter_Stopped;

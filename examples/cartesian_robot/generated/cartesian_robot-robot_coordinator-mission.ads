@@ -133,40 +133,29 @@ is
         when Under_Way => Leaf = Mission_States.Departing,
         when Arrived => Leaf = Mission_States.Under_Way,
         when Home => Leaf = Mission_States.Waiting,
-        when Home_Again => Leaf = Mission_States.Ready,
-        when Homed => Leaf = Mission_States.Homing,
-        when Move => Leaf = Mission_States.Ready,
+        when Home_Again | Move => Leaf = Mission_States.Ready,
+        when Homed | Halt_Homing => Leaf = Mission_States.Homing,
         when Halt => Leaf in Mission_States.Travelling,
-        when Halt_Homing => Leaf = Mission_States.Homing,
-        when Shut_Down_Failed => Leaf = Mission_States.Failed,
-        when Recover => Leaf = Mission_States.Failed,
-        when Recovered => Leaf = Mission_States.Recovering,
-        when Not_Recovered => Leaf = Mission_States.Recovering,
-        when Shut_Down_Recovering => Leaf = Mission_States.Recovering,
-        when Joint_Failed => Leaf in Mission_States.Active,
-        when Joint_Lost => Leaf in Mission_States.Active,
-        when Shut_Down => Leaf in Mission_States.Active);
+        when Shut_Down_Failed | Recover => Leaf = Mission_States.Failed,
+        when Recovered | Not_Recovered | Shut_Down_Recovering =>
+           Leaf = Mission_States.Recovering,
+        when Joint_Failed | Joint_Lost | Shut_Down =>
+           Leaf in Mission_States.Active);
    --  Is its source the leaf, or around it?
 
    function Target (T : Firing) return Mission_States.Leaf is
      (case T is
-        when Initial_Entry => Mission_States.Waiting,
+        when Initial_Entry | Recovered => Mission_States.Waiting,
         when Under_Way => Mission_States.Under_Way,
-        when Arrived => Mission_States.Ready,
-        when Home => Mission_States.Homing,
-        when Home_Again => Mission_States.Homing,
-        when Homed => Mission_States.Ready,
+        when Arrived | Homed => Mission_States.Ready,
+        when Home | Home_Again => Mission_States.Homing,
         when Move => Mission_States.Departing,
-        when Halt => Mission_States.Failed,
-        when Halt_Homing => Mission_States.Failed,
-        when Shut_Down_Failed => Mission_States.Shut_Down,
-        when Recover => Mission_States.Recovering,
-        when Recovered => Mission_States.Waiting,
-        when Not_Recovered => Mission_States.Failed,
-        when Shut_Down_Recovering => Mission_States.Shut_Down,
-        when Joint_Failed => Mission_States.Failed,
-        when Joint_Lost => Mission_States.Failed,
-        when Shut_Down => Mission_States.Shut_Down);
+        when Halt | Halt_Homing | Not_Recovered | Joint_Failed
+           | Joint_Lost =>
+           Mission_States.Failed,
+        when Shut_Down_Failed | Shut_Down_Recovering | Shut_Down =>
+           Mission_States.Shut_Down,
+        when Recover => Mission_States.Recovering);
    --  The leaf it leads to; that of a composite is its default.
 
    --  The innermost region that holds all that a transition leaves and
@@ -179,21 +168,13 @@ is
      (case T is
         when Initial_Entry => Beginning,
         when Under_Way => Inside_Travelling,
-        when Arrived => Inside_Active,
-        when Home => Inside_Active,
-        when Home_Again => Inside_Active,
-        when Homed => Inside_Active,
-        when Move => Inside_Active,
-        when Halt => Everything,
-        when Halt_Homing => Everything,
-        when Shut_Down_Failed => Inside_Stopped,
-        when Recover => Inside_Stopped,
-        when Recovered => Everything,
-        when Not_Recovered => Inside_Stopped,
-        when Shut_Down_Recovering => Inside_Stopped,
-        when Joint_Failed => Everything,
-        when Joint_Lost => Everything,
-        when Shut_Down => Everything);
+        when Arrived | Home | Home_Again | Homed | Move => Inside_Active,
+        when Halt | Halt_Homing | Recovered | Joint_Failed | Joint_Lost
+           | Shut_Down =>
+           Everything,
+        when Shut_Down_Failed | Recover | Not_Recovered
+           | Shut_Down_Recovering =>
+           Inside_Stopped);
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
@@ -207,18 +188,14 @@ is
      (case I is
         when 1 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_Travelling
-              or else D = Inside_Active
-              or else D = Everything
-              or else D = Beginning,
+              D
+              in Inside_Travelling | Inside_Active | Everything | Beginning,
               D /= Beginning and then Before = Mission_States.Departing,
               After = Mission_States.Departing,
               Ravenchart.Timers.Started (5)),
         when 2 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_Stopped
-              or else D = Everything
-              or else D = Beginning,
+              D in Inside_Stopped | Everything | Beginning,
               D /= Beginning and then Before = Mission_States.Recovering,
               After = Mission_States.Recovering,
               Ravenchart.Timers.Started (10)),

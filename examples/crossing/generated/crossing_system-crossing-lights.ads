@@ -171,16 +171,15 @@ is
         when Gone =>
            Place.Top = Lights_States.Working
            and then Place.In_Walkers in Lights_States.On_The_Road,
-        when Into_Service => Place.Top = Lights_States.Blinking,
-        when Out_Of_Service => Place.Top = Lights_States.Working,
-        when Blink => Place.Top = Lights_States.Blinking);
+        when Into_Service | Blink => Place.Top = Lights_States.Blinking,
+        when Out_Of_Service => Place.Top = Lights_States.Working);
    --  Is its source the leaf, or around it?
 
    function Target
      (T : Firing; Place : Lights_States.Configuration)
      return Lights_States.Configuration is
      (case T is
-        when Initial_Entry =>
+        when Initial_Entry | Out_Of_Service =>
            (Place with delta Top => Lights_States.Blinking),
         when Stopped => (Place with delta In_Cars => Lights_States.Held),
         when Get_Ready =>
@@ -199,8 +198,6 @@ is
            (Top => Lights_States.Working,
             In_Walkers => Lights_States.Nobody,
             In_Cars => Lights_States.Stopping),
-        when Out_Of_Service =>
-           (Place with delta Top => Lights_States.Blinking),
         when Blink => Place);
    --  The leaves it leads to; those of a composite are its defaults.
 
@@ -214,17 +211,12 @@ is
      (case T is
         when Initial_Entry => Beginning,
         when Stopped => Inside_Red,
-        when Get_Ready => Inside_Cars,
+        when Get_Ready | Slow_Down | Start | Stop => Inside_Cars,
         when Long_Enough => Inside_Green,
-        when Slow_Down => Inside_Cars,
-        when Start => Inside_Cars,
-        when Stop => Inside_Cars,
         when Ask => Inside_Dont_Walk,
-        when Walk => Inside_Walkers,
+        when Walk | Gone => Inside_Walkers,
         when Last_Call => Inside_On_The_Road,
-        when Gone => Inside_Walkers,
-        when Into_Service => Everything,
-        when Out_Of_Service => Everything,
+        when Into_Service | Out_Of_Service => Everything,
         when Blink => Nothing);
    --  Everything active inside it is left, and what is active then is
    --  entered.
@@ -238,17 +230,13 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D = Everything or else D = Beginning,
+           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
               D /= Beginning and then Before.Top = Lights_States.Blinking,
               After.Top = Lights_States.Blinking,
               Ravenchart.Timers.Started (5, 5)),
         when 2 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_Red
-              or else D = Inside_Cars
-              or else D = Everything
-              or else D = Beginning,
+              D in Inside_Red | Inside_Cars | Everything | Beginning,
               D /= Beginning
               and then Before.Top = Lights_States.Working
               and then Before.In_Cars = Lights_States.Stopping,
@@ -257,7 +245,7 @@ is
               Ravenchart.Timers.Started (20)),
         when 3 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_Cars or else D = Everything or else D = Beginning,
+              D in Inside_Cars | Everything | Beginning,
               D /= Beginning
               and then Before.Top = Lights_States.Working
               and then Before.In_Cars = Lights_States.Red_Yellow,
@@ -266,10 +254,7 @@ is
               Ravenchart.Timers.Started (10)),
         when 4 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_Green
-              or else D = Inside_Cars
-              or else D = Everything
-              or else D = Beginning,
+              D in Inside_Green | Inside_Cars | Everything | Beginning,
               D /= Beginning
               and then Before.Top = Lights_States.Working
               and then Before.In_Cars = Lights_States.Least,
@@ -278,7 +263,7 @@ is
               Ravenchart.Timers.Started (100)),
         when 5 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_Cars or else D = Everything or else D = Beginning,
+              D in Inside_Cars | Everything | Beginning,
               D /= Beginning
               and then Before.Top = Lights_States.Working
               and then Before.In_Cars = Lights_States.Yellow,
@@ -287,10 +272,9 @@ is
               Ravenchart.Timers.Started (30)),
         when 6 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_On_The_Road
-              or else D = Inside_Walkers
-              or else D = Everything
-              or else D = Beginning,
+              D
+              in Inside_On_The_Road | Inside_Walkers | Everything
+                | Beginning,
               D /= Beginning
               and then Before.Top = Lights_States.Working
               and then Before.In_Walkers = Lights_States.Walking,
@@ -299,9 +283,7 @@ is
               Ravenchart.Timers.Started (60)),
         when 7 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_Walkers
-              or else D = Everything
-              or else D = Beginning,
+              D in Inside_Walkers | Everything | Beginning,
               D /= Beginning
               and then Before.Top = Lights_States.Working
               and then Before.In_Walkers in Lights_States.On_The_Road,

@@ -283,7 +283,7 @@ is
             Leave_Contending;
             Active := Chart.Moved (Active, Chart.Contending, Chart.Nowhere);
             Enter_Yielding;
-         when Defend =>
+         when Defend | Tell_All | Tell_Us | Tell_Null =>
             Box.Claim :=
               J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
             Box.Claim_Sent := True;
@@ -297,23 +297,7 @@ is
             Active :=
               Chart.Moved (Active, Chart.Nowhere, Chart.Without_Address);
             Self.Leaf := Address_States.Without_Address;
-         when Tell_All =>
-            Box.Claim :=
-              J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
-            Box.Claim_Sent := True;
-         when Tell_Us =>
-            Box.Claim :=
-              J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
-            Box.Claim_Sent := True;
-         when Tell_Null =>
-            Box.Claim :=
-              J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
-            Box.Claim_Sent := True;
-         when Tell_Lost =>
-            Active :=
-              Chart.Moved (Active, Chart.Without_Address, Chart.Nowhere);
-            Enter_Yielding;
-         when Tell_Lost_Null =>
+         when Tell_Lost | Tell_Lost_Null =>
             Active :=
               Chart.Moved (Active, Chart.Without_Address, Chart.Nowhere);
             Enter_Yielding;

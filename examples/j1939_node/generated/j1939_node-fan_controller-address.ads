@@ -107,14 +107,11 @@ is
      (case T is
         when Granted => Leaf = Address_States.Claiming,
         when Claim => Leaf = Address_States.Before,
-        when Yield => Leaf in Address_States.Contending,
-        when Defend => Leaf in Address_States.Contending,
+        when Yield | Defend | Tell_All | Tell_Us | Tell_Null =>
+           Leaf in Address_States.Contending,
         when Give_Up => Leaf = Address_States.Yielding,
-        when Tell_All => Leaf in Address_States.Contending,
-        when Tell_Us => Leaf in Address_States.Contending,
-        when Tell_Null => Leaf in Address_States.Contending,
-        when Tell_Lost => Leaf = Address_States.Without_Address,
-        when Tell_Lost_Null => Leaf = Address_States.Without_Address);
+        when Tell_Lost | Tell_Lost_Null =>
+           Leaf = Address_States.Without_Address);
    --  Is its source the leaf, or around it?
 
    function Target
@@ -124,14 +121,9 @@ is
         when Initial_Entry => Address_States.Before,
         when Granted => Address_States.Claimed,
         when Claim => Address_States.Claiming,
-        when Yield => Address_States.Yielding,
-        when Defend => Leaf,
-        when Give_Up => Address_States.Without_Address,
-        when Tell_All => Leaf,
-        when Tell_Us => Leaf,
-        when Tell_Null => Leaf,
-        when Tell_Lost => Address_States.Yielding,
-        when Tell_Lost_Null => Address_States.Yielding);
+        when Yield | Tell_Lost | Tell_Lost_Null => Address_States.Yielding,
+        when Defend | Tell_All | Tell_Us | Tell_Null => Leaf,
+        when Give_Up => Address_States.Without_Address);
    --  The leaf it leads to; that of a composite is its default.
 
    --  The innermost region that holds all that a transition leaves and
@@ -142,15 +134,9 @@ is
      (case T is
         when Initial_Entry => Beginning,
         when Granted => Inside_Contending,
-        when Claim => Everything,
-        when Yield => Everything,
-        when Defend => Nothing,
-        when Give_Up => Everything,
-        when Tell_All => Nothing,
-        when Tell_Us => Nothing,
-        when Tell_Null => Nothing,
-        when Tell_Lost => Everything,
-        when Tell_Lost_Null => Everything);
+        when Claim | Yield | Give_Up | Tell_Lost | Tell_Lost_Null =>
+           Everything,
+        when Defend | Tell_All | Tell_Us | Tell_Null => Nothing);
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
@@ -163,21 +149,17 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D = Everything or else D = Beginning,
+           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
               D /= Beginning and then Before = Address_States.Before,
               After = Address_States.Before, Ravenchart.Timers.Started (20)),
         when 2 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_Contending
-              or else D = Everything
-              or else D = Beginning,
+              D in Inside_Contending | Everything | Beginning,
               D /= Beginning and then Before = Address_States.Claiming,
               After = Address_States.Claiming,
               Ravenchart.Timers.Started (25)),
         when 3 =>
-           Ravenchart.Timers.Moved (Timer,
-              D = Everything or else D = Beginning,
+           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
               D /= Beginning and then Before = Address_States.Yielding,
               After = Address_States.Yielding,
               Ravenchart.Timers.Started (4)),

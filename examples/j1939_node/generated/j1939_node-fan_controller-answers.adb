@@ -137,13 +137,7 @@ is
             Exit_Sending;
             Active := Chart.Moved (Active, Chart.Nowhere, Chart.Silent);
             Self.Leaf := Answers_States.Silent;
-         when Cyclic =>
-            Self.Data.Due :=
-              (if Self.Data.Due = 255 then 0 else Self.Data.Due + 1);
-         when Answer_All =>
-            Self.Data.Due :=
-              (if Self.Data.Due = 255 then 0 else Self.Data.Due + 1);
-         when Answer =>
+         when Cyclic | Answer_All | Answer =>
             Self.Data.Due :=
               (if Self.Data.Due = 255 then 0 else Self.Data.Due + 1);
          when Refuse =>

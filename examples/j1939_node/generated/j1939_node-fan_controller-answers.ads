@@ -95,24 +95,17 @@ is
      return Boolean is
      (case T is
         when With_Address => Leaf = Answers_States.Silent,
-        when Without_Address => Leaf = Answers_States.Sending,
-        when Cyclic => Leaf = Answers_States.Sending,
-        when Answer_All => Leaf = Answers_States.Sending,
-        when Answer => Leaf = Answers_States.Sending,
-        when Refuse => Leaf = Answers_States.Sending);
+        when Without_Address | Cyclic | Answer_All | Answer | Refuse =>
+           Leaf = Answers_States.Sending);
    --  Is its source the leaf, or around it?
 
    function Target
      (T : Firing; Leaf : Answers_States.Leaf)
      return Answers_States.Leaf is
      (case T is
-        when Initial_Entry => Answers_States.Silent,
+        when Initial_Entry | Without_Address => Answers_States.Silent,
         when With_Address => Answers_States.Sending,
-        when Without_Address => Answers_States.Silent,
-        when Cyclic => Leaf,
-        when Answer_All => Leaf,
-        when Answer => Leaf,
-        when Refuse => Leaf);
+        when Cyclic | Answer_All | Answer | Refuse => Leaf);
    --  The leaf it leads to; that of a composite is its default.
 
    --  The innermost region that holds all that a transition leaves and
@@ -122,12 +115,8 @@ is
    function Domain_Of (T : Firing) return Domain is
      (case T is
         when Initial_Entry => Beginning,
-        when With_Address => Everything,
-        when Without_Address => Everything,
-        when Cyclic => Nothing,
-        when Answer_All => Nothing,
-        when Answer => Nothing,
-        when Refuse => Nothing);
+        when With_Address | Without_Address => Everything,
+        when Cyclic | Answer_All | Answer | Refuse => Nothing);
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
@@ -140,8 +129,7 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D = Everything or else D = Beginning,
+           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
               D /= Beginning and then Before = Answers_States.Sending,
               After = Answers_States.Sending,
               Ravenchart.Timers.Started (100, 100)),

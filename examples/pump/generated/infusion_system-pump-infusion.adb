@@ -465,6 +465,47 @@ is
          and then Self.Timers (3)
            = Timer_After (3, D, Before, Self.Place, Was (3)))
       with Ghost, Pre => Was'First = 1 and then Was'Last = 3;
+      function Is_Fired (Before : Region; Chosen : Firing) return Boolean is
+        (Self.Started
+         and then Self.Place = Target (Chosen, Before.Place, Before.Past)
+         and then Is_Timed (Domain_Of (Chosen), Before.Place, Before.Timers)
+         and then ((Before.Started
+             and Self.Past
+               = Remembered (Domain_Of (Chosen), Before.Place, Before.Past))
+            or (not Before.Started and Self.Past = Before.Past))
+         and then Self.Freed
+           = Freed_After (Domain_Of (Chosen), Before.Place,
+                Deferrals.Count (Before.Deferred), Before.Freed)
+         and then (if Chosen
+               in Defer_New_Portion_In_Loading
+                 | Defer_New_Portion_In_Filling
+                 | Defer_New_Portion_In_Self_Test
+                 | Defer_New_Volume_In_Self_Test
+                 | Defer_New_Portion_In_Alarm
+               then Deferrals.Is_Appended (Before.Deferred, Item,
+                     Self.Deferred)
+                  and then Self.Lost
+                    = (Before.Lost or Deferrals.Count (Before.Deferred) = 4)
+            else Self.Deferred = Before.Deferred
+               and then Self.Lost = Before.Lost)) with Ghost;
+      pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+      function Lasts (Before : Region) return Boolean is
+        (Self.Timers = Before.Timers
+         and then Self.Past = Before.Past
+         and then Self.Freed = Before.Freed
+         and then Self.Started = Before.Started
+         and then (if Before.Deferred = Kept then Self.Deferred = Kept)
+         and then Deferrals.Count (Self.Deferred)
+           = Deferrals.Count (Before.Deferred)
+         and then Self.Lost = Before.Lost) with Ghost;
+      pragma Annotate (GNATprove, Inline_For_Proof, Lasts);
+      function Keeps (Before : Region) return Boolean is
+        (Self.Started = Before.Started
+         and then (if Before.Deferred = Kept then Self.Deferred = Kept)
+         and then Deferrals.Count (Self.Deferred)
+           = Deferrals.Count (Before.Deferred)
+         and then Self.Lost = Before.Lost) with Ghost;
+      pragma Annotate (GNATprove, Inline_For_Proof, Keeps);
       function Data_After_Exit_Turning (Data : Variables) return Variables is
         ((Data with delta Speed => 0)) with Ghost;
       function Data_After_Exit_Infusing (Data : Variables) return Variables is
@@ -525,11 +566,7 @@ is
           and then Self.Freed
             = (New_Portion => Deferrals.Count (Self.Deferred),
                New_Volume => Deferrals.Count (Self.Deferred))
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -549,14 +586,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Motor
             = Chart.Moved (Active_Motor'Old, Chart.Turning, Chart.Nowhere)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Exit_Turning (Self.Data'Old)
       is
       begin
@@ -571,14 +601,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Infusing, Chart.Nowhere)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Exit_Infusing (Self.Data'Old)
       is
       begin
@@ -592,14 +615,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Infusing)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -620,11 +636,7 @@ is
           and then Self.Freed
             = (New_Portion => Deferrals.Count (Self.Deferred),
                New_Volume => Self.Freed'Old.New_Volume)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -646,11 +658,7 @@ is
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -671,11 +679,7 @@ is
           and then Self.Freed
             = (New_Portion => Deferrals.Count (Self.Deferred),
                New_Volume => Self.Freed'Old.New_Volume)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -696,11 +700,7 @@ is
             = (Last_In_Infusing => Infusion_States.Maintaining,
                Known_In_Infusing => True)
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -720,11 +720,7 @@ is
             = (Last_In_Infusing => Infusion_States.All_Given,
                Known_In_Infusing => True)
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -744,11 +740,7 @@ is
             = (Last_In_Infusing => Infusion_States.Trickling,
                Known_In_Infusing => True)
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -768,11 +760,7 @@ is
           and then Self.Freed
             = (New_Portion => Deferrals.Count (Self.Deferred),
                New_Volume => Self.Freed'Old.New_Volume)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Data_After_Exit_Alarm (Self.Data'Old)
       is
       begin
@@ -791,11 +779,7 @@ is
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -821,11 +805,7 @@ is
           and then Self.Freed
             = Freed_After (Inside_Alarm, Self.Place'Old,
                  Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -851,11 +831,7 @@ is
           and then Self.Freed
             = Freed_After (Inside_Giving, Self.Place'Old,
                  Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -885,11 +861,7 @@ is
           and then Self.Freed
             = Freed_After (Inside_Running, Self.Place'Old,
                  Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -922,11 +894,7 @@ is
           and then Self.Freed
             = Freed_After (Inside_Infusing, Self.Place'Old,
                  Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -956,11 +924,7 @@ is
           and then Self.Freed
             = Freed_After (Inside_Motor, Self.Place'Old,
                  Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Data_After_Leave_Motor (Self.Data'Old)
       is
       begin
@@ -986,11 +950,7 @@ is
           and then Self.Freed
             = Freed_After (Inside_Sensor, Self.Place'Old,
                  Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -1022,11 +982,7 @@ is
                 (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Data_After_Enter_Self_Test (Self.Data'Old)
       is
       begin
@@ -1051,14 +1007,7 @@ is
                   then Chart.Moved (Active_Motor'Old, Chart.Nowhere,
                         Chart.Turning)
                else Chart.Disorder)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Turning (Self.Data'Old)
       is
       begin
@@ -1082,14 +1031,7 @@ is
                   then Chart.Moved (Active_Motor'Old, Chart.Nowhere,
                         Chart.Motor_Good)
                else Chart.Disorder)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -1114,14 +1056,7 @@ is
                   then Chart.Moved (Active_Sensor'Old, Chart.Nowhere,
                         Chart.Sensor_Good)
                else Chart.Disorder)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -1142,14 +1077,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Programming)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Programming)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Programming (Self.Data'Old)
       is
       begin
@@ -1164,14 +1092,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Infusing)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Infusing (Self.Data'Old)
       is
       begin
@@ -1186,14 +1107,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Filling)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Filling)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Filling (Self.Data'Old)
       is
       begin
@@ -1215,11 +1129,7 @@ is
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -1234,14 +1144,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Loading)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Loading)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Loading (Self.Data'Old)
       is
       begin
@@ -1258,14 +1161,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Maintaining)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Maintaining)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Maintaining (Self.Data'Old)
       is
       begin
@@ -1281,14 +1177,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.All_Given)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Running, Chart.All_Given)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Self.Data'Old
       is
       begin
@@ -1304,14 +1193,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Trickling)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Infusing, Chart.Trickling)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Trickling (Self.Data'Old)
       is
       begin
@@ -1326,14 +1208,7 @@ is
           Self.Place = Self.Place'Old
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Alarm)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Alarm (Self.Data'Old)
       is
       begin
@@ -1347,14 +1222,7 @@ is
           = (Self.Place'Old with delta Top => Infusion_States.Sounding)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Alarm, Chart.Sounding)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Lasts (Self'Old)
           and then Self.Data = Data_After_Enter_Sounding (Self.Data'Old)
       is
       begin
@@ -1375,11 +1243,7 @@ is
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Freed = Self.Freed'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Deferrals.Count (Self.Deferred)
-            = Deferrals.Count (Self.Deferred'Old)
-          and then Self.Lost = Self.Lost'Old
+          and then Keeps (Self'Old)
           and then Self.Data = Data_After_Enter_Silent (Self.Data'Old)
       is
       begin
@@ -1400,32 +1264,7 @@ is
           and then Self.Deferred = Kept
           and then Is_Agreed,
         Post =>
-          Self.Started
-          and then Self.Place
-            = Target (Chosen, Self.Place'Old, Self.Past'Old)
-          and then Is_Timed (Domain_Of (Chosen), Self.Place'Old,
-               Self.Timers'Old)
-          and then ((Self.Started'Old
-              and Self.Past
-                = Remembered (Domain_Of (Chosen), Self.Place'Old,
-                     Self.Past'Old))
-             or (not Self.Started'Old and Self.Past = Self.Past'Old))
-          and then Self.Freed
-            = Freed_After (Domain_Of (Chosen), Self.Place'Old,
-                 Deferrals.Count (Self.Deferred'Old), Self.Freed'Old)
-          and then (if Chosen
-                in Defer_New_Portion_In_Loading
-                  | Defer_New_Portion_In_Filling
-                  | Defer_New_Portion_In_Self_Test
-                  | Defer_New_Volume_In_Self_Test
-                  | Defer_New_Portion_In_Alarm
-                then Deferrals.Is_Appended (Self.Deferred'Old, Item,
-                      Self.Deferred)
-                   and then Self.Lost
-                     = (Self.Lost'Old
-                        or Deferrals.Count (Self.Deferred'Old) = 4)
-             else Self.Deferred = Self.Deferred'Old
-                and then Self.Lost = Self.Lost'Old)
+          Is_Fired (Self'Old, Chosen)
           and then Is_Safe (Self.Place, Self.Data)
           and then Is_Agreed
       is
@@ -1455,7 +1294,8 @@ is
                   and then Active_Sensor
                     = Chart.Innermost_Sensor (Self.Place));
                Enter_Maintaining;
-            when Defer_New_Portion_In_Loading =>
+            when Defer_New_Portion_In_Loading
+               | Defer_New_Portion_In_Filling =>
                if Deferrals.Count (Self.Deferred) = 4 then
                   Self.Lost := True;
                else
@@ -1473,12 +1313,6 @@ is
                Leave_Giving;
                Exit_Giving;
                Enter_All_Given;
-            when Defer_New_Portion_In_Filling =>
-               if Deferrals.Count (Self.Deferred) = 4 then
-                  Self.Lost := True;
-               else
-                  Deferrals.Append (Self.Deferred, Item);
-               end if;
             when Finished =>
                Leave_Running;
                Exit_Running;
@@ -1496,7 +1330,9 @@ is
                     Chart.Infusing);
                if Past.Known_In_Infusing then
                   case Past.Last_In_Infusing is
-                     when Infusion_States.Filling =>
+                     when Infusion_States.Filling
+                        | Infusion_States.All_Given
+                        | Infusion_States.Where_It_Was =>
                         Active_Top :=
                           Chart.Moved (Active_Top, Chart.Infusing,
                              Chart.Running);
@@ -1513,18 +1349,8 @@ is
                              Chart.Running);
                         Enter_Giving;
                         Enter_Maintaining;
-                     when Infusion_States.All_Given =>
-                        Active_Top :=
-                          Chart.Moved (Active_Top, Chart.Infusing,
-                             Chart.Running);
-                        Enter_Filling;
                      when Infusion_States.Trickling =>
                         Enter_Trickling;
-                     when Infusion_States.Where_It_Was =>
-                        Active_Top :=
-                          Chart.Moved (Active_Top, Chart.Infusing,
-                             Chart.Running);
-                        Enter_Filling;
                   end case;
                else
                   Active_Top :=
@@ -1576,12 +1402,7 @@ is
                Leave_Infusing;
                Exit_Infusing;
                Enter_Programming;
-            when Lost =>
-               Leave_Infusing;
-               Exit_Infusing;
-               Enter_Alarm;
-               Enter_Sounding;
-            when Trouble =>
+            when Lost | Trouble =>
                Leave_Infusing;
                Exit_Infusing;
                Enter_Alarm;
@@ -1614,50 +1435,15 @@ is
           and then Self.Deferred = Kept
           and then Is_Agreed,
         Post =>
-          Self.Started
-          and then Self.Place
-            = Target (Chosen, Self.Place'Old, Self.Past'Old)
-          and then Is_Timed (Domain_Of (Chosen), Self.Place'Old,
-               Self.Timers'Old)
-          and then ((Self.Started'Old
-              and Self.Past
-                = Remembered (Domain_Of (Chosen), Self.Place'Old,
-                     Self.Past'Old))
-             or (not Self.Started'Old and Self.Past = Self.Past'Old))
-          and then Self.Freed
-            = Freed_After (Domain_Of (Chosen), Self.Place'Old,
-                 Deferrals.Count (Self.Deferred'Old), Self.Freed'Old)
-          and then (if Chosen
-                in Defer_New_Portion_In_Loading
-                  | Defer_New_Portion_In_Filling
-                  | Defer_New_Portion_In_Self_Test
-                  | Defer_New_Volume_In_Self_Test
-                  | Defer_New_Portion_In_Alarm
-                then Deferrals.Is_Appended (Self.Deferred'Old, Item,
-                      Self.Deferred)
-                   and then Self.Lost
-                     = (Self.Lost'Old
-                        or Deferrals.Count (Self.Deferred'Old) = 4)
-             else Self.Deferred = Self.Deferred'Old
-                and then Self.Lost = Self.Lost'Old)
+          Is_Fired (Self'Old, Chosen)
           and then Is_Safe (Self.Place, Self.Data)
           and then Is_Agreed
       is
       begin
          case Chosen is
-            when Defer_New_Portion_In_Self_Test =>
-               if Deferrals.Count (Self.Deferred) = 4 then
-                  Self.Lost := True;
-               else
-                  Deferrals.Append (Self.Deferred, Item);
-               end if;
-            when Defer_New_Volume_In_Self_Test =>
-               if Deferrals.Count (Self.Deferred) = 4 then
-                  Self.Lost := True;
-               else
-                  Deferrals.Append (Self.Deferred, Item);
-               end if;
-            when Defer_New_Portion_In_Alarm =>
+            when Defer_New_Portion_In_Self_Test
+               | Defer_New_Volume_In_Self_Test
+               | Defer_New_Portion_In_Alarm =>
                if Deferrals.Count (Self.Deferred) = 4 then
                   Self.Lost := True;
                else

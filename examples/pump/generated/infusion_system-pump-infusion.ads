@@ -237,52 +237,38 @@ is
         when Heard =>
            Place.Top = Infusion_States.Self_Test
            and then Place.In_Sensor = Infusion_States.Listening,
-        when Loaded => Place.Top = Infusion_States.Loading,
-        when Change => Place.Top = Infusion_States.Maintaining,
-        when Defer_New_Portion_In_Loading =>
+        when Loaded | Defer_New_Portion_In_Loading =>
            Place.Top = Infusion_States.Loading,
-        when Filled_Up => Place.Top = Infusion_States.Filling,
-        when Beat => Place.Top in Infusion_States.Giving,
-        when Enough => Place.Top in Infusion_States.Giving,
-        when Defer_New_Portion_In_Filling =>
+        when Change => Place.Top = Infusion_States.Maintaining,
+        when Filled_Up | Defer_New_Portion_In_Filling =>
            Place.Top = Infusion_States.Filling,
+        when Beat | Enough => Place.Top in Infusion_States.Giving,
         when Finished => Place.Top in Infusion_States.Running,
         when Hush => Place.Top = Infusion_States.Sounding,
         when Remind => Place.Top = Infusion_States.Silent,
-        when Restore_Where_It_Was =>
+        when Restore_Where_It_Was | Default_Of_Where_It_Was =>
            Place.Top = Infusion_States.Where_It_Was,
-        when Default_Of_Where_It_Was =>
-           Place.Top = Infusion_States.Where_It_Was,
-        when Ready => Place.Top = Infusion_States.Self_Test,
-        when Again => Place.Top = Infusion_States.Self_Test,
-        when Order_Portion => Place.Top = Infusion_States.Programming,
-        when Order_Volume => Place.Top = Infusion_States.Programming,
-        when Start => Place.Top = Infusion_States.Programming,
-        when Stop => Place.Top in Infusion_States.Infusing,
-        when Lost => Place.Top in Infusion_States.Infusing,
-        when Trouble => Place.Top in Infusion_States.Infusing,
-        when Resume => Place.Top in Infusion_States.Alarm,
-        when Give_Up => Place.Top in Infusion_States.Alarm,
-        when Defer_New_Portion_In_Self_Test =>
+        when Ready | Again | Defer_New_Portion_In_Self_Test
+           | Defer_New_Volume_In_Self_Test =>
            Place.Top = Infusion_States.Self_Test,
-        when Defer_New_Volume_In_Self_Test =>
-           Place.Top = Infusion_States.Self_Test,
-        when Defer_New_Portion_In_Alarm =>
+        when Order_Portion | Order_Volume | Start =>
+           Place.Top = Infusion_States.Programming,
+        when Stop | Lost | Trouble => Place.Top in Infusion_States.Infusing,
+        when Resume | Give_Up | Defer_New_Portion_In_Alarm =>
            Place.Top in Infusion_States.Alarm,
-        when Go_On => Place.Top = Infusion_States.May_Go_On,
-        when Not_Yet => Place.Top = Infusion_States.May_Go_On);
+        when Go_On | Not_Yet => Place.Top = Infusion_States.May_Go_On);
    --  Is its source the leaf, or around it?
 
    function Deep_Infusing (Past : Memory) return Infusion_States.Infusing is
      (if Past.Known_In_Infusing
          then (case Past.Last_In_Infusing is
-               when Infusion_States.Filling => Infusion_States.Filling,
+               when Infusion_States.Filling | Infusion_States.All_Given
+                  | Infusion_States.Where_It_Was =>
+                  Infusion_States.Filling,
                when Infusion_States.Loading => Infusion_States.Loading,
                when Infusion_States.Maintaining =>
                   Infusion_States.Maintaining,
-               when Infusion_States.All_Given => Infusion_States.Filling,
-               when Infusion_States.Trickling => Infusion_States.Trickling,
-               when Infusion_States.Where_It_Was => Infusion_States.Filling)
+               when Infusion_States.Trickling => Infusion_States.Trickling)
       else Infusion_States.Filling);
    --  The leaf that deep history enters in Infusing.
 
@@ -290,7 +276,7 @@ is
      (T     : Firing; Place : Infusion_States.Configuration; Past  : Memory)
      return Infusion_States.Configuration is
      (case T is
-        when Initial_Entry =>
+        when Initial_Entry | Again =>
            (Top => Infusion_States.Self_Test,
             In_Sensor => Infusion_States.Listening,
             In_Motor => Infusion_States.Turning),
@@ -298,39 +284,27 @@ is
            (Place with delta In_Motor => Infusion_States.Motor_Good),
         when Heard =>
            (Place with delta In_Sensor => Infusion_States.Sensor_Good),
-        when Loaded => (Place with delta Top => Infusion_States.Maintaining),
-        when Change => (Place with delta Top => Infusion_States.Maintaining),
-        when Defer_New_Portion_In_Loading => Place,
+        when Loaded | Change =>
+           (Place with delta Top => Infusion_States.Maintaining),
+        when Defer_New_Portion_In_Loading | Beat
+           | Defer_New_Portion_In_Filling | Order_Portion | Order_Volume
+           | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
+           | Defer_New_Portion_In_Alarm =>
+           Place,
         when Filled_Up => (Place with delta Top => Infusion_States.Loading),
-        when Beat => Place,
         when Enough => (Place with delta Top => Infusion_States.All_Given),
-        when Defer_New_Portion_In_Filling => Place,
         when Finished => (Place with delta Top => Infusion_States.Trickling),
         when Hush => (Place with delta Top => Infusion_States.Silent),
-        when Remind => (Place with delta Top => Infusion_States.Sounding),
+        when Remind | Lost | Trouble | Not_Yet =>
+           (Place with delta Top => Infusion_States.Sounding),
         when Restore_Where_It_Was =>
            (Place with delta Top => Deep_Infusing (Past)),
-        when Default_Of_Where_It_Was =>
+        when Default_Of_Where_It_Was | Start =>
            (Place with delta Top => Infusion_States.Filling),
-        when Ready => (Place with delta Top => Infusion_States.Programming),
-        when Again =>
-           (Top => Infusion_States.Self_Test,
-            In_Sensor => Infusion_States.Listening,
-            In_Motor => Infusion_States.Turning),
-        when Order_Portion => Place,
-        when Order_Volume => Place,
-        when Start => (Place with delta Top => Infusion_States.Filling),
-        when Stop => (Place with delta Top => Infusion_States.Programming),
-        when Lost => (Place with delta Top => Infusion_States.Sounding),
-        when Trouble => (Place with delta Top => Infusion_States.Sounding),
-        when Resume => (Place with delta Top => Infusion_States.May_Go_On),
-        when Give_Up =>
+        when Ready | Stop | Give_Up =>
            (Place with delta Top => Infusion_States.Programming),
-        when Defer_New_Portion_In_Self_Test => Place,
-        when Defer_New_Volume_In_Self_Test => Place,
-        when Defer_New_Portion_In_Alarm => Place,
-        when Go_On => (Place with delta Top => Infusion_States.Where_It_Was),
-        when Not_Yet => (Place with delta Top => Infusion_States.Sounding));
+        when Resume => (Place with delta Top => Infusion_States.May_Go_On),
+        when Go_On => (Place with delta Top => Infusion_States.Where_It_Was));
    --  The leaves it leads to; those of a composite are its defaults.
 
    --  The innermost region that holds all that a transition leaves and
@@ -344,33 +318,19 @@ is
         when Initial_Entry => Beginning,
         when Turned => Inside_Motor,
         when Heard => Inside_Sensor,
-        when Loaded => Inside_Giving,
-        when Change => Inside_Giving,
-        when Defer_New_Portion_In_Loading => Nothing,
-        when Filled_Up => Inside_Running,
-        when Beat => Nothing,
-        when Enough => Inside_Running,
-        when Defer_New_Portion_In_Filling => Nothing,
-        when Finished => Inside_Infusing,
-        when Hush => Inside_Alarm,
-        when Remind => Inside_Alarm,
-        when Restore_Where_It_Was => Inside_Infusing,
-        when Default_Of_Where_It_Was => Inside_Infusing,
-        when Ready => Everything,
-        when Again => Everything,
-        when Order_Portion => Nothing,
-        when Order_Volume => Nothing,
-        when Start => Everything,
-        when Stop => Everything,
-        when Lost => Everything,
-        when Trouble => Everything,
-        when Resume => Everything,
-        when Give_Up => Everything,
-        when Defer_New_Portion_In_Self_Test => Nothing,
-        when Defer_New_Volume_In_Self_Test => Nothing,
-        when Defer_New_Portion_In_Alarm => Nothing,
-        when Go_On => Everything,
-        when Not_Yet => Everything);
+        when Loaded | Change => Inside_Giving,
+        when Defer_New_Portion_In_Loading | Beat
+           | Defer_New_Portion_In_Filling | Order_Portion | Order_Volume
+           | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
+           | Defer_New_Portion_In_Alarm =>
+           Nothing,
+        when Filled_Up | Enough => Inside_Running,
+        when Finished | Restore_Where_It_Was | Default_Of_Where_It_Was =>
+           Inside_Infusing,
+        when Hush | Remind => Inside_Alarm,
+        when Ready | Again | Start | Stop | Lost | Trouble | Resume
+           | Give_Up | Go_On | Not_Yet =>
+           Everything);
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
@@ -383,23 +343,19 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D = Everything or else D = Beginning,
+           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
               D /= Beginning and then Before.Top = Infusion_States.Self_Test,
               After.Top = Infusion_States.Self_Test,
               Ravenchart.Timers.Started (100)),
         when 2 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_Running
-              or else D = Inside_Infusing
-              or else D = Everything
-              or else D = Beginning,
+              D in Inside_Running | Inside_Infusing | Everything | Beginning,
               D /= Beginning and then Before.Top in Infusion_States.Giving,
               After.Top in Infusion_States.Giving,
               Ravenchart.Timers.Started (20, 20)),
         when 3 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_Alarm or else D = Everything or else D = Beginning,
+              D in Inside_Alarm | Everything | Beginning,
               D /= Beginning and then Before.Top = Infusion_States.Silent,
               After.Top = Infusion_States.Silent,
               Ravenchart.Timers.Started (600)),
@@ -411,19 +367,17 @@ is
      (D     : Domain; Place : Infusion_States.Configuration; Past  : Memory)
      return Memory is
      ((Last_In_Infusing =>
-         (if (D = Inside_Running
-              or else D = Inside_Giving
-              or else D = Inside_Infusing
-              or else D = Everything)
+         (if D
+             in Inside_Running | Inside_Giving | Inside_Infusing
+               | Everything
              and then Place.Top in Infusion_States.Infusing
              and then Place.Top /= Infusion_States.Where_It_Was
              then Place.Top
           else Past.Last_In_Infusing),
        Known_In_Infusing =>
-         (if (D = Inside_Running
-              or else D = Inside_Giving
-              or else D = Inside_Infusing
-              or else D = Everything)
+         (if D
+             in Inside_Running | Inside_Giving | Inside_Infusing
+               | Everything
              and then Place.Top in Infusion_States.Infusing
              and then Place.Top /= Infusion_States.Where_It_Was
              then True
@@ -439,14 +393,11 @@ is
      return Freed_Events is
      ((New_Portion =>
          (if (D = Everything and then Place.Top = Infusion_States.Self_Test)
-             or else ((D = Inside_Running
-                 or else D = Inside_Infusing
-                 or else D = Everything)
+             or else (D in Inside_Running | Inside_Infusing | Everything
                 and then Place.Top = Infusion_States.Filling)
-             or else ((D = Inside_Giving
-                 or else D = Inside_Running
-                 or else D = Inside_Infusing
-                 or else D = Everything)
+             or else (D
+                in Inside_Giving | Inside_Running | Inside_Infusing
+                  | Everything
                 and then Place.Top = Infusion_States.Loading)
              or else (D = Everything
                 and then Place.Top in Infusion_States.Alarm)
@@ -592,17 +543,13 @@ is
    --  What is freed when the event in this place is taken out.
 
    function Is_Deferral (T : Selection) return Boolean is
-     (T = Defer_New_Portion_In_Loading
-      or else T = Defer_New_Portion_In_Filling
-      or else T = Defer_New_Portion_In_Self_Test
-      or else T = Defer_New_Volume_In_Self_Test
-      or else T = Defer_New_Portion_In_Alarm);
+     (T
+      in Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
+        | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
+        | Defer_New_Portion_In_Alarm);
 
    function Is_Segment (T : Selection) return Boolean is
-     (T = Restore_Where_It_Was
-      or else T = Default_Of_Where_It_Was
-      or else T = Go_On
-      or else T = Not_Yet);
+     (T in Restore_Where_It_Was | Default_Of_Where_It_Was | Go_On | Not_Yet);
    --  Does it go on from a choice or history?
 
    function Is_Only (Fired : Firing_List; T : Selection) return Boolean is

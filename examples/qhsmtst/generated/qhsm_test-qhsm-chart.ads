@@ -87,57 +87,31 @@ is
      (T : Transition; Leaf : Chart_States.Leaf)
      return Boolean is
      (case T is
-        when S211_D => Leaf = Chart_States.S211,
-        when S211_H => Leaf = Chart_States.S211,
+        when S211_D | S211_H => Leaf = Chart_States.S211,
         when S21_Init => Leaf = Chart_States.S21_Init,
-        when S11_D => Leaf = Chart_States.S11,
-        when S11_G => Leaf = Chart_States.S11,
-        when S11_H => Leaf = Chart_States.S11,
-        when S21_A => Leaf in Chart_States.S21,
-        when S21_B => Leaf in Chart_States.S21,
-        when S21_G => Leaf in Chart_States.S21,
+        when S11_D | S11_G | S11_H => Leaf = Chart_States.S11,
+        when S21_A | S21_B | S21_G => Leaf in Chart_States.S21,
         when S1_Init => Leaf = Chart_States.S1_Init,
-        when S1_A => Leaf in Chart_States.S1,
-        when S1_B => Leaf in Chart_States.S1,
-        when S1_C => Leaf in Chart_States.S1,
-        when S1_D => Leaf in Chart_States.S1,
-        when S1_F => Leaf in Chart_States.S1,
-        when S1_I => Leaf in Chart_States.S1,
-        when S2_C => Leaf in Chart_States.S2,
-        when S2_F => Leaf in Chart_States.S2,
-        when S2_I => Leaf in Chart_States.S2,
+        when S1_A | S1_B | S1_C | S1_D | S1_F | S1_I =>
+           Leaf in Chart_States.S1,
+        when S2_C | S2_F | S2_I => Leaf in Chart_States.S2,
         when S_Init => Leaf = Chart_States.S_Init,
-        when S_E => Leaf in Chart_States.S,
-        when S_I => Leaf in Chart_States.S);
+        when S_E | S_I => Leaf in Chart_States.S);
    --  Is its source the leaf, or around it?
 
    function Target
      (T : Firing; Leaf : Chart_States.Leaf)
      return Chart_States.Leaf is
      (case T is
-        when Initial_Entry => Chart_States.S211,
+        when Initial_Entry | S21_Init | S11_G | S21_A | S21_B | S1_C
+           | S1_F =>
+           Chart_States.S211,
         when S211_D => Chart_States.S21_Init,
-        when S211_H => Chart_States.S_Init,
-        when S21_Init => Chart_States.S211,
+        when S211_H | S11_H | S1_D => Chart_States.S_Init,
         when S11_D => Chart_States.S1_Init,
-        when S11_G => Chart_States.S211,
-        when S11_H => Chart_States.S_Init,
-        when S21_A => Chart_States.S211,
-        when S21_B => Chart_States.S211,
-        when S21_G => Chart_States.S11,
-        when S1_Init => Chart_States.S11,
-        when S1_A => Chart_States.S11,
-        when S1_B => Chart_States.S11,
-        when S1_C => Chart_States.S211,
-        when S1_D => Chart_States.S_Init,
-        when S1_F => Chart_States.S211,
-        when S1_I => Leaf,
-        when S2_C => Chart_States.S11,
-        when S2_F => Chart_States.S11,
-        when S2_I => Leaf,
-        when S_Init => Chart_States.S11,
-        when S_E => Chart_States.S11,
-        when S_I => Leaf);
+        when S21_G | S1_Init | S1_A | S1_B | S2_C | S2_F | S_Init | S_E =>
+           Chart_States.S11,
+        when S1_I | S2_I | S_I => Leaf);
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
@@ -163,7 +137,7 @@ is
    --  How many segments follow at most; none but in a choice or history.
 
    function Is_Segment (T : Selection) return Boolean is
-     (T = S21_Init or else T = S1_Init or else T = S_Init);
+     (T in S21_Init | S1_Init | S_Init);
    --  Does it go on from a choice or history?
 
    function Is_Only (Fired : Firing_List; T : Selection) return Boolean is

@@ -66,8 +66,7 @@ is
      return Boolean is
      (case T is
         when Begin_Task => Leaf = Task_Of_Arm_States.Parked,
-        when There => Leaf = Task_Of_Arm_States.Reaching,
-        when Too_Late => Leaf = Task_Of_Arm_States.Reaching);
+        when There | Too_Late => Leaf = Task_Of_Arm_States.Reaching);
    --  Is its source the leaf, or around it?
 
    function Target (T : Firing) return Task_Of_Arm_States.Leaf is
@@ -85,9 +84,7 @@ is
    function Domain_Of (T : Firing) return Domain is
      (case T is
         when Initial_Entry => Beginning,
-        when Begin_Task => Everything,
-        when There => Everything,
-        when Too_Late => Everything);
+        when Begin_Task | There | Too_Late => Everything);
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
@@ -100,14 +97,12 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D = Everything or else D = Beginning,
+           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
               D /= Beginning and then Before = Task_Of_Arm_States.Parked,
               After = Task_Of_Arm_States.Parked,
               Ravenchart.Timers.Started (5)),
         when 2 =>
-           Ravenchart.Timers.Moved (Timer,
-              D = Everything or else D = Beginning,
+           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
               D /= Beginning and then Before = Task_Of_Arm_States.Reaching,
               After = Task_Of_Arm_States.Reaching,
               Ravenchart.Timers.Started (100)),

@@ -61,8 +61,7 @@ is
    function Target (T : Firing) return Starting_States.Leaf is
      (case T is
         when Initial_Entry => Starting_States.Before,
-        when Start => Starting_States.After_Start,
-        when Again => Starting_States.After_Start);
+        when Start | Again => Starting_States.After_Start);
    --  The leaf it leads to; that of a composite is its default.
 
    --  The innermost region that holds all that a transition leaves and
@@ -72,8 +71,7 @@ is
    function Domain_Of (T : Firing) return Domain is
      (case T is
         when Initial_Entry => Beginning,
-        when Start => Everything,
-        when Again => Everything);
+        when Start | Again => Everything);
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
@@ -86,8 +84,7 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D = Everything or else D = Beginning,
+           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
               D /= Beginning and then Before = Starting_States.Before,
               After = Starting_States.Before, Ravenchart.Timers.Started (2)),
         when others => Timer);

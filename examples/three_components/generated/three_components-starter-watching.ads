@@ -53,9 +53,8 @@ is
 
    function Target (T : Firing) return Watching_States.Leaf is
      (case T is
-        when Initial_Entry => Watching_States.Quiet,
+        when Initial_Entry | Calm => Watching_States.Quiet,
         when Seen => Watching_States.Busy,
-        when Calm => Watching_States.Quiet,
         when Left => Watching_States.Alone);
    --  The leaf it leads to; that of a composite is its default.
 
@@ -66,8 +65,7 @@ is
    function Domain_Of (T : Firing) return Domain is
      (case T is
         when Initial_Entry => Beginning,
-        when Seen => Inside_At_Work,
-        when Calm => Inside_At_Work,
+        when Seen | Calm => Inside_At_Work,
         when Left => Everything);
    --  Everything active inside it is left, and what is active then is
    --  entered.
@@ -82,9 +80,7 @@ is
      (case I is
         when 1 =>
            Ravenchart.Timers.Moved (Timer,
-              D = Inside_At_Work
-              or else D = Everything
-              or else D = Beginning,
+              D in Inside_At_Work | Everything | Beginning,
               D /= Beginning and then Before = Watching_States.Busy,
               After = Watching_States.Busy, Ravenchart.Timers.Started (2)),
         when others => Timer);

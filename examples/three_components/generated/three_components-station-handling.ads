@@ -55,9 +55,8 @@ is
 
    function Target (T : Firing) return Handling_States.Leaf is
      (case T is
-        when Initial_Entry => Handling_States.Empty,
-        when Take => Handling_States.Holding,
-        when Pass_On => Handling_States.Empty);
+        when Initial_Entry | Pass_On => Handling_States.Empty,
+        when Take => Handling_States.Holding);
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection

@@ -49,9 +49,8 @@ is
 
    function Target (T : Firing) return Watching_States.Leaf is
      (case T is
-        when Initial_Entry => Watching_States.Quiet,
-        when Seen => Watching_States.Busy,
-        when Calm => Watching_States.Quiet);
+        when Initial_Entry | Calm => Watching_States.Quiet,
+        when Seen => Watching_States.Busy);
    --  The leaf it leads to; that of a composite is its default.
 
    --  The innermost region that holds all that a transition leaves and
@@ -61,8 +60,7 @@ is
    function Domain_Of (T : Firing) return Domain is
      (case T is
         when Initial_Entry => Beginning,
-        when Seen => Everything,
-        when Calm => Everything);
+        when Seen | Calm => Everything);
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
@@ -75,8 +73,7 @@ is
      return Ravenchart.Timers.Timer is
      (case I is
         when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D = Everything or else D = Beginning,
+           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
               D /= Beginning and then Before = Watching_States.Busy,
               After = Watching_States.Busy, Ravenchart.Timers.Started (2)),
         when others => Timer);

@@ -5,10 +5,12 @@ An emitter builds a `Unit` from these nodes; `ada_text.print_unit` lays it out.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from typing import NamedTuple, TypeVar
 
 from ravenchart.gen.frozen import frozen
+
+Result = TypeVar("Result", bound=Hashable)
 
 # --- Expressions -------------------------------------------------------------
 
@@ -384,6 +386,23 @@ def equal(left: Expr, right: Expr) -> Expr:
     return Chain("=", (left, right))
 
 
+def case_of(selector: Expr, rows: Iterable[tuple[str, tuple[Stmt, ...]]]) -> Case:
+    """A case statement; choices with the same statements stand together."""
+    return Case(selector, _together(rows))
+
+
+def choice_of(selector: Expr, rows: Iterable[tuple[str, Expr]]) -> CaseExpr:
+    """A case expression; choices with the same value stand together."""
+    return CaseExpr(selector, _together(rows))
+
+
+def _together(rows: Iterable[tuple[str, Result]]) -> tuple[tuple[str, Result], ...]:
+    found: dict[Result, list[str]] = {}
+    for choice, result in rows:
+        found.setdefault(result, []).append(choice)
+    return tuple((" | ".join(names), result) for result, names in found.items())
+
+
 def names_in(construct: object) -> Iterator[str]:
     """The text of each name and literal in it."""
     if isinstance(construct, Ref):
@@ -398,3 +417,10 @@ def names_in(construct: object) -> Iterator[str]:
 def member(left: Expr, choices: str) -> Expr:
     """``left in choices``."""
     return Chain("in", (left, Ref(choices)))
+
+
+def one_of(left: Expr, literals: Sequence[str]) -> Expr:
+    """Is it one of these? False where there are none."""
+    if len(literals) > 1:
+        return member(left, " | ".join(literals))
+    return chain("=", (left, Ref(literals[0]))) if literals else FALSE

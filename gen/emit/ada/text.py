@@ -224,7 +224,10 @@ def statement(stmt: Stmt) -> Doc:
                 parts += ["else", _block(otherwise), SOFT]
             return upright(*parts, "end if;")
         case Case(selector, branches):
-            rows = [upright(f"when {choice} =>", _block(body)) for choice, body in branches]
+            rows = [
+                upright(group("when ", nest(_choices(f"{choice} =>"))), _block(body))
+                for choice, body in branches
+            ]
             return upright("case ", expression(selector), " is", _lines(rows), SOFT, "end case;")
         case Loop(head, body):
             start = f"{head} loop" if head else "loop"

@@ -31,9 +31,11 @@ from ravenchart.gen.emit.ada.syntax import (
     both,
     call,
     chain,
+    choice_of,
     equal,
     member,
     number,
+    one_of,
 )
 from ravenchart.gen.emit.language.compound import PASSED, Firing, Kind
 from ravenchart.gen.emit.language.places import flat
@@ -104,7 +106,7 @@ def _declared(shape: RegionShape) -> list[Decl]:
             (chosen, params[0]),
             "Boolean",
             aspects=(Aspect("No_Inline"),) if len(shape.busy_lanes) > MANY_LANES else (),
-            expression=CaseExpr(Ref("T"), sources),
+            expression=choice_of(Ref("T"), sources),
         ),
         Comment("Is its source the leaf, or around it?"),
         *restored_functions(shape),
@@ -112,7 +114,7 @@ def _declared(shape: RegionShape) -> list[Decl]:
             "Target",
             (Param("T", "in", "Firing"), *shape.target_params()),
             shape.place_type,
-            expression=CaseExpr(Ref("T"), ((START, start), *targets)),
+            expression=choice_of(Ref("T"), ((START, start), *targets)),
         ),
         Comment(
             "The leaf it leads to; that of a composite is its default."
@@ -192,7 +194,7 @@ def _selections(shape: RegionShape, params: tuple[Param, ...]) -> list[Decl]:
                 f"Leaves_{ada_case(state)}",
                 (Param("T", "in", "Selection"),),
                 "Boolean",
-                expression=_one_of("T", names),
+                expression=one_of(Ref("T"), names),
             ),
             Comment(f"Does it leave {state} from inside? Then it fires alone there."),
         ]
@@ -227,11 +229,6 @@ def _is_selection(shape: RegionShape, name: str, domain: str) -> Subprogram:
         aspects=(Aspect("Ghost"),),
         expression=both(rule, first),
     )
-
-
-def _one_of(what: str, names: list[str]) -> Expr:
-    """Is it one of these? In a form that can go on to the next line."""
-    return chain("or else", [equal(Ref(what), Ref(name)) for name in names])
 
 
 def _passing(shape: RegionShape) -> list[Decl]:

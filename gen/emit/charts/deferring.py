@@ -34,6 +34,7 @@ from ravenchart.gen.emit.ada.syntax import (
     chain,
     equal,
     number,
+    one_of,
 )
 from ravenchart.gen.emit.language.compound import Kind
 from ravenchart.gen.emit.language.events import name_of
@@ -147,7 +148,7 @@ def declared_deferrals(shape: RegionShape) -> list[Decl]:
             "Is_Deferral",
             (Param("T", "in", "Selection"),),
             "Boolean",
-            expression=chain("or else", [equal(Ref("T"), Ref(n)) for n in deferrals]),
+            expression=one_of(Ref("T"), deferrals),
         ),
     ]
 

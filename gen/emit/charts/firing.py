@@ -17,7 +17,6 @@ from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Aspect,
     Assign,
-    Case,
     Decl,
     Do,
     Expr,
@@ -36,6 +35,7 @@ from ravenchart.gen.emit.ada.syntax import (
     arguments,
     both,
     call,
+    case_of,
     equal,
     number,
 )
@@ -46,7 +46,7 @@ from ravenchart.gen.language.terms import Flow
 from ravenchart.gen.model.statechart import PseudoKind
 
 from .history import Restoring
-from .lasting import Lasting, terminates
+from .lasting import Lasting, in_one_word, of_before, terminates
 from .moving import Moving
 from .nodes import NODES, Nodes, joined
 from .safety import Safety
@@ -72,7 +72,7 @@ def _range(rows: Sequence[_Row]) -> str:
 def _procedure(rows: Sequence[_Row], claims: tuple[Aspect, ...]) -> tuple[Decl, Decl]:
     """A procedure for some transitions, and their type."""
     own = PlainType(f"From_{rows[0][0]}", f"Selection range {_range(rows)}", subtype=True)
-    body = (Case(Ref("Chosen"), tuple(rows)),)
+    body = (case_of(Ref("Chosen"), rows),)
     chosen = Param("Chosen", "in", own.name)
     return own, Subprogram(f"Fire_{own.name}", (chosen,), aspects=claims, body=body)
 
@@ -125,19 +125,21 @@ class Moves:
         if self.shape.deferring and procedures:
             kept = Ref("Self.Deferred")
             past += (Object("Kept", "Deferrals.List", kept, constant=True, aspects=ghost),)
+        procedures = (*self.lasting.frames(), *procedures)
         if len(rows) > MANY:
             before = [equal(o.value, Ref(o.name)) for o in past if o.value is not None]
             #  said once, and not with each batch
             agrees = Subprogram("Is_Agreed", (), "Boolean", ghost, expression=agreed)
-            timed = self.lasting.timing()
-            known = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen", at_once=True))
+            facts = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen", at_once=True))
+            params = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
+            fired = in_one_word("Is_Fired", params, of_before(facts))
+            known = call("Is_Fired", Ref("Self'Old"), Ref("Chosen"))
+            agreeing = Ref(agrees.name)
             claims = (
-                Aspect(
-                    "Pre", both(Ref("Self.Started"), sources, *later, *before, Ref(agrees.name))
-                ),
-                Aspect("Post", both(*flat([known, *safe, Ref(agrees.name)]))),
+                Aspect("Pre", both(Ref("Self.Started"), sources, *later, *before, agreeing)),
+                Aspect("Post", both(*flat([known, *safe, agreeing]))),
             )
-            procedures = (agrees, *timed, *procedures)
+            procedures = (agrees, *self.lasting.timing(), *fired, *procedures)
             batches = [rows[at : at + MANY] for at in range(0, len(rows), MANY)]
             procedures += tuple(d for batch in batches for d in _procedure(batch, claims))
             rows = [_call(batch) for batch in batches]
@@ -152,7 +154,7 @@ class Moves:
                 *procedures,
             ),
             body=(
-                Case(Ref("Chosen"), ((START, start), *rows)),
+                case_of(Ref("Chosen"), [(START, start), *rows]),
                 Pragma("Assert", (agreed,)),
             ),
         )

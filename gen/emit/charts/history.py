@@ -12,8 +12,6 @@ from collections.abc import Callable
 from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
-    Case,
-    CaseExpr,
     Comment,
     Decl,
     Expr,
@@ -25,6 +23,8 @@ from ravenchart.gen.emit.ada.syntax import (
     Subprogram,
     both,
     call,
+    case_of,
+    choice_of,
     equal,
 )
 from ravenchart.gen.emit.language.compound import PASSED, Enter, Place, Step
@@ -71,7 +71,7 @@ def restored_functions(shape: RegionShape) -> list[Decl]:
                 (Param("Past", "in", "Memory"),),
                 result,
                 expression=IfExpr(
-                    ((Ref(f"Past.{memory.known}"), CaseExpr(Ref(f"Past.{memory.last}"), rows)),),
+                    ((Ref(f"Past.{memory.known}"), choice_of(Ref(f"Past.{memory.last}"), rows)),),
                     Ref(shape.literal(_default(shape, memory.place))),
                 ),
             ),
@@ -180,7 +180,7 @@ class Restoring:
             for leaf in self.shape.literals_in(place)
         )
         default = self._steps(self.shape.compounds.default(place))
-        known = (Case(Ref(f"Past.{memory.last}"), rows),)
+        known = (case_of(Ref(f"Past.{memory.last}"), rows),)
         return (If(((Ref(f"Past.{memory.known}"), known),), default),)
 
     def _steps(self, steps: tuple[Step, ...]) -> tuple[Stmt, ...]:

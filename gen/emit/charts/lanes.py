@@ -42,6 +42,7 @@ from ravenchart.gen.emit.ada.syntax import (
     equal,
     member,
     number,
+    one_of,
 )
 from ravenchart.gen.emit.language.compound import Firing
 from ravenchart.gen.model.statechart import Lane
@@ -133,7 +134,7 @@ def _starts_with(shape: RegionShape, fired: Param) -> list[Decl]:
                 "Is_Segment",
                 (Param("T", "in", "Selection"),),
                 "Boolean",
-                expression=chain("or else", [equal(Ref("T"), Ref(n)) for n in names]),
+                expression=one_of(Ref("T"), names),
             ),
             Comment("Does it go on from a choice or history?"),
         ]

@@ -10,6 +10,7 @@ and the contracts here say it of every exit, entry and firing.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from ravenchart.gen.emit.ada.naming import ada_case
@@ -17,6 +18,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
     Aspect,
+    Call,
     CaseExpr,
     Chain,
     Comment,
@@ -26,14 +28,17 @@ from ravenchart.gen.emit.ada.syntax import (
     ForAll,
     IfExpr,
     Param,
+    Pragma,
     Prefix,
     Ref,
     Subprogram,
     both,
     call,
     chain,
+    choice_of,
     equal,
     number,
+    one_of,
 )
 from ravenchart.gen.emit.language.compound import TOP, Firing, Kind, Place
 from ravenchart.gen.emit.language.places import flat
@@ -43,6 +48,35 @@ from .deferring import COUNT, freed_after, freed_after_exit, kept_events
 from .shape import START, Memory, RegionShape
 
 _STOPPED = "Ravenchart.Timers.Stopped"
+
+LASTS, KEEPS = "Lasts", "Keeps"
+FEW = 3
+"""Of fewer facts each is written where it holds."""
+
+
+def in_one_word(name: str, params: tuple[Param, ...], fact: Expr) -> list[Decl]:
+    """A function that provers see as what it stands for."""
+    return [
+        Subprogram(name, params, "Boolean", (Aspect("Ghost"),), expression=fact),
+        Pragma("Annotate", (Ref("GNATprove"), Ref("Inline_For_Proof"), Ref(name))),
+    ]
+
+
+def of_before(fact: Expr) -> Expr:
+    """A fact over ``Self.X'Old``, over ``Before.X`` instead."""
+    match fact:
+        case Ref(text):
+            return Ref(re.sub(r"\bSelf\.([\w.]+)'Old", r"Before.\1", text))
+        case Chain(operator, operands):
+            return Chain(operator, tuple(map(of_before, operands)))
+        case Prefix(operator, operand):
+            return Prefix(operator, of_before(operand))
+        case Call(name, args):
+            return Call(name, tuple(Arg(a.name, of_before(a.value)) for a in args))
+        case IfExpr(branches, otherwise):
+            rows = tuple((of_before(c), of_before(v)) for c, v in branches)
+            return IfExpr(rows, otherwise and of_before(otherwise))
+    return fact
 
 
 def has_domains(shape: RegionShape) -> bool:
@@ -84,7 +118,7 @@ def declared_domains(shape: RegionShape) -> list[Decl]:
             "Domain_Of",
             (Param("T", "in", "Firing"),),
             "Domain",
-            expression=CaseExpr(Ref("T"), ((START, Ref("Beginning")), *rows)),
+            expression=choice_of(Ref("T"), ((START, Ref("Beginning")), *rows)),
         ),
         Comment("Everything active inside it is left, and what is active then is entered."),
     ]
@@ -128,7 +162,7 @@ def _freed(shape: RegionShape) -> list[Decl]:
 
 def _spans(places: list[Place], *more: str) -> Expr:
     names = [_inside(p) for p in places] + list(more)
-    return chain("or else", [equal(Ref("D"), Ref(n)) for n in names])
+    return one_of(Ref("D"), names)
 
 
 def _fresh(shape: RegionShape, index: int) -> Expr:
@@ -239,6 +273,7 @@ class Lasting:
     def __init__(self, shape: RegionShape) -> None:
         self.shape = shape
         self.region = shape.region
+        self._frames: set[str] = set()
 
     def timed(self, state: str) -> list[int]:
         """The numbers of a state's time-outs."""
@@ -259,17 +294,44 @@ class Lasting:
 
     def exited(self, state: str) -> list[Expr]:
         """After the exit of a state its time-outs are stopped and its leaf is remembered."""
-        return [
-            *self._times([(i, Ref(_STOPPED)) for i in self.timed(state)]),
-            *self._memory(self.remembered(state), state),
-            *self._freed(state),
-            *self._kept(),
-        ]
+        stopped = [(i, Ref(_STOPPED)) for i in self.timed(state)]
+        memory = self.remembered(state)
+        if not (stopped or memory or self.region.state(state).defers):
+            return self._said(LASTS)
+        facts = [*self._times(stopped), *self._memory(memory, state), *self._freed(state)]
+        return [*facts, *self._said(KEEPS)]
 
     def entered(self, vertex: str) -> list[Expr]:
         """After the entry of a state its time-outs run."""
         started = [(i, _fresh(self.shape, i)) for i in self.timed(vertex)]
-        return [*self._times(started), *self._memory([], vertex), *self._freed(), *self._kept()]
+        if not started:
+            return self._said(LASTS)
+        facts = [*self._times(started), *self._memory([], vertex), *self._freed()]
+        return [*facts, *self._said(KEEPS)]
+
+    def _frame(self, name: str) -> list[Expr]:
+        """What Lasts or Keeps says: nothing that outlasts a firing has changed, or no more than
+        its time-outs, memory and freed events."""
+        facts = [*self._times([]), *self._memory([], ""), *self._freed()] if name == LASTS else []
+        return [*facts, *self._kept()]
+
+    def _said(self, name: str) -> list[Expr]:
+        """The facts of a frame, in one word where there are several."""
+        facts = self._frame(name)
+        if len(facts) < FEW:
+            return facts
+        self._frames.add(name)
+        return [call(name, Ref("Self'Old"))]
+
+    def frames(self) -> list[Decl]:
+        """The functions that exits and entries use, which provers see as what they stand for."""
+        items: list[Decl] = []
+        for name in (LASTS, KEEPS):
+            if name in self._frames:
+                before = Param("Before", "in", "Region")
+                facts = both(*(of_before(fact) for fact in self._frame(name)))
+                items += in_one_word(name, (before,), facts)
+        return items
 
     def left(self, place: Place) -> list[Expr]:
         """After all in a region was left, the time-outs of what was active are stopped."""
@@ -284,7 +346,7 @@ class Lasting:
             facts.append(self._recalled(_inside(place)))
         if self.shape.deferring:
             facts.append(freed_after(self.shape, Ref(_inside(place)), COUNT))
-        return facts + self._kept()
+        return [*facts, *self._said(KEEPS)]
 
     def timing(self) -> list[Subprogram]:
         """`Is_Timed`: all time-outs are as declared, in one word, inside `Fire`."""

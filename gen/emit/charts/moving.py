@@ -13,7 +13,6 @@ from ravenchart.gen.emit.ada.syntax import (
     TRUE,
     Aspect,
     Assign,
-    Case,
     Decl,
     Do,
     Expr,
@@ -24,6 +23,7 @@ from ravenchart.gen.emit.ada.syntax import (
     arguments,
     both,
     call,
+    case_of,
     chain,
     equal,
     number,
@@ -268,5 +268,5 @@ class Moving:
                     ),
                 ),
             ),
-            body=(Case(Ref(leaf), tuple(rows)),),
+            body=(case_of(Ref(leaf), rows),),
         )

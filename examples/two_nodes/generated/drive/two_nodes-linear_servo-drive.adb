@@ -104,9 +104,7 @@ is
          when Cut_Off_Besides =>
             Active := Chart.Moved (Active, Chart.Safe, Chart.Safe_Off_Bus);
             Self.Leaf := Drive_States.Safe_Off_Bus;
-         when Still_Cut_Off =>
-            null;
-         when Told_Off_Bus =>
+         when Still_Cut_Off | Told_Off_Bus =>
             null;
          when Connected =>
             Active := Chart.Moved (Active, Chart.Safe_Off_Bus, Chart.Safe);

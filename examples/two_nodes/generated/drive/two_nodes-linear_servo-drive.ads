@@ -75,35 +75,24 @@ is
      (T : Transition; Leaf : Drive_States.Leaf)
      return Boolean is
      (case T is
-        when Go => Leaf = Drive_States.Standing,
-        when Rest => Leaf = Drive_States.Following,
-        when Lost_At_Rest => Leaf = Drive_States.Standing,
-        when Lost => Leaf = Drive_States.Following,
-        when Cut_Off_At_Rest => Leaf = Drive_States.Standing,
-        when Cut_Off => Leaf = Drive_States.Following,
-        when Cut_Off_Besides => Leaf = Drive_States.Safe,
-        when Still_Cut_Off => Leaf = Drive_States.Safe_Off_Bus,
-        when Told_Off_Bus => Leaf = Drive_States.Safe_Off_Bus,
-        when Connected => Leaf = Drive_States.Safe_Off_Bus,
-        when Back => Leaf = Drive_States.Safe);
+        when Go | Lost_At_Rest | Cut_Off_At_Rest =>
+           Leaf = Drive_States.Standing,
+        when Rest | Lost | Cut_Off => Leaf = Drive_States.Following,
+        when Cut_Off_Besides | Back => Leaf = Drive_States.Safe,
+        when Still_Cut_Off | Told_Off_Bus | Connected =>
+           Leaf = Drive_States.Safe_Off_Bus);
    --  Is its source the leaf, or around it?
 
    function Target
      (T : Firing; Leaf : Drive_States.Leaf)
      return Drive_States.Leaf is
      (case T is
-        when Initial_Entry => Drive_States.Standing,
+        when Initial_Entry | Rest | Back => Drive_States.Standing,
         when Go => Drive_States.Following,
-        when Rest => Drive_States.Standing,
-        when Lost_At_Rest => Drive_States.Safe,
-        when Lost => Drive_States.Safe,
-        when Cut_Off_At_Rest => Drive_States.Safe_Off_Bus,
-        when Cut_Off => Drive_States.Safe_Off_Bus,
-        when Cut_Off_Besides => Drive_States.Safe_Off_Bus,
-        when Still_Cut_Off => Leaf,
-        when Told_Off_Bus => Leaf,
-        when Connected => Drive_States.Safe,
-        when Back => Drive_States.Standing);
+        when Lost_At_Rest | Lost | Connected => Drive_States.Safe,
+        when Cut_Off_At_Rest | Cut_Off | Cut_Off_Besides =>
+           Drive_States.Safe_Off_Bus,
+        when Still_Cut_Off | Told_Off_Bus => Leaf);
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection

@@ -86,31 +86,23 @@ is
      (case T is
         when There => Leaf = Mission_States.Outward,
         when Home => Leaf = Mission_States.Homeward,
-        when Go => Leaf = Mission_States.Waiting,
-        when Lost => Leaf in Mission_States.Travelling,
-        when Cut_Off_Early => Leaf = Mission_States.Waiting,
-        when Cut_Off => Leaf in Mission_States.Travelling,
-        when Cut_Off_Besides => Leaf = Mission_States.Safe,
-        when Still_Cut_Off => Leaf = Mission_States.Safe_Off_Bus,
-        when Connected => Leaf = Mission_States.Safe_Off_Bus,
-        when Again => Leaf = Mission_States.Safe);
+        when Go | Cut_Off_Early => Leaf = Mission_States.Waiting,
+        when Lost | Cut_Off => Leaf in Mission_States.Travelling,
+        when Cut_Off_Besides | Again => Leaf = Mission_States.Safe,
+        when Still_Cut_Off | Connected => Leaf = Mission_States.Safe_Off_Bus);
    --  Is its source the leaf, or around it?
 
    function Target
      (T : Firing; Leaf : Mission_States.Leaf)
      return Mission_States.Leaf is
      (case T is
-        when Initial_Entry => Mission_States.Waiting,
+        when Initial_Entry | Again => Mission_States.Waiting,
         when There => Mission_States.Homeward,
-        when Home => Mission_States.Outward,
-        when Go => Mission_States.Outward,
-        when Lost => Mission_States.Safe,
-        when Cut_Off_Early => Mission_States.Safe_Off_Bus,
-        when Cut_Off => Mission_States.Safe_Off_Bus,
-        when Cut_Off_Besides => Mission_States.Safe_Off_Bus,
-        when Still_Cut_Off => Leaf,
-        when Connected => Mission_States.Safe,
-        when Again => Mission_States.Waiting);
+        when Home | Go => Mission_States.Outward,
+        when Lost | Connected => Mission_States.Safe,
+        when Cut_Off_Early | Cut_Off | Cut_Off_Besides =>
+           Mission_States.Safe_Off_Bus,
+        when Still_Cut_Off => Leaf);
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
