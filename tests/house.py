@@ -13,6 +13,7 @@ import shutil
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from ravenchart.building import checking, generation, programs
@@ -65,6 +66,10 @@ FLOATS = "runtime-floats"
 """A part of the runtime that no controller needs: bodies of users call it."""
 
 
+class UnknownTarget(ValueError):
+    """A name that no target and no group of targets has; the message lists those that there are."""
+
+
 @dataclass(frozen=True, slots=True)
 class Target:
     """One thing to prove: the name of its record, the run, and the folder of its model."""
@@ -83,16 +88,22 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
     """Runtime with each driver, bus server, analysis, examples, models of tests.
 
     Only those named, if some are; a name is that of a target, an example, a model or a group:
-    ``runtime`` (all that no model has made), ``examples``, ``models``.
+    ``runtime`` (all that no model has made), ``examples``, ``models``. Raises `UnknownTarget`.
     """
+    runtime: dict[str, Callable[[], Target]] = {
+        **{f"runtime-{driver}": partial(_runtime, driver) for driver in DRIVERS},
+        FLOATS: _floats,
+        BUS: _bus,
+        KERNEL: _kernel,
+    }
+    known = ("runtime", *runtime, "examples", *EXAMPLES, "models", *MODELS)
+    if unknown := sorted(set(names) - set(known)):
+        raise UnknownTarget(_unknown(unknown, known))
 
     def wanted(group: str, name: str) -> bool:
         return not names or group in names or name in names
 
-    for driver in DRIVERS:
-        if wanted("runtime", f"runtime-{driver}"):
-            yield _runtime(driver)
-    for name, target in ((FLOATS, _floats), (BUS, _bus), (KERNEL, _kernel)):
+    for name, target in runtime.items():
         if wanted("runtime", name):
             yield target()
     for example in EXAMPLES:
@@ -101,6 +112,10 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
     for model in MODELS:
         if wanted("models", model):
             yield from _programs(model, _copied(model), warnings="continue")
+
+
+def _unknown(names: Sequence[str], known: Sequence[str]) -> str:
+    return f"no target is called {', '.join(names)}; there are {', '.join(known)}"
 
 
 def made(name: str) -> Path:
@@ -262,7 +277,7 @@ def main() -> int:
     work = works[sys.argv[1]]
     try:
         return 0 if work(sys.argv[2:]) else 1
-    except (Refused, ToolFailed, outside_spark.WrongList) as failed:
+    except (Refused, ToolFailed, UnknownTarget, outside_spark.WrongList) as failed:
         print(str(failed).rstrip(), file=sys.stderr)
         return 1
     except ToolMissing as missing:

@@ -27,7 +27,7 @@ _HEAD: /function\s+\w+/
 _profile: "(" _parameter (";" _parameter)* ")" "return" NAME "is"
 _parameter: NAME ":" NAME
 condition: "when" NAME _ARROW conjunct (_AND_THEN conjunct)*
-move: "when" NAME _ARROW (conjunct | configuration)
+move: "when" NAME ("|" NAME)* _ARROW (conjunct | configuration)
 configuration: "(" [NAME _DELTA] leaf ("," leaf)* ")"
 leaf: NAME _ARROW conjunct
 conjunct: _piece+
@@ -121,15 +121,18 @@ class _Reader(Transformer[Token, object]):
         """A leaf for each component that does not stay as it was."""
         return dict(part for part in parts if isinstance(part, tuple))
 
-    def move(self, _: Meta, parts: Sequence[object]) -> tuple[str, object]:
-        """A transition and where it leads."""
-        return str(parts[0]), parts[1]
+    def move(self, _: Meta, parts: Sequence[object]) -> Leaves:
+        """Transitions and where they lead."""
+        return {str(name): parts[-1] for name in parts[:-1]}
 
     def conditions(self, _: Meta, parts: Sequence[object]) -> dict[str, object]:
         """`Enabled`."""
         return dict(part for part in parts if isinstance(part, tuple))
 
-    moves = conditions
+    def moves(self, _: Meta, parts: Sequence[object]) -> dict[str, object]:
+        """`Target`."""
+        rows = [part for part in parts if isinstance(part, dict)]
+        return {name: where for row in rows for name, where in row.items()}
 
 
 _ENUMERATION = re.compile(r"type \w+ is \(")

@@ -91,12 +91,18 @@ def symbol(title: str) -> str:
     return title.rpartition(":")[2]
 
 
-_CLONE = re.compile(r"(\.(constprop|isra|part|cold|lto_priv)(\.\d+)?)+$")
+_ADDED = re.compile(
+    r"(___wrapped_statements(\.\d+)?)?(\.(constprop|isra|part|cold|lto_priv)(\.\d+)?)*$"
+)
 
 
 def plain(name: str) -> str:
-    """A symbol without what the compiler adds where it makes a special copy of a function."""
-    return _CLONE.sub("", name)
+    """The symbol of the subprogram that a function was made of.
+
+    The compiler makes special copies of functions, and from GNAT 13 on a function inside each
+    subprogram with a postcondition, for its statements.
+    """
+    return _ADDED.sub("", name)
 
 
 _TASK = re.compile(r"TKB(X[bn]*)?$")

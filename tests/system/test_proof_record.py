@@ -37,6 +37,11 @@ def _record(name: str) -> Path:
     return path
 
 
+def test_a_name_that_no_target_has_is_refused() -> None:
+    with pytest.raises(house.UnknownTarget, match="no target is called feature-chart; there are "):
+        list(house.targets(["feature-chart"]))
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_target_has_a_record(name: str) -> None:
     assert _record(name) in RECORDS

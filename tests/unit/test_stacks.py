@@ -174,6 +174,20 @@ def test_a_frame_of_dynamic_size_needs_a_bound() -> None:
     assert not known.problems
 
 
+def test_a_bound_covers_the_statements_that_a_compiler_sets_apart() -> None:
+    """GNAT from 13 on puts the statements of a subprogram with a postcondition into one inside."""
+    inside = "a__tick___wrapped_statements.2"
+    text = _unit(
+        _node("a__tick", 20, "dynamic", "T a.ads:3:4"),
+        _node(f"a.adb:{inside}", 40, "dynamic", "T a.adb:3:4"),
+        _edge("a__tick", f"a.adb:{inside}"),
+    )
+    depths = Depths(graph.read([text]), Rules(bounds={"a__tick": Bound(100, "three copies")}))
+    assert depths.depth("a__tick") == 20 + 100 + 40 + 100
+    assert not depths.problems
+    assert graph.ada_name(inside) == "A.Tick"
+
+
 def test_a_function_that_calls_itself_can_have_a_bound() -> None:
     found = _graph({"a": 10, "b": 20, "c": 7}, [("a", "b"), ("b", "b"), ("b", "c")])
     depths = Depths(found, Rules(bounds={"b": Bound(0, "once for each byte", depth=65)}))
