@@ -66,7 +66,7 @@ FLOATS = "runtime-floats"
 """A part of the runtime that no controller needs: bodies of users call it."""
 
 
-class UnknownTarget(ValueError):
+class UnknownTargetError(ValueError):
     """A name that no target and no group of targets has; the message lists those that there are."""
 
 
@@ -88,7 +88,7 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
     """Runtime with each driver, bus server, analysis, examples, models of tests.
 
     Only those named, if some are; a name is that of a target, an example, a model or a group:
-    ``runtime`` (all that no model has made), ``examples``, ``models``. Raises `UnknownTarget`.
+    ``runtime`` (all that no model has made), ``examples``, ``models``. Raises `UnknownTargetError`.
     """
     runtime: dict[str, Callable[[], Target]] = {
         **{f"runtime-{driver}": partial(_runtime, driver) for driver in DRIVERS},
@@ -98,7 +98,7 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
     }
     known = ("runtime", *runtime, "examples", *EXAMPLES, "models", *MODELS)
     if unknown := sorted(set(names) - set(known)):
-        raise UnknownTarget(_unknown(unknown, known))
+        raise UnknownTargetError(_unknown(unknown, known))
 
     def wanted(group: str, name: str) -> bool:
         return not names or group in names or name in names
@@ -277,7 +277,7 @@ def main() -> int:
     work = works[sys.argv[1]]
     try:
         return 0 if work(sys.argv[2:]) else 1
-    except (Refused, ToolFailed, UnknownTarget, outside_spark.WrongList) as failed:
+    except (Refused, ToolFailed, UnknownTargetError, outside_spark.WrongList) as failed:
         print(str(failed).rstrip(), file=sys.stderr)
         return 1
     except ToolMissing as missing:

@@ -196,41 +196,43 @@ def _split(text: str, shape: str, origin: Origin, findings: Findings) -> tuple[s
     return owner, name
 
 
-def port_at(text: str, origin: Origin, site: Site) -> tuple[End, Port] | None:
-    """The port that ``instance.port`` names."""
-    pair = _split(text, "instance.port", origin, site.findings)
+def _member(
+    text: str, shape: str, origin: Origin, site: Site
+) -> tuple[Instance, Parts, str] | None:
+    """The instance of ``instance.name``, what its component has, and the name."""
+    pair = _split(text, shape, origin, site.findings)
     if pair is None:
         return None
     instance = site.instances.look_up(pair[0], origin, site.findings)
-    if instance is None:
+    parts = None if instance is None else site.parts.find(instance.component.name)
+    return None if instance is None or parts is None else (instance, parts, pair[1])
+
+
+def port_at(text: str, origin: Origin, site: Site) -> tuple[End, Port] | None:
+    """The port that ``instance.port`` names."""
+    found = _member(text, "instance.port", origin, site)
+    if found is None:
         return None
-    parts = site.parts.find(instance.component.name)
-    if parts is None:
-        return None
+    instance, parts, own = found
     ports = parts.members.ports.items.items()
     named = Scope(
         f"port of {instance.component.name}",
         {key: at for key, at in ports if at[2] is None or not at[2].is_command},
     )
     named.open = parts.members.ports.open
-    port = named.look_up(pair[1], origin, site.findings)
+    port = named.look_up(own, origin, site.findings)
     return None if port is None else (End(instance.name, port.name), port)
 
 
 def event_at(text: str, origin: Origin, site: Site) -> tuple[str, str] | None:
     """The (instance, event) that ``instance.Event`` names."""
-    pair = _split(text, "instance.Event", origin, site.findings)
-    if pair is None:
+    found = _member(text, "instance.Event", origin, site)
+    if found is None:
         return None
-    instance = site.instances.look_up(pair[0], origin, site.findings)
-    if instance is None:
-        return None
-    parts = site.parts.find(instance.component.name)
-    if parts is None:
-        return None
+    instance, parts, own = found
     named = Scope(f"event of {instance.component.name}", parts.members.events.items)
     named.open = parts.members.events.open
-    event = named.look_up(pair[1], origin, site.findings)
+    event = named.look_up(own, origin, site.findings)
     if event is not None and event.type is not None:
         message = f"the event {event.name} needs a value of type {event.type.name}"
         site.findings.error("RV-0528", origin, message, hint="name an event without a type")
@@ -400,12 +402,11 @@ def chain_of(name: str, form: ChainForm, messages: Scope[Message], site: Site) -
 
 def _row_at(text: str, origin: Origin, site: Site) -> str | None:
     """The id of the row ``instance.name``."""
-    pair = _split(text, "a message or instance.row", origin, site.findings)
-    instance = None if pair is None else site.instances.look_up(pair[0], origin, site.findings)
-    parts = None if instance is None else site.parts.find(instance.component.name)
-    if pair is None or instance is None or parts is None:
+    found = _member(text, "a message or instance.row", origin, site)
+    if found is None:
         return None
-    row = parts.rows.look_up(pair[1], origin, site.findings)
+    instance, parts, own = found
+    row = parts.rows.look_up(own, origin, site.findings)
     return None if row is None else f"{instance.name}.{row}"
 
 

@@ -38,7 +38,9 @@ def _record(name: str) -> Path:
 
 
 def test_a_name_that_no_target_has_is_refused() -> None:
-    with pytest.raises(house.UnknownTarget, match="no target is called feature-chart; there are "):
+    with pytest.raises(
+        house.UnknownTargetError, match="no target is called feature-chart; there are "
+    ):
         list(house.targets(["feature-chart"]))
 
 

@@ -13,7 +13,6 @@ from xml.etree import ElementTree
 import jsonschema
 import pytest
 
-from ravenchart.analysis.present import report
 from ravenchart.behaviour import rules
 from ravenchart.command_line import main
 from ravenchart.evidence import facts, folder, ledger, records, standards
@@ -32,22 +31,6 @@ TIMED = (
 USERS = ("activities-Valve.activities",)
 GOOD = ("met", "partly")
 RUNTIME_RECORD = "records/gnat-12/runtime-slcan.toml"
-
-
-@pytest.fixture(scope="module")
-def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    home = tmp_path_factory.mktemp("evidence") / "base"
-    evidence.write(home)
-    return home
-
-
-@pytest.fixture
-def home(base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A copy that a test may spoil; the timing report, which takes a second, is left out."""
-    place = evidence.copy(base, tmp_path / "valve")
-    monkeypatch.setattr(records, "RECORDS", place / "records")
-    monkeypatch.setattr(report, "render", lambda _: "")
-    return place
 
 
 def _edit(path: Path, old: str, new: str) -> None:

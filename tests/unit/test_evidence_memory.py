@@ -8,29 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.analysis.present import report
 from ravenchart.building import checking, programs, stacks
-from ravenchart.evidence import facts, folder, records
+from ravenchart.evidence import facts, folder
 from ravenchart.failures import Unusable
 from ravenchart.stacks.report import Memory, MemoryPart, PathStep, Stack
-from tests.support import evidence
 from tests.support.evidence import verdicts
-
-
-@pytest.fixture(scope="module")
-def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    home = tmp_path_factory.mktemp("evidence") / "base"
-    evidence.write(home)
-    return home
-
-
-@pytest.fixture
-def home(base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A copy that a test may spoil; the timing report, which takes a second, is left out."""
-    place = evidence.copy(base, tmp_path / "valve")
-    monkeypatch.setattr(records, "RECORDS", place / "records")
-    monkeypatch.setattr(report, "render", lambda _: "")
-    return place
 
 
 def _memory(home: Path, library: int | None = None) -> Path:

@@ -1,0 +1,28 @@
+"""What several of the unit tests begin with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from ravenchart.analysis.present import report
+from ravenchart.evidence import records
+from tests.support import evidence
+
+
+@pytest.fixture(scope="module")
+def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small model with all that evidence is made of."""
+    home = tmp_path_factory.mktemp("evidence") / "base"
+    evidence.write(home)
+    return home
+
+
+@pytest.fixture
+def home(base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy that a test may spoil; the timing report, which takes a second, is left out."""
+    place = evidence.copy(base, tmp_path / "valve")
+    monkeypatch.setattr(records, "RECORDS", place / "records")
+    monkeypatch.setattr(report, "render", lambda _: "")
+    return place
