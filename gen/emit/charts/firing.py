@@ -131,9 +131,12 @@ class Moves:
             #  said once, and not with each batch
             agrees = Subprogram("Is_Agreed", (), "Boolean", ghost, expression=agreed)
             facts = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen", at_once=True))
-            params = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
-            fired = in_one_word("Is_Fired", params, of_before(facts))
-            known = call("Is_Fired", Ref("Self'Old"), Ref("Chosen"))
+            fired: list[Decl] = []
+            known = facts
+            if of_before(facts) != facts:
+                params = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
+                fired = in_one_word("Is_Fired", params, of_before(facts))
+                known = call("Is_Fired", Ref("Self'Old"), Ref("Chosen"))
             agreeing = Ref(agrees.name)
             claims = (
                 Aspect("Pre", both(Ref("Self.Started"), sources, *later, *before, agreeing)),
