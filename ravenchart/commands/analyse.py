@@ -96,6 +96,8 @@ def _of_model(options: argparse.Namespace, checked: Checked) -> bool:
         run = observed.report(checked, seen, options.observed, within=within)
     if options.html is not None:
         from ravenchart.analysis.present import report
+        from ravenchart.building import programs
 
-        plain.write(options.html, report.render(analysis, run, changed))
+        built = {one.node: one.last_build() for one in programs.programs_of(checked)}
+        plain.write(options.html, report.render(analysis, run, changed, built))
     return within

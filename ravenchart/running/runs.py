@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,7 +23,8 @@ from ravenchart.analysis.system.observed import (
     together,
 )
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.building.programs import Program, to_standard_error
+from ravenchart.building import stacks
+from ravenchart.building.programs import TRACE_MAP, Program, to_standard_error
 from ravenchart.building.targets import Board
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
@@ -31,6 +32,7 @@ from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
 from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer
 from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Cut, Hold, Mend, Scenario, ScenarioError, load_scenario
+from ravenchart.stacks.report import Memory
 
 from . import bus_log, expected, judge, plots, result, server, summary
 from .process import ControllerProcess, Ended, StartError, separate_cores
@@ -49,6 +51,8 @@ class Controller:
     node: str
     executable: Path
     trace_json: Path
+    memory: Memory | None = None
+    """Its stacks and memory."""
 
 
 def controller(
@@ -61,7 +65,7 @@ def controller(
     On a board nothing excuses an execution time, so contracts are not executed there.
     """
     executable = made.build("release" if board else "checks", warn=warn, board=board)
-    return Controller(made.node, executable, made.generated / "trace.json")
+    return Controller(made.node, executable, made.generated / TRACE_MAP, stacks.kept(executable))
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +143,8 @@ def run_model(
         out.print(str(fault), markup=False, soft_wrap=True)
         refuse(str(fault))
         return None
-    written = write_report(outcome, request.analysis, request.folder)
+    programs = {one.node: one.memory for one in request.controllers}
+    written = write_report(outcome, request.analysis, request.folder, programs)
     out.print(outcome.title, markup=False)
     print_summary(outcome, out)
     for path in written:
@@ -204,8 +209,16 @@ def run_alone(
     return _run(executable, trace_json, out_dir, title, None, play, analysis)
 
 
-def write_report(outcome: RunResult, analysis: Analysis, out_dir: Path) -> tuple[Path, ...]:
-    """Write report.html into ``out_dir``, and positions.png of drives; the paths of both."""
+def write_report(
+    outcome: RunResult,
+    analysis: Analysis,
+    out_dir: Path,
+    programs: Mapping[str, Memory | None] | None = None,
+) -> tuple[Path, ...]:
+    """Write report.html into ``out_dir``, and positions.png of drives; the paths of both.
+
+    ``programs``: what `render` takes.
+    """
     out_dir.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
     pictures: list[tuple[str, str]] = []
@@ -230,7 +243,7 @@ def write_report(outcome: RunResult, analysis: Analysis, out_dir: Path) -> tuple
         pictures=tuple(pictures),
     )
     page = out_dir / "report.html"
-    page.write_text(render(analysis, run), encoding="utf-8")
+    page.write_text(render(analysis, run, programs=programs), encoding="utf-8")
     return (page, *written)
 
 
