@@ -63,9 +63,10 @@ class Overheads(_Form):
 
 
 class Emulator(_Form):
-    """The command that runs an image, and how to get it."""
+    """The command that runs an image, what its times are, and how to get it."""
 
     command: tuple[str, ...] = Field(min_length=1)
+    time: str
     hint: str
 
 

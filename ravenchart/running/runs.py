@@ -59,12 +59,10 @@ def controller(
     made: Program,
     warn: Callable[[str], None] = to_standard_error,
     board: Board | None = None,
+    mode: str = "checks",
 ) -> Controller:
-    """A program built, to be run. ToolFailed with the compiler's words.
-
-    On a board nothing excuses an execution time, so contracts are not executed there.
-    """
-    executable = made.build("release" if board else "checks", warn=warn, board=board)
+    """A program built, to be run. ToolFailed with the compiler's words."""
+    executable = made.build(mode, warn=warn, board=board)
     return Controller(made.node, executable, made.generated / TRACE_MAP, stacks.kept(executable))
 
 

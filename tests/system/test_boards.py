@@ -5,6 +5,7 @@ They need what RAVENCHART_RTS names, a cross compiler and QEMU: see docs/boards.
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import subprocess
@@ -27,11 +28,10 @@ OBSERVED = re.compile(r"^(\w+) +(\d+) +0 +[\d.]+ +[\d.]+ +\d+ % +ok$", re.M)
 """A processor that met all its deadlines, within its bound."""
 
 
-RAISED = """\
-      Calls := Calls + 1;
-      if Calls > 200 then
-         raise Program_Error;
-      end if;
+BUSY = """\
+      for Turn in 1 .. {turns} loop
+         Work := (Work * 3 + Turn) mod 8_191;
+      end loop;
 """
 
 
@@ -140,3 +140,55 @@ def test_three_runs_are_the_same_bytes(tmp_path: Path, capsys: pytest.CaptureFix
         traces.append((tmp_path / str(number) / "serial.txt").read_bytes())
     assert len(traces[0].splitlines()) > 1_000
     assert traces[0] == traces[1] == traces[2]
+
+
+def busy(home: Path, turns: int) -> None:
+    """Make an activity of the robot longer by so many turns of a loop."""
+    shutil.copytree(ROOT / "examples" / "cartesian_robot", home)
+    body = home / "user" / "cartesian_robot-joint-activities.adb"
+    text = body.read_text(encoding="utf-8")
+    work = "   Work : Integer := 0 with Export;\n\n   Steps_Per_Second : constant"
+    text = text.replace("   Steps_Per_Second : constant", work, 1)
+    before, behind = text.split("   procedure Position_Control", 1)
+    behind = behind.replace("   begin\n", f"   begin\n{BUSY.format(turns=turns)}", 1)
+    body.write_text(f"{before}   procedure Position_Control{behind}", encoding="utf-8")
+
+
+def times(home: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, dict[str, int]]:
+    """The longest execution times on the board, in ns; the exit status before them."""
+    words = ["measure", str(home / "model.yaml"), "--target", BOARD, "--seconds", "1", "--json"]
+    status = command_line.main(words)
+    rows = json.loads(capsys.readouterr().out)["result"]["measurement"]["rows"]
+    return status, {one["row"]: one["measured"] for one in rows}
+
+
+def test_a_longer_activity_is_measured_and_its_overrun_fails_the_run(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    row, budget = "joint_x.position_control", 150_000
+    busy(tmp_path / "none", 1)
+    busy(tmp_path / "some", 1_000)
+    assert times(tmp_path / "none", capsys) == times(tmp_path / "none", capsys)
+    (first, base), (_, longer) = (times(tmp_path / name, capsys) for name in ("none", "some"))
+    assert first == 0
+    each = (longer[row] - base[row]) / 1_000
+    assert each > 4  # an instruction of the loop takes 4 ns
+    others = [name for name, time in base.items() if time and "position_control" not in name]
+    apart = {name: abs(base[name] - longer[name]) for name in others}
+    assert max(apart.values()) < each * 100, apart  # of the loop nothing is in them
+    turns = {share: int((budget * share - base[row]) / each) for share in (0.9, 1.1)}
+    for share, count in turns.items():
+        home = tmp_path / str(share)
+        busy(home, count)
+        report = home / "report"
+        words = ["run", str(home / "model.yaml"), "--target", BOARD, "--seconds", "1"]
+        status = command_line.main([*words, "--report", str(report)])
+        printed = " ".join(capsys.readouterr().out.split())
+        page = (report / "report.html").read_text(encoding="utf-8")
+        if share < 1:
+            assert (status, f"{row} ran" in printed) == (0, False), printed
+            assert f"<td>{row}</td>" in page
+        else:
+            assert (status, f"{row} ran for longer than the model claims" in printed) == (1, True)
+            assert f"{row} ran for 16" in printed  # 165 us and what the loop cannot hit
+            assert f'<tr class="miss"><td>{row}</td>' in page
