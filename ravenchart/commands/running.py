@@ -6,12 +6,19 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from ravenchart.building import generation, programs, targets
+from ravenchart.building import gateways, generation, programs, targets
 from ravenchart.building.checking import Checked
+from ravenchart.building.programs import TRACE_MAP
 from ravenchart.failures import Unusable
 from ravenchart.running import boards, scenarios
 from ravenchart.running.result import RunResult
-from ravenchart.running.runs import Progress, RunRequest, controller, run_on_this_machine
+from ravenchart.running.runs import (
+    Controller,
+    Progress,
+    RunRequest,
+    controller,
+    run_on_this_machine,
+)
 from ravenchart.terminal import progress
 
 from . import common
@@ -44,8 +51,9 @@ def request(
     What they write goes to the ``folder``, or beside what is built.
     """
     made_of = programs.programs_of(checked)
-    if board is not None and (options.scenario, log, len(made_of)) != (None, None, 1):
-        raise Unusable(f"{board.target.name} runs one node, without `--scenario` and `--log`")
+    gateway = None
+    if board is not None:
+        gateway = _gateway(board, len(made_of), options.scenario, log)
     if options.scenario is not None:
         scenarios.checked(options.scenario, checked.system)
     common.tell_written(generation.write_program(checked), options.answer)
@@ -53,10 +61,14 @@ def request(
     controllers = []
     for made in made_of:
         with progress(f"compile {made.node}"):
-            controllers.append(controller(made, warn, board, mode))
+            if board is None or gateway is None:
+                controllers.append(controller(made, warn, board, mode))
+            else:
+                image = gateways.build(made, board, gateway, warn)
+                controllers.append(Controller(made.node, image, made.generated / TRACE_MAP))
         print(f"built {controllers[-1].executable}")
     target = board.target if board else None
-    driver = programs.default_driver(checked, target)
+    driver = gateway.driver if gateway else programs.default_driver(checked, target)
     home = programs.build_home(checked, driver, target.name if target else targets.NATIVE)
     return RunRequest(
         checked.analysis,
@@ -67,6 +79,22 @@ def request(
         folder or home / REPORTS[options.command],
         log,
     )
+
+
+def _gateway(
+    board: targets.Board, nodes: int, scenario: Path | None, log: Path | None
+) -> targets.Gateway | None:
+    """How a scenario gets to the bus of a board; Unusable where it does not."""
+    name, emulator = board.target.name, board.target.facts.emulator
+    if nodes != 1:
+        raise Unusable(f"{name} runs one node, and the model has {nodes}")
+    if scenario is None:
+        if log is not None:
+            raise Unusable(f"without `--scenario` nobody is on the bus of {name}: no log")
+        return None
+    if emulator is None or emulator.gateway is None:
+        raise Unusable(f"{name} has no gateway from its bus to this machine: no scenario")
+    return emulator.gateway
 
 
 def execute(board: targets.Board | None, request: RunRequest, progress: Progress) -> RunResult:

@@ -95,7 +95,7 @@ def run_on_this_machine(request: RunRequest, progress: Progress) -> RunResult:
         return run_nodes(
             request.controllers,
             request.analysis,
-            _dbc(request),
+            dbc_of(request),
             request.scenario,
             request.seconds,
             request.folder,
@@ -113,7 +113,7 @@ def run_on_this_machine(request: RunRequest, progress: Progress) -> RunResult:
     return run_controller(
         first.executable,
         first.trace_json,
-        _dbc(request),
+        dbc_of(request),
         request.scenario,
         None,
         request.folder,
@@ -369,7 +369,7 @@ def read(trace: Path, trace_map: TraceMap, problems: list[str]) -> Observation |
     return None
 
 
-def _dbc(request: RunRequest) -> Path:
+def dbc_of(request: RunRequest) -> Path:
     """The DBC of the model's bus; BenchError when it has none."""
     for one in request.analysis.system.buses:
         return request.generated / f"{one.name.lower()}.dbc"
