@@ -192,3 +192,56 @@ def test_a_longer_activity_is_measured_and_its_overrun_fails_the_run(
             assert (status, f"{row} ran for longer than the model claims" in printed) == (1, True)
             assert f"{row} ran for 16" in printed  # 165 us and what the loop cannot hit
             assert f'<tr class="miss"><td>{row}</td>' in page
+
+
+# --- Scenarios: the bench is in the time of the board ----------------------------------
+
+
+def play(scenario: Path, report: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
+    """Play a scenario with the robot on the board; the exit status and what is printed."""
+    model = ROOT / "examples" / "cartesian_robot" / "model.yaml"
+    words = ["run", str(model), "--target", BOARD, "--scenario", str(scenario)]
+    status = command_line.main([*words, "--report", str(report)])
+    printed = capsys.readouterr()
+    return status, printed.out + printed.err
+
+
+def test_the_demo_of_the_robot_passes_on_the_board_and_is_the_same_each_time(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = ROOT / "examples" / "cartesian_robot" / "scenario.yaml"
+    runs = []
+    for number in range(2):
+        home = tmp_path / str(number)
+        status, printed = play(scenario, home, capsys)
+        assert status == 0, printed
+        assert "verdict: PASS\n" in printed  # and the timing was judged
+        assert len(OBSERVED.findall(printed)) == 4
+        runs.append([(home / name).read_bytes() for name in ("serial.txt", "positions.png")])
+    assert len(runs[0][0].splitlines()) > 20_000
+    assert runs[0] == runs[1]
+
+
+def test_a_bench_that_falls_silent_stops_the_robot_on_the_board(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = ROOT / "examples" / "cartesian_robot" / "lost_bench.yaml"
+    status, printed = play(scenario, tmp_path, capsys)
+    assert status == 0, printed
+    assert "trace: joint_x.Motion in Drive" in printed
+
+
+def test_a_scenario_that_does_not_hold_fails_the_run_on_the_board(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = tmp_path / "wrong.yaml"
+    scenario.write_text(
+        "scenario: Ready without a command\nsteps:\n"
+        "  - {wait_for: robot_status.condition, is: Ready, within: 200 ms}\n",
+        encoding="utf-8",
+    )
+    status, printed = play(scenario, tmp_path / "report", capsys)
+    text = " ".join(printed.split())
+    assert status == 1
+    assert "verdict: FAIL: wait for robot_status.condition = Ready: not within 0.2 s" in text
+    assert "the trace is cut off" not in text  # the controller has ended by itself
