@@ -1,8 +1,8 @@
-"""The bench on the bus of an emulated board, in the time of the board.
+"""The bench on the bus of emulated boards, in the time of the boards.
 
-Each millisecond of the board its gateway writes the frames of the bus to a pipe, and waits for
-those of the bench on another one. The time of the board stands still meanwhile, so runs are the
-same.
+Each millisecond of a board its gateway writes the frames of the bus to a pipe, and waits for
+those of the bench and of other boards on another one. The time of the board stands still
+meanwhile, so runs are the same.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import os
 import select
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -47,6 +47,54 @@ class BoardBus(can.BusABC):
         self.waiting += line_of(msg)
 
 
+class Link:
+    """The two pipes of a board; ``lives``: whether its emulator still runs."""
+
+    def __init__(self, ends: tuple[int, int], lives: Callable[[], bool]) -> None:
+        """Nothing waits for the board."""
+        self._reading, self._writing = ends
+        self._lives = lives
+        self.waiting = b""
+        """Lines of other boards, for the next answer."""
+        self.is_open = True
+
+    def answer(self, text: bytes) -> None:
+        """Answer the last look: with what waits, and a text behind it."""
+        try:
+            os.write(self._writing, self.waiting + text + FEED)
+        except OSError:
+            self.is_open = False
+        self.waiting = b""
+
+    def take(self) -> list[bytes]:
+        """The lines of the next look; none where the board has ended. BenchError."""
+        text = b""
+        while not text.endswith(FEED):
+            self._wait()
+            part = os.read(self._reading, 65_536)
+            if not part:
+                self.is_open = False
+                return []
+            text += part
+        return [line for line in text.removesuffix(FEED).split(b"\r") if line]
+
+    def _wait(self) -> None:
+        """Until there is something to read: the end of the pipe, too."""
+        began = time.monotonic()
+        while not select.select([self._reading], [], [], 0.2)[0]:
+            if not self._lives():
+                raise BenchError("the emulator has ended")
+            if time.monotonic() > began + PATIENCE:
+                raise BenchError(f"the board said nothing for {PATIENCE:g} s")
+
+
+def _urgency(frame: can.Message) -> tuple[int, bool, int]:
+    """The lowest wins the arbitration."""
+    extended = frame.is_extended_id
+    base = frame.arbitration_id >> 18 if extended else frame.arbitration_id
+    return base, extended, frame.arbitration_id
+
+
 def line_of(frame: can.Message) -> bytes:
     """A classic frame as a line of slcan."""
     letter = ("tr" if not frame.is_extended_id else "TR")[int(frame.is_remote_frame)]
@@ -75,41 +123,34 @@ def frame_of(line: bytes, at: float) -> can.Message:
 
 
 class BoardPeer(Peer):
-    """One end of the bus of a board, which goes on as the bench does."""
+    """One end of a bus with boards, which go on as the bench does."""
 
-    def __init__(
-        self,
-        ends: tuple[int, int],
-        lives: Callable[[], bool],
-        codec: Codec,
-        record: Record = unrecorded,
-    ) -> None:
-        """At the two pipes of a board, from its first look on. BenchError where none comes.
-
-        ``lives``: whether its emulator still runs.
-        """
+    def __init__(self, links: Sequence[Link], codec: Codec, record: Record = unrecorded) -> None:
+        """On the bus from the first look of all boards on. BenchError where one is missing."""
         self._board = BoardBus()
         super().__init__(self._board, codec, record=record)
-        self._reading, self._writing = ends
-        self._lives = lives
+        self._links = links
         self._looks = -1
         self._came: deque[can.Message] = deque()
         self._take()
 
     def clock(self) -> float:
-        """The time of the board at its last look, in s."""
+        """The time of the boards at their last look, in s."""
         return self._looks * LOOK
 
     def sleep(self, seconds: float) -> None:
-        """Let the board go on."""
-        self._go_on(self.clock() + seconds)
+        """Let the boards go on; what comes meanwhile nobody hears."""
+        deadline = self.clock() + seconds
+        while self._is_before(deadline):
+            self._look()
+        self._came.clear()
 
     def end(self) -> None:
-        """Ask the controller to end, at the next look."""
+        """Ask the controllers to end, at the next look."""
         self._board.waiting += END
 
     def drop(self) -> None:
-        """Neither send nor receive any more: the board goes on alone."""
+        """Neither send nor receive any more: the boards go on alone."""
         self._open = False
         self._board.waiting = b""
 
@@ -128,41 +169,30 @@ class BoardPeer(Peer):
     def _is_before(self, deadline: float) -> bool:
         return self.clock() < deadline - LOOK / 2
 
-    def _go_on(self, deadline: float) -> None:
-        """Let the board go on to a time; what comes meanwhile nobody hears."""
-        while self._is_before(deadline):
-            self._look()
-        self._came.clear()
-
     def _look(self) -> None:
         """Answer the last look, and wait for the next one."""
-        try:
-            os.write(self._writing, self._board.waiting + FEED)
-        except OSError as fault:
-            raise BenchError(f"the controller left the bus: {fault}") from None
+        for link in self._links:
+            if link.is_open:
+                link.answer(self._board.waiting)
         self._board.waiting = b""
         self._take()
 
     def _take(self) -> None:
-        text = b""
-        while not text.endswith(FEED):
-            self._wait()
-            part = os.read(self._reading, 65_536)
-            if not part:
-                raise BenchError("the controller left the bus")
-            text += part
+        """What the boards say, to all others: each its frames in order, urgent ones first."""
+        said = {link: deque(link.take()) for link in self._links if link.is_open}
+        if not any(link.is_open for link in self._links):
+            raise BenchError("the controller left the bus")
         self._looks += 1
-        lines = text.removesuffix(FEED).split(b"\r")
-        self._came.extend(frame_of(line, self.clock()) for line in lines if line)
-
-    def _wait(self) -> None:
-        """Until there is something to read: the end of the pipe, too."""
-        began = time.monotonic()
-        while not select.select([self._reading], [], [], 0.2)[0]:
-            if not self._lives():
-                raise BenchError("the emulator has ended")
-            if time.monotonic() > began + PATIENCE:
-                raise BenchError(f"the board said nothing for {PATIENCE:g} s")
+        heads = {link: frame_of(lines[0], self.clock()) for link, lines in said.items() if lines}
+        while heads:
+            sender = min(heads, key=lambda link: _urgency(heads[link]))
+            self._came.append(heads.pop(sender))
+            line = said[sender].popleft()
+            for link in self._links:
+                if link is not sender:
+                    link.waiting += line + b"\r"
+            if said[sender]:
+                heads[sender] = frame_of(said[sender][0], self.clock())
 
 
 @contextmanager

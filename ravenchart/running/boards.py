@@ -6,21 +6,25 @@ import os
 import shutil
 import subprocess
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
-from ravenchart.analysis.system.observed import read_map
+from ravenchart.analysis.system.observed import Observation, read_map, together
 from ravenchart.building.targets import Board, Emulator
 from ravenchart.failures import Unusable
+from ravenchart.gen.language.terms import Ns
 from ravenchart.hw_can.bench.peer import BenchError, Codec
 from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
 from ravenchart.tools import children
 
 from . import board_bus, bus_log, runs
-from .process import Ended
+from .process import STOP_MARGIN, Ended
 from .result import RunResult
+
+SERIAL = "serial.txt"
 
 LONGEST = 1e9
 """A run that its bench ends, in s."""
@@ -44,59 +48,85 @@ def run_board(board: Board, request: runs.RunRequest, progress: runs.Progress) -
     if emulator is None or shutil.which(emulator.command[0]) is None:
         hint = emulator.hint if emulator else "run the program on the board itself"
         raise Unusable(f"the target {board.target.name} has no emulator on PATH; {hint}")
-    folder = request.folder.absolute()
-    folder.mkdir(parents=True, exist_ok=True)
-    report = folder / "serial.txt"
-    report.unlink(missing_ok=True)
-    seconds = LONGEST if request.scenario else request.seconds
-    image = request.controllers[0].executable
-    words = command(board, emulator, image, report, seconds)
-    if request.scenario is not None:
-        return _played(board, request, request.scenario, words, progress)
+    if request.scenario is not None or len(request.controllers) > 1:
+        return _joined(board, emulator, request, progress)
+    seconds = request.seconds
+    words = command(board, emulator, request.controllers[0].executable, _report(request), seconds)
     progress(f"emulate {seconds:g} s")
-    with _started(words, folder) as process:
+    with _started(words, request.folder) as process:
         ended, problems = _ended(process, PATIENCE * (1.0 + seconds))
     title = f"{seconds:g} s on {board.target.name}"
     return _concluded(title, None, None, request, ended, problems)
 
 
-def _played(
-    board: Board,
-    request: runs.RunRequest,
-    scenario: Path,
-    words: Sequence[str],
-    progress: runs.Progress,
+def _home(request: runs.RunRequest, controller: runs.Controller) -> Path:
+    """What the board of a node writes: a folder of its own where there are several."""
+    several = len(request.controllers) > 1
+    folder = request.folder.absolute() / controller.node if several else request.folder.absolute()
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def _report(request: runs.RunRequest, controller: runs.Controller | None = None) -> Path:
+    """The file of the serial line of a board, which is not there yet."""
+    report = _home(request, controller or request.controllers[0]) / SERIAL
+    report.unlink(missing_ok=True)
+    return report
+
+
+def _joined(
+    board: Board, emulator: Emulator, request: runs.RunRequest, progress: runs.Progress
 ) -> RunResult:
-    """Play a scenario by the gateway of the board. Raises as `runs.run_controller`."""
-    plan = load_scenario(scenario)
-    if plan.bus_events:
-        raise ScenarioError(f"{scenario.name}: error: `bus` is for a system with several nodes")
+    """Run boards on one bus with the bench. Raises as `runs.run_controller`."""
+    plan = None if request.scenario is None else load_scenario(request.scenario)
+    if plan is not None and plan.bus_events:
+        raise ScenarioError(f"{plan.title}: error: the bus of boards takes no `bus`")
     dbc = runs.dbc_of(request)
     codec = Codec.from_file(dbc)
+    grace = request.analysis.system.shutdown.grace / 1e9 + STOP_MARGIN
     played: ScenarioResult | None = None
-    folder = request.folder.absolute()
-    with (
-        bus_log.recorded(request.log, dbc.stem) as record,
-        board_bus.pipes(folder) as ends,
-        _started(words, folder) as process,
-    ):
+    with ExitStack() as stack:
+        record = stack.enter_context(bus_log.recorded(request.log, dbc.stem))
+        processes, links = [], []
+        for one in request.controllers:
+            ends = stack.enter_context(board_bus.pipes(_home(request, one)))
+            report = _report(request, one)
+            words = command(board, emulator, one.executable, report, LONGEST)
+            process = stack.enter_context(_started(words, report.parent))
+            processes.append(process)
+            links.append(board_bus.Link(ends, partial(_lives, process)))
         try:
-            peer = board_bus.BoardPeer(ends, lambda: process.poll() is None, codec, record)
-            asked: list[bool] = []
+            peer = board_bus.BoardPeer(links, codec, record)
+            asked: list[float] = []
 
             def is_over() -> bool:
+                """Asks the boards to end. Their end ends the bench, and so does a time limit."""
                 if not asked:
-                    asked.append(True)
+                    asked.append(peer.clock())
                     peer.end()
-                return False  # the end of the board ends the bench
+                return peer.clock() > asked[0] + grace
 
-            played = run_scenario(plan, peer, progress=progress, ended=is_over)
-            ended, told = _ended(process, PATIENCE)
+            if plan is None:
+                peer.sleep(request.seconds)
+                with suppress(BenchError):
+                    while not is_over():
+                        peer.sleep(board_bus.LOOK)
+            else:
+                played = run_scenario(plan, peer, progress=progress, ended=is_over)
+            found = [_ended(process, PATIENCE) for process in processes]
         except BenchError as fault:
-            process.kill()  # it waits for the bench, and hears no other signal
-            ended, told = Ended(0, False, True, ()), [str(fault)]
-    title = f"{plan.title}, on {board.target.name}"
-    return _concluded(title, plan, played, request, ended, told)
+            for process in processes:
+                process.kill()  # it waits for the bench, and hears no other signal
+            found = [(Ended(0, False, True, ()), [str(fault)])]
+    title = plan.title if plan else f"{request.seconds:g} s without a scenario"
+    return _concluded(
+        f"{title}, on {board.target.name}",
+        plan,
+        played,
+        request,
+        runs.all_ended([ended for ended, _ in found]),
+        [text for _, problems in found for text in problems],
+    )
 
 
 def _concluded(
@@ -107,18 +137,29 @@ def _concluded(
     ended: Ended,
     problems: list[str],
 ) -> RunResult:
-    """What a run showed by the serial line of its report."""
-    report = request.folder / "serial.txt"
-    lines = report.read_text("ascii", "replace").splitlines() if report.is_file() else []
-    said = tuple(line for line in lines if line.startswith(SAID))
-    ended = replace(ended, warnings=(*ended.warnings, *said))
-    trace = request.folder / "trace.txt"
-    kept = [f"{line}\n" for line in lines if not line.startswith(SAID)]
-    trace.write_text("".join(kept), encoding="ascii")
-    seen = runs.read(trace, read_map(*_map(request.controllers[0])), problems)
-    if seen is not None:
-        seen.host_latency = None
-    return runs.concluded(title, plan, played, seen, ended, problems, request.analysis)
+    """What a run showed by the serial lines of its reports."""
+    parts: dict[str, Observation] = {}
+    for one in request.controllers:
+        home = _home(request, one)
+        report, trace = home / SERIAL, home / "trace.txt"
+        lines = report.read_text("ascii", "replace").splitlines() if report.is_file() else []
+        said = tuple(line for line in lines if line.startswith(SAID))
+        ended = replace(ended, warnings=(*ended.warnings, *said))
+        kept = [f"{line}\n" for line in lines if not line.startswith(SAID)]
+        trace.write_text("".join(kept), encoding="ascii")
+        seen = runs.read(trace, read_map(*_map(one)), problems)
+        if seen is not None:
+            seen.host_latency = None
+            parts[one.node] = seen
+    whole = next(iter(parts.values()), None)
+    if len(request.controllers) > 1 and whole is not None:
+        for part in parts.values():
+            part.start = Ns(0)  # the looks of all boards begin together
+        whole = together(parts) if len(parts) == len(request.controllers) else None
+    chains = len(request.controllers) == 1
+    return runs.concluded(
+        title, plan, played, whole, ended, problems, request.analysis, chains=chains
+    )
 
 
 def command(
@@ -151,6 +192,10 @@ def _started(words: Sequence[str], folder: Path) -> Iterator[Process]:
         text=True,
     ) as process:
         yield process
+
+
+def _lives(process: Process) -> bool:
+    return process.poll() is None
 
 
 def _ended(process: Process, limit: float) -> tuple[Ended, list[str]]:

@@ -314,12 +314,16 @@ def concluded(
     ended: Ended,
     problems: list[str],
     analysis: Analysis | None,
+    *,
+    chains: bool = True,
 ) -> RunResult:
-    """Everything that a run showed, put together and judged."""
+    """Everything that a run showed, put together and judged; ``chains`` where its bus took the
+    time that frames take.
+    """
     if seen is not None:
         seen.stolen = Ns(ended.stolen)
     disturbed = plan is not None and bool(plan.bus_events)
-    took = journeys(analysis, seen) if analysis and seen and not disturbed else ()
+    took = journeys(analysis, seen) if analysis and seen and chains and not disturbed else ()
     compared = compare(analysis, seen) if analysis and seen else ()
     executed = executions(analysis, seen) if analysis and seen else ()
     checks = judge.check_trace(plan.trace_checks, seen) if plan and seen else ()
@@ -443,7 +447,7 @@ def run_nodes(
             named = zip(controllers, parts, strict=True)
             seen = together({c.node: part for c, part in named if part is not None})
     title = plan.title if plan else f"{seconds:g} s without a scenario"
-    return concluded(title, plan, played, seen, _all_ended(ended), problems, analysis)
+    return concluded(title, plan, played, seen, all_ended(ended), problems, analysis)
 
 
 def _bus_words(
@@ -479,7 +483,7 @@ def _bus_words(
     return words
 
 
-def _all_ended(ended: Sequence[Ended]) -> Ended:
+def all_ended(ended: Sequence[Ended]) -> Ended:
     """How several controllers ended, as of one: the worst of each."""
     return Ended(
         exit_code=next((one.exit_code for one in ended if one.exit_code), 0),

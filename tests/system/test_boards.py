@@ -197,9 +197,14 @@ def test_a_longer_activity_is_measured_and_its_overrun_fails_the_run(
 # --- Scenarios: the bench is in the time of the board ----------------------------------
 
 
-def play(scenario: Path, report: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
-    """Play a scenario with the robot on the board; the exit status and what is printed."""
-    model = ROOT / "examples" / "cartesian_robot" / "model.yaml"
+def play(
+    scenario: Path,
+    report: Path,
+    capsys: pytest.CaptureFixture[str],
+    example: str = "cartesian_robot",
+) -> tuple[int, str]:
+    """Play a scenario with an example on boards; the exit status and what is printed."""
+    model = ROOT / "examples" / example / "model.yaml"
     words = ["run", str(model), "--target", BOARD, "--scenario", str(scenario)]
     status = command_line.main([*words, "--report", str(report)])
     printed = capsys.readouterr()
@@ -245,3 +250,27 @@ def test_a_scenario_that_does_not_hold_fails_the_run_on_the_board(
     assert status == 1
     assert "verdict: FAIL: wait for robot_status.condition = Ready: not within 0.2 s" in text
     assert "the trace is cut off" not in text  # the controller has ended by itself
+
+
+def test_two_boards_on_one_bus_pass_their_scenario_and_are_the_same_each_time(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = ROOT / "examples" / "two_nodes" / "scenario.yaml"
+    runs = []
+    for number in range(2):
+        home = tmp_path / str(number)
+        status, printed = play(scenario, home, capsys, "two_nodes")
+        assert status == 0, printed
+        assert "verdict: PASS\n" in printed
+        assert len(OBSERVED.findall(printed)) == 4
+        runs.append([(home / node / "serial.txt").read_bytes() for node in ("panel", "drive")])
+    assert all(len(text.splitlines()) > 500 for text in runs[0])
+    assert runs[0] == runs[1]
+
+
+def test_two_boards_run_without_a_scenario(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    printed = run("two_nodes", tmp_path, capsys, "1")
+    assert "verdict: PASS\n" in printed
+    assert "servo.Drive         Standing, Following" in printed

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import can
@@ -12,7 +13,7 @@ import pytest
 from ravenchart.hw_can.bench.peer import BenchError, Codec
 from ravenchart.paths import ROOT
 from ravenchart.running import board_bus
-from ravenchart.running.board_bus import BoardPeer, frame_of, line_of
+from ravenchart.running.board_bus import BoardPeer, Link, frame_of, line_of
 
 DBC = ROOT / "examples" / "cartesian_robot" / "generated" / "robot_bus.dbc"
 SET_POINT = b"t11030080FF\r"
@@ -52,7 +53,7 @@ def started(tmp_path: Path) -> Iterator[Callable[[list[bytes]], tuple[Board, Boa
         def start(said: list[bytes]) -> tuple[Board, BoardPeer]:
             board = Board(tmp_path, said)
             board.thread.start()
-            return board, BoardPeer(ends, lambda: board.alive, Codec.from_file(DBC))
+            return board, BoardPeer([Link(ends, lambda: board.alive)], Codec.from_file(DBC))
 
         yield start
     assert not (tmp_path / board_bus.TO_BOARD).exists()
@@ -96,6 +97,13 @@ def test_time_goes_on_by_looks_alone(started: Start) -> None:
     assert board.heard == [b""] * 8
 
 
+def test_nobody_hears_what_comes_while_the_bench_sleeps(started: Start) -> None:
+    _, peer = started([b"", SET_POINT, b"", b"", b""])
+    peer.sleep(0.002)
+    peer.receive_until(0.003, lambda name, values: None)
+    assert peer.received == {}
+
+
 def test_frames_arrive_at_their_look_and_leave_at_the_next_one(started: Start) -> None:
     board, peer = started([b"", b"", SET_POINT, b"", b"", b""])
     came: list[tuple[str, float]] = []
@@ -132,7 +140,7 @@ def test_the_end_of_the_board_ends_the_bench(started: Start) -> None:
 def test_an_emulator_that_does_not_start_is_noticed(tmp_path: Path) -> None:
     ended = pytest.raises(BenchError, match="the emulator has ended")
     with board_bus.pipes(tmp_path) as ends, ended:
-        BoardPeer(ends, lambda: False, Codec.from_file(DBC))
+        BoardPeer([Link(ends, lambda: False)], Codec.from_file(DBC))
 
 
 def test_a_flexible_frame_is_refused() -> None:
@@ -149,3 +157,28 @@ def test_a_log_has_the_time_of_the_board(started: Start, tmp_path: Path) -> None
     peer.send("robot_command", {"kind": "Home", "x": 0, "y": 0, "z": 0})
     (frame,) = kept
     assert abs(frame.timestamp - 0.001) < 1e-9 and not frame.is_rx
+
+
+def test_boards_hear_each_other_a_look_later_each_in_order_and_urgent_frames_first(
+    tmp_path: Path,
+) -> None:
+    homes = [tmp_path / name for name in ("left", "right")]
+    said = ([b"", b"t2000\rt1000\r", b"", b""], [b"", b"t1500\r", b"", b"", b"t7000\r", b""])
+    heard: list[str] = []
+    with ExitStack() as stack:
+        boards, links = [], []
+        for home, texts in zip(homes, said, strict=True):
+            home.mkdir()
+            ends = stack.enter_context(board_bus.pipes(home))
+            boards.append(Board(home, texts))
+            links.append(Link(ends, lambda: True))
+            boards[-1].thread.start()
+        peer = BoardPeer(links, Codec.from_file(DBC), lambda f: heard.append(f"{f}"[33:43].strip()))
+        peer.receive_until(0.003, lambda name, values: None)
+        assert [name.lstrip("0") for name in heard] == ["150", "200", "100"]
+        assert boards[0].heard[1] == b"t1500\r" and boards[1].heard[1] == b"t2000\rt1000\r"
+        peer.sleep(0.002)  # the left one ends
+        assert [link.is_open for link in links] == [False, True]
+        with pytest.raises(BenchError, match="the controller left the bus"):
+            peer.sleep(0.005)
+    assert boards[1].heard[1:] == [b"t2000\rt1000\r", b"", b"", b"", b""]
