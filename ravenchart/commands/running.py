@@ -65,7 +65,9 @@ def request(
                 controllers.append(controller(made, warn, board, mode))
             else:
                 image = gateways.build(made, board, gateway, warn)
-                controllers.append(Controller(made.node, image, made.generated / TRACE_MAP))
+                trace_map = made.generated / TRACE_MAP
+                memory = made.last_build()  # without the gateway
+                controllers.append(Controller(made.node, image, trace_map, memory))
         print(f"built {controllers[-1].executable}")
     target = board.target if board else None
     driver = gateway.driver if gateway else programs.default_driver(checked, target)

@@ -222,6 +222,8 @@ def test_the_demo_of_the_robot_passes_on_the_board_and_is_the_same_each_time(
         assert status == 0, printed
         assert "verdict: PASS\n" in printed  # and the timing was judged
         assert len(OBSERVED.findall(printed)) == 4
+        page = (home / "report.html").read_text(encoding="utf-8")
+        assert "controller: target zynqmp, mode release" in page  # its stacks and memory
         runs.append([(home / name).read_bytes() for name in ("serial.txt", "positions.png")])
     assert len(runs[0][0].splitlines()) > 20_000
     assert runs[0] == runs[1]
