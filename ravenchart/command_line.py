@@ -32,6 +32,7 @@ COMMANDS = {
         "compare the generated program with the model, by independent code",
     ),
     "run": ("run", "build and run the controller on this machine"),
+    "measure": ("measure", "run the controller, and measure the execution time of each row"),
     "requirements": (
         "requirements",
         "trace requirements to elements, code, claims and tests, and back",

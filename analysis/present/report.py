@@ -23,6 +23,7 @@ from ravenchart.analysis.system.supervision import watches
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus
+from ravenchart.stacks.report import Memory
 
 from . import plots
 from .page import page
@@ -175,10 +176,18 @@ def compare(analysis: Analysis, seen: Observation) -> tuple[Comparison, ...]:
 
 
 def render(
-    analysis: Analysis, run: RunReport | None = None, earlier: Differences | None = None
+    analysis: Analysis,
+    run: RunReport | None = None,
+    earlier: Differences | None = None,
+    programs: Mapping[str, Memory | None] | None = None,
 ) -> str:
-    """The report as HTML text; ``earlier`` is what changed since another version."""
-    return page("report.html", _context(analysis, run) | {"compared_with": earlier})
+    """The report as HTML text; ``earlier`` is what changed since another version.
+
+    ``programs`` are the stacks and the memory of the program of each node, None where it is not
+    built. Without it the report has no such section.
+    """
+    context = _context(analysis, run) | {"compared_with": earlier, "programs": programs}
+    return page("report.html", context)
 
 
 def _context(analysis: Analysis, run: RunReport | None) -> dict[str, Any]:

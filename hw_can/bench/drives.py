@@ -59,6 +59,7 @@ class Bench:
         peer: Peer,
         forms: Mapping[str, DriveForm],
         clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         """Power on: every axis at its start. BenchError when a message does not fit."""
         for form in forms.values():
@@ -76,6 +77,7 @@ class Bench:
         """Called for each message received."""
         self.start = clock()
         self._clock = clock
+        self._sleep = sleep
         self._tick = 0
         self._steps = 0
 
@@ -99,7 +101,7 @@ class Bench:
             self.peer.forward(frame)
         if self.peer.is_open:
             self.peer.receive_until(deadline, self._take)
-        time.sleep(max(0.0, deadline - self._clock()))
+        self._sleep(max(0.0, deadline - self._clock()))
         self._advance(due * PERIOD)
         if self.peer.is_open:
             for station in self.stations.values():

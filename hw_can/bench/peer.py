@@ -208,6 +208,14 @@ class Peer:
         except (can.CanError, OSError) as fault:
             raise BenchError(f"no bus at {channel}: {fault}") from None
 
+    def clock(self) -> float:
+        """The time of the bus, in s."""
+        return time.monotonic()
+
+    def sleep(self, seconds: float) -> None:
+        """Let so much time of the bus go by."""
+        time.sleep(seconds)
+
     @property
     def is_open(self) -> bool:
         """Neither dropped nor closed."""
@@ -232,11 +240,11 @@ class Peer:
             raise BenchError(f"the controller left the bus: {fault}") from None
         self.sent[name] += 1
         copied = copy.copy(frame)
-        copied.timestamp, copied.is_rx = time.time(), False
+        copied.timestamp, copied.is_rx = self._stamp(), False
         self._record(copied)
 
     def receive_until(self, deadline: float, take: Callable[[str, Values], None]) -> None:
-        """Hand over what arrives until ``deadline``, a time of `time.monotonic`."""
+        """Hand over what arrives until ``deadline``, a time of `clock`."""
         while self._open:
             frame = self._next(deadline)
             if frame is None:
@@ -264,6 +272,10 @@ class Peer:
                 self._bus.shutdown()
             if self._link is not None:
                 self._link.close()
+
+    def _stamp(self) -> float:
+        """The time for a log."""
+        return time.time()
 
     def _next(self, deadline: float) -> can.Message | None:
         """The next frame, waiting without load; None at the deadline."""

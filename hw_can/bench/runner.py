@@ -96,7 +96,7 @@ def run_scenario(
     try:
         for step in scenario.steps:
             _check(step, peer)
-        bench = Bench(peer, scenario.drives)
+        bench = Bench(peer, scenario.drives, peer.clock, peer.sleep)
         runner = _Runner(bench, limit, scenario)
         results: list[StepResult] = []
         for step, line in zip(scenario.steps, scenario.lines, strict=True):

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from ravenchart.analysis.system.observed import read_map
 from ravenchart.failures import Refused
 from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.emit.commands.lifecycle import RUNTIME_FOLDER, has_lifecycle
@@ -20,6 +21,7 @@ from ravenchart.gen.emit.program import (
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT, work
 from ravenchart.proof.proving import Task
+from ravenchart.stacks.report import Memory
 from ravenchart.tools import toolchain
 
 from . import images, stacks, targets
@@ -37,6 +39,8 @@ DRIVER_FOLDERS = {
 
 
 DRIVERS = tuple(DRIVER_FOLDERS)
+TRACE_MAP = "trace.json"
+"""Beside the generated sources: what the numbers of a trace mean."""
 REGISTERS = ("simulated", HARDWARE)
 """What the registers of devices can be: see the project file of a program."""
 RUNTIME_FOLDERS = (
@@ -138,6 +142,21 @@ class Program:
                 stacks.must_have_graphs(stacks.objects_of(made))
             self._examine(made, mode, target, board)
         return made
+
+    def last_build(self) -> Memory | None:
+        """The stacks and the memory of its last build from these sources, if there is one."""
+        names = self.generated / TRACE_MAP
+        if not names.is_file():
+            return None
+        if read_map(names.read_text("utf-8"), str(names)).digest != self.checked.system.digest:
+            return None  # the model has been changed since it was generated
+        file = stacks.record_of(Path(f"{self.checked.stem}_main")).name
+        homes = [home / self.folder for home in homes_of(self.checked.path)]
+        found = [path for home in homes for path in home.glob(f"*/{file}")]
+        newest = sorted(found, key=lambda path: path.stat().st_mtime_ns, reverse=True)
+        own = self.digests()
+        records = (stacks.read_record(path) for path in newest)
+        return next((one for one in records if one.sources == own), None)
 
     def digests(self) -> dict[str, str]:
         """SHA-256 of each of its Ada sources, by the name from the folder of the model."""

@@ -62,11 +62,19 @@ class Overheads(_Form):
     release: Span
 
 
+class Gateway(_Form):
+    """How the bench reaches the CAN bus of an emulated board; ``driver``: that of the program."""
+
+    driver: str
+
+
 class Emulator(_Form):
-    """The command that runs an image, and how to get it."""
+    """The command that runs an image, what its times are, and how to get it."""
 
     command: tuple[str, ...] = Field(min_length=1)
+    time: str
     hint: str
+    gateway: Gateway | None = None
 
 
 class InterruptStack(_Form):

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ravenchart.analysis.units import microseconds
 from ravenchart.failures import OK, WRONG, Refused
 
-from . import common, plain
+from . import bounds, common, plain
+from .answer import say
 
 if TYPE_CHECKING:
     from ravenchart.analysis.findings.differences import Differences, Figures
+    from ravenchart.analysis.plain.bounds import Bound
     from ravenchart.building.checking import Checked
 
 
@@ -28,6 +31,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         help="compare measured execution times (the trace of a run, or a plain file "
         "for a plain file) with the budgets",
     )  # fmt: skip
+    bounds.add_arguments(sub)
     sub.add_argument(
         "--compare", type=Path, metavar="OLD",
         help="say what changed since OLD: a model, a plain file or an answer of --json",
@@ -40,11 +44,15 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Analyse it; the exit status."""
     printed = options.json or options.export is not None
-    if printed and (options.html is not None or options.observed is not None):
-        raise Refused("ravenchart: error: --json and --export go without --html and --observed")
+    if printed and any((options.html, options.observed, options.bounds)):
+        raise Refused(
+            "ravenchart: error: --json and --export go without --html, --observed and --bounds"
+        )
     if options.export is not None and options.compare is not None:
         raise Refused("ravenchart: error: --export goes without --compare")
     if options.model.suffix.lower() in plain.ENDINGS:
+        if options.bounds is not None:
+            raise Refused("ravenchart: error: --bounds is for a model")
         return OK if plain.run(options, _comparison(options)) else WRONG
     checked = common.checked(options, deadlines=False)
     status = OK if checked.analysis.schedulable else WRONG
@@ -78,6 +86,7 @@ def _of_model(options: argparse.Namespace, checked: Checked) -> bool:
     from ravenchart.analysis.present.table import show
 
     analysis, earlier = checked.analysis, _comparison(options)
+    given = bounds.of_model(options, checked)
     found = figures(analysis) if options.json or earlier else {}
     changed = None if earlier is None else earlier(found)
     if options.json:
@@ -94,8 +103,27 @@ def _of_model(options: argparse.Namespace, checked: Checked) -> bool:
         seen = observed.observation(checked, options.observed)
         within = observed.within_budgets(checked, seen, options.observed)
         run = observed.report(checked, seen, options.observed, within=within)
+    if options.bounds is not None:
+        within = _is_bounded(options, checked, given) and within
     if options.html is not None:
         from ravenchart.analysis.present import report
+        from ravenchart.building import programs
 
-        plain.write(options.html, report.render(analysis, run, changed))
+        built = {one.node: one.last_build() for one in programs.programs_of(checked)}
+        plain.write(options.html, report.render(analysis, run, changed, built))
     return within
+
+
+def _is_bounded(options: argparse.Namespace, checked: Checked, given: Mapping[str, Bound]) -> bool:
+    """Print each bound of a static tool beside its budget; none is above it."""
+    table = bounds.rows(checked, given)
+    for row in table:
+        budget = f"its budget of {microseconds(row.wcet)} us"
+        if row.bound is None:
+            print(f"{row.row}: no bound is given for {budget}")
+        else:
+            word = "ABOVE" if row.words else "within"
+            print(f"{row.row}: bound {microseconds(row.bound)} us, {word} {budget}")
+    for text in bounds.findings(table, given, checked.system):
+        say(options.answer, text)
+    return not any(row.words for row in table)

@@ -40,13 +40,14 @@ SHOWN = 50
 
 def read(path: Path) -> PlainSystem:
     """The system in a file; `Refused` with everything that is wrong with it."""
-    found = load(_text(path), str(path))
+    found = load(text_of(path), str(path))
     if isinstance(found, PlainSystem):
         return found
     raise Refused("\n".join(map(str, found[:SHOWN])))
 
 
-def _text(path: Path) -> str:
+def text_of(path: Path) -> str:
+    """The text of a file; Refused where it is not UTF-8."""
     try:
         return path.read_text(encoding="utf-8")
     except UnicodeDecodeError:
@@ -106,7 +107,7 @@ def write(path: Path, report: str) -> None:
 
 def _observed(path: Path, system: PlainSystem) -> list[Execution]:
     """What was observed beside the budgets, nearest to them first."""
-    found = observed(_text(path), str(path), system.network)
+    found = observed(text_of(path), str(path), system.network)
     if not isinstance(found, dict):
         raise Refused("\n".join(map(str, found[:SHOWN])))
     known = budgets(system.network)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ravenchart.described import Described
+from ravenchart.running.measured import Measurement
 from ravenchart.stacks.report import Memory
 
 
@@ -462,6 +463,14 @@ class TestsResult(Result):
     """The files under which program and interpreter executed different behaviours."""
 
 
+@dataclass(slots=True)
+class MeasureResult(Result):
+    """A run whose execution times were measured."""
+
+    measurement: Measurement
+    """The times, and what they leave out."""
+
+
 RESULTS: dict[str, type[Result]] = {
     "check": CheckResult,
     "generate": GenerateResult,
@@ -469,6 +478,7 @@ RESULTS: dict[str, type[Result]] = {
     "prove": ProveResult,
     "allocate": AllocateResult,
     "run": RunResult,
+    "measure": MeasureResult,
     "draw": DrawResult,
     "doctor": DoctorResult,
     "explain": ExplainResult,

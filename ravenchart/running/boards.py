@@ -5,17 +5,31 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
-from ravenchart.analysis.system.observed import read_map
+from ravenchart.analysis.system.observed import Observation, read_map, together
 from ravenchart.building.targets import Board, Emulator
 from ravenchart.failures import Unusable
+from ravenchart.gen.language.terms import Ns
+from ravenchart.hw_can.bench.peer import BenchError, Codec
+from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
+from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
 from ravenchart.tools import children
 
-from . import runs
-from .process import Ended
+from . import board_bus, bus_log, runs
+from .process import STOP_MARGIN, Ended
 from .result import RunResult
+
+SERIAL = "serial.txt"
+
+LONGEST = 1e9
+"""A run that its bench ends, in s."""
+
+Process = subprocess.Popen[str]
 
 PATIENCE = 60.0
 """How long a second of a run may take, and the start of the emulator, in s."""
@@ -27,30 +41,125 @@ SAID = ("error: ", "warning: ")
 def run_board(board: Board, request: runs.RunRequest, progress: runs.Progress) -> RunResult:
     """Run a program on the emulator of its board; Unusable where it has none.
 
-    Virtual time depends on the instructions alone, so no bound has an excuse.
+    Virtual time depends on the instructions alone, so no bound has an excuse. The bench of a
+    scenario is in that time too.
     """
-    controller, seconds, out_dir = request.controllers[0], request.seconds, request.folder
     emulator = board.target.facts.emulator
     if emulator is None or shutil.which(emulator.command[0]) is None:
         hint = emulator.hint if emulator else "run the program on the board itself"
         raise Unusable(f"the target {board.target.name} has no emulator on PATH; {hint}")
-    out_dir.mkdir(parents=True, exist_ok=True)
-    report = (out_dir / "serial.txt").absolute()
-    report.unlink(missing_ok=True)
-    words = command(board, emulator, controller.executable, report, seconds)
+    if request.scenario is not None or len(request.controllers) > 1:
+        return _joined(board, emulator, request, progress)
+    seconds = request.seconds
+    words = command(board, emulator, request.controllers[0].executable, _report(request), seconds)
     progress(f"emulate {seconds:g} s")
-    ended, problems = _emulated(words, PATIENCE * (1.0 + seconds))
-    lines = report.read_text("ascii", "replace").splitlines() if report.is_file() else []
-    said = tuple(line for line in lines if line.startswith(SAID))
-    ended = Ended(ended.exit_code, ended.killed, True, (*ended.warnings, *said))
-    trace = out_dir / "trace.txt"
-    kept = [f"{line}\n" for line in lines if not line.startswith(SAID)]
-    trace.write_text("".join(kept), encoding="ascii")
-    seen = runs.read(trace, read_map(*_map(controller)), problems)
-    if seen is not None:
-        seen.host_latency = None
+    with _started(words, request.folder) as process:
+        ended, problems = _ended(process, PATIENCE * (1.0 + seconds))
     title = f"{seconds:g} s on {board.target.name}"
-    return runs.concluded(title, None, None, seen, ended, problems, request.analysis)
+    return _concluded(title, None, None, request, ended, problems)
+
+
+def _home(request: runs.RunRequest, controller: runs.Controller) -> Path:
+    """What the board of a node writes: a folder of its own where there are several."""
+    several = len(request.controllers) > 1
+    folder = request.folder.absolute() / controller.node if several else request.folder.absolute()
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def _report(request: runs.RunRequest, controller: runs.Controller | None = None) -> Path:
+    """The file of the serial line of a board, which is not there yet."""
+    report = _home(request, controller or request.controllers[0]) / SERIAL
+    report.unlink(missing_ok=True)
+    return report
+
+
+def _joined(
+    board: Board, emulator: Emulator, request: runs.RunRequest, progress: runs.Progress
+) -> RunResult:
+    """Run boards on one bus with the bench. Raises as `runs.run_controller`."""
+    plan = None if request.scenario is None else load_scenario(request.scenario)
+    if plan is not None and plan.bus_events:
+        raise ScenarioError(f"{plan.title}: error: the bus of boards takes no `bus`")
+    dbc = runs.dbc_of(request)
+    codec = Codec.from_file(dbc)
+    grace = request.analysis.system.shutdown.grace / 1e9 + STOP_MARGIN
+    played: ScenarioResult | None = None
+    with ExitStack() as stack:
+        record = stack.enter_context(bus_log.recorded(request.log, dbc.stem))
+        processes, links = [], []
+        for one in request.controllers:
+            ends = stack.enter_context(board_bus.pipes(_home(request, one)))
+            report = _report(request, one)
+            words = command(board, emulator, one.executable, report, LONGEST)
+            process = stack.enter_context(_started(words, report.parent))
+            processes.append(process)
+            links.append(board_bus.Link(ends, partial(_lives, process)))
+        try:
+            peer = board_bus.BoardPeer(links, codec, record)
+            asked: list[float] = []
+
+            def is_over() -> bool:
+                """Asks the boards to end. Their end ends the bench, and so does a time limit."""
+                if not asked:
+                    asked.append(peer.clock())
+                    peer.end()
+                return peer.clock() > asked[0] + grace
+
+            if plan is None:
+                peer.sleep(request.seconds)
+                with suppress(BenchError):
+                    while not is_over():
+                        peer.sleep(board_bus.LOOK)
+            else:
+                played = run_scenario(plan, peer, progress=progress, ended=is_over)
+            found = [_ended(process, PATIENCE) for process in processes]
+        except BenchError as fault:
+            for process in processes:
+                process.kill()  # it waits for the bench, and hears no other signal
+            found = [(Ended(0, False, True, ()), [str(fault)])]
+    title = plan.title if plan else f"{request.seconds:g} s without a scenario"
+    return _concluded(
+        f"{title}, on {board.target.name}",
+        plan,
+        played,
+        request,
+        runs.all_ended([ended for ended, _ in found]),
+        [text for _, problems in found for text in problems],
+    )
+
+
+def _concluded(
+    title: str,
+    plan: Scenario | None,
+    played: ScenarioResult | None,
+    request: runs.RunRequest,
+    ended: Ended,
+    problems: list[str],
+) -> RunResult:
+    """What a run showed by the serial lines of its reports."""
+    parts: dict[str, Observation] = {}
+    for one in request.controllers:
+        home = _home(request, one)
+        report, trace = home / SERIAL, home / "trace.txt"
+        lines = report.read_text("ascii", "replace").splitlines() if report.is_file() else []
+        said = tuple(line for line in lines if line.startswith(SAID))
+        ended = replace(ended, warnings=(*ended.warnings, *said))
+        kept = [f"{line}\n" for line in lines if not line.startswith(SAID)]
+        trace.write_text("".join(kept), encoding="ascii")
+        seen = runs.read(trace, read_map(*_map(one)), problems)
+        if seen is not None:
+            seen.host_latency = None
+            parts[one.node] = seen
+    whole = next(iter(parts.values()), None)
+    if len(request.controllers) > 1 and whole is not None:
+        for part in parts.values():
+            part.start = Ns(0)  # the looks of all boards begin together
+        whole = together(parts) if len(parts) == len(request.controllers) else None
+    chains = len(request.controllers) == 1
+    return runs.concluded(
+        title, plan, played, whole, ended, problems, request.analysis, chains=chains
+    )
 
 
 def command(
@@ -70,21 +179,30 @@ def _map(controller: runs.Controller) -> tuple[str, str]:
     return controller.trace_json.read_text(encoding="utf-8"), controller.trace_json.name
 
 
-def _emulated(words: Sequence[str], limit: float) -> tuple[Ended, list[str]]:
-    """Run an emulator to its end, or for ``limit`` seconds, and what went wrong."""
-    quiet = {**os.environ, "QEMU_AUDIO_DRV": "none"}
+@contextmanager
+def _started(words: Sequence[str], folder: Path) -> Iterator[Process]:
+    """The emulator in a folder, for the time of a block."""
     with children.running(
         words,
+        cwd=folder,
         stdin=subprocess.DEVNULL,
-        env=quiet,
+        env={**os.environ, "QEMU_AUDIO_DRV": "none"},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
     ) as process:
-        try:
-            _, errors = process.communicate(timeout=limit)
-        except subprocess.TimeoutExpired:
-            told = f"the emulator did not end within {limit:g} s"
-            return Ended(1, True, True, ()), [told]
+        yield process
+
+
+def _lives(process: Process) -> bool:
+    return process.poll() is None
+
+
+def _ended(process: Process, limit: float) -> tuple[Ended, list[str]]:
+    """Wait for the end of an emulator for ``limit`` seconds, and what went wrong."""
+    try:
+        _, errors = process.communicate(timeout=limit)
+    except subprocess.TimeoutExpired:
+        return Ended(1, True, True, ()), [f"the emulator did not end within {limit:g} s"]
     own = [line for line in errors.splitlines() if "error" in line.lower()]
     return Ended(process.returncode, False, True, ()), own

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,7 +23,8 @@ from ravenchart.analysis.system.observed import (
     together,
 )
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.building.programs import Program, to_standard_error
+from ravenchart.building import stacks
+from ravenchart.building.programs import TRACE_MAP, Program, to_standard_error
 from ravenchart.building.targets import Board
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
@@ -31,6 +32,7 @@ from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
 from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer
 from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Cut, Hold, Mend, Scenario, ScenarioError, load_scenario
+from ravenchart.stacks.report import Memory
 
 from . import bus_log, expected, judge, plots, result, server, summary
 from .process import ControllerProcess, Ended, StartError, separate_cores
@@ -49,19 +51,19 @@ class Controller:
     node: str
     executable: Path
     trace_json: Path
+    memory: Memory | None = None
+    """Its stacks and memory."""
 
 
 def controller(
     made: Program,
     warn: Callable[[str], None] = to_standard_error,
     board: Board | None = None,
+    mode: str = "checks",
 ) -> Controller:
-    """A program built, to be run. ToolFailed with the compiler's words.
-
-    On a board nothing excuses an execution time, so contracts are not executed there.
-    """
-    executable = made.build("release" if board else "checks", warn=warn, board=board)
-    return Controller(made.node, executable, made.generated / "trace.json")
+    """A program built, to be run. ToolFailed with the compiler's words."""
+    executable = made.build(mode, warn=warn, board=board)
+    return Controller(made.node, executable, made.generated / TRACE_MAP, stacks.kept(executable))
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +95,7 @@ def run_on_this_machine(request: RunRequest, progress: Progress) -> RunResult:
         return run_nodes(
             request.controllers,
             request.analysis,
-            _dbc(request),
+            dbc_of(request),
             request.scenario,
             request.seconds,
             request.folder,
@@ -111,7 +113,7 @@ def run_on_this_machine(request: RunRequest, progress: Progress) -> RunResult:
     return run_controller(
         first.executable,
         first.trace_json,
-        _dbc(request),
+        dbc_of(request),
         request.scenario,
         None,
         request.folder,
@@ -139,7 +141,8 @@ def run_model(
         out.print(str(fault), markup=False, soft_wrap=True)
         refuse(str(fault))
         return None
-    written = write_report(outcome, request.analysis, request.folder)
+    programs = {one.node: one.memory for one in request.controllers}
+    written = write_report(outcome, request.analysis, request.folder, programs)
     out.print(outcome.title, markup=False)
     print_summary(outcome, out)
     for path in written:
@@ -204,8 +207,16 @@ def run_alone(
     return _run(executable, trace_json, out_dir, title, None, play, analysis)
 
 
-def write_report(outcome: RunResult, analysis: Analysis, out_dir: Path) -> tuple[Path, ...]:
-    """Write report.html into ``out_dir``, and positions.png of drives; the paths of both."""
+def write_report(
+    outcome: RunResult,
+    analysis: Analysis,
+    out_dir: Path,
+    programs: Mapping[str, Memory | None] | None = None,
+) -> tuple[Path, ...]:
+    """Write report.html into ``out_dir``, and positions.png of drives; the paths of both.
+
+    ``programs``: what `render` takes.
+    """
     out_dir.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
     pictures: list[tuple[str, str]] = []
@@ -230,7 +241,7 @@ def write_report(outcome: RunResult, analysis: Analysis, out_dir: Path) -> tuple
         pictures=tuple(pictures),
     )
     page = out_dir / "report.html"
-    page.write_text(render(analysis, run), encoding="utf-8")
+    page.write_text(render(analysis, run, programs=programs), encoding="utf-8")
     return (page, *written)
 
 
@@ -303,12 +314,16 @@ def concluded(
     ended: Ended,
     problems: list[str],
     analysis: Analysis | None,
+    *,
+    chains: bool = True,
 ) -> RunResult:
-    """Everything that a run showed, put together and judged."""
+    """Everything that a run showed, put together and judged; ``chains`` where its bus took the
+    time that frames take.
+    """
     if seen is not None:
         seen.stolen = Ns(ended.stolen)
     disturbed = plan is not None and bool(plan.bus_events)
-    took = journeys(analysis, seen) if analysis and seen and not disturbed else ()
+    took = journeys(analysis, seen) if analysis and seen and chains and not disturbed else ()
     compared = compare(analysis, seen) if analysis and seen else ()
     executed = executions(analysis, seen) if analysis and seen else ()
     checks = judge.check_trace(plan.trace_checks, seen) if plan and seen else ()
@@ -358,7 +373,7 @@ def read(trace: Path, trace_map: TraceMap, problems: list[str]) -> Observation |
     return None
 
 
-def _dbc(request: RunRequest) -> Path:
+def dbc_of(request: RunRequest) -> Path:
     """The DBC of the model's bus; BenchError when it has none."""
     for one in request.analysis.system.buses:
         return request.generated / f"{one.name.lower()}.dbc"
@@ -432,7 +447,7 @@ def run_nodes(
             named = zip(controllers, parts, strict=True)
             seen = together({c.node: part for c, part in named if part is not None})
     title = plan.title if plan else f"{seconds:g} s without a scenario"
-    return concluded(title, plan, played, seen, _all_ended(ended), problems, analysis)
+    return concluded(title, plan, played, seen, all_ended(ended), problems, analysis)
 
 
 def _bus_words(
@@ -468,7 +483,7 @@ def _bus_words(
     return words
 
 
-def _all_ended(ended: Sequence[Ended]) -> Ended:
+def all_ended(ended: Sequence[Ended]) -> Ended:
     """How several controllers ended, as of one: the worst of each."""
     return Ended(
         exit_code=next((one.exit_code for one in ended if one.exit_code), 0),

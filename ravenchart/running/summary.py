@@ -13,6 +13,8 @@ from ravenchart.analysis.present.report import Comparison, FrameRow, StepRow
 from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.units import microseconds
 
+from .measured import WARNING, Measurement
+
 
 def print_steps(console: Console, steps: Sequence[StepRow]) -> None:
     """What was done, and how it went."""
@@ -77,6 +79,31 @@ def print_journeys(console: Console, took: Sequence[Journey]) -> None:
             style="bold red" if row.exceeded else "",
         )
     _section(console, "longest reactions of chains", table)
+
+
+def print_measurement(console: Console, found: Measurement) -> None:
+    """Measured execution times beside those of the model, and what they leave out."""
+    bounded = any(one.bound is not None for one in found.rows)
+    columns = ["row", "measured us>", f"+ {found.margin} % us>", "wcet us>", "ratio>", ""]
+    table = _table(*columns[:4], *(["bound us>"] if bounded else []), *columns[4:])
+    for one in found.rows:
+        times = [one.measured, one.proposed, one.wcet, *([one.bound] if bounded else [])]
+        ratio = "-" if one.measured is None else f"{100 * one.measured / one.wcet:.0f} %"
+        word = "ABOVE" if one.words else "" if one.measured is None else "ok"
+        cells = ("-" if time is None else microseconds(time) for time in times)
+        table.add_row(one.row, *cells, ratio, word, style="bold red" if one.words else "")
+    _section(console, f"execution times: {found.run}", table)
+    lines = [f"{WARNING[0].upper()}{WARNING[1:]}.", f"Times are {found.clock}."]
+    idle = [one.row for one in found.rows if one.measured is None]
+    if idle:
+        lines.append(f"Not executed: {', '.join(idle)}.")
+    if found.coverage:
+        taken = sum(one.taken for one in found.coverage)
+        lines.append(f"{taken} of {sum(c.transitions for c in found.coverage)} transitions taken.")
+    if found.not_measured:
+        lines.append(f"Not measured: {', '.join(found.not_measured)}.")
+    for line in lines:
+        console.print(Text(line))
 
 
 def print_positions(console: Console, lines: Sequence[str]) -> None:

@@ -5,6 +5,7 @@ They need what RAVENCHART_RTS names, a cross compiler and QEMU: see docs/boards.
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import subprocess
@@ -27,11 +28,10 @@ OBSERVED = re.compile(r"^(\w+) +(\d+) +0 +[\d.]+ +[\d.]+ +\d+ % +ok$", re.M)
 """A processor that met all its deadlines, within its bound."""
 
 
-RAISED = """\
-      Calls := Calls + 1;
-      if Calls > 200 then
-         raise Program_Error;
-      end if;
+BUSY = """\
+      for Turn in 1 .. {turns} loop
+         Work := (Work * 3 + Turn) mod 8_191;
+      end loop;
 """
 
 
@@ -140,3 +140,139 @@ def test_three_runs_are_the_same_bytes(tmp_path: Path, capsys: pytest.CaptureFix
         traces.append((tmp_path / str(number) / "serial.txt").read_bytes())
     assert len(traces[0].splitlines()) > 1_000
     assert traces[0] == traces[1] == traces[2]
+
+
+def busy(home: Path, turns: int) -> None:
+    """Make an activity of the robot longer by so many turns of a loop."""
+    shutil.copytree(ROOT / "examples" / "cartesian_robot", home)
+    body = home / "user" / "cartesian_robot-joint-activities.adb"
+    text = body.read_text(encoding="utf-8")
+    work = "   Work : Integer := 0 with Export;\n\n   Steps_Per_Second : constant"
+    text = text.replace("   Steps_Per_Second : constant", work, 1)
+    before, behind = text.split("   procedure Position_Control", 1)
+    behind = behind.replace("   begin\n", f"   begin\n{BUSY.format(turns=turns)}", 1)
+    body.write_text(f"{before}   procedure Position_Control{behind}", encoding="utf-8")
+
+
+def times(home: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, dict[str, int]]:
+    """The longest execution times on the board, in ns; the exit status before them."""
+    words = ["measure", str(home / "model.yaml"), "--target", BOARD, "--seconds", "1", "--json"]
+    status = command_line.main(words)
+    rows = json.loads(capsys.readouterr().out)["result"]["measurement"]["rows"]
+    return status, {one["row"]: one["measured"] for one in rows}
+
+
+def test_a_longer_activity_is_measured_and_its_overrun_fails_the_run(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    row, budget = "joint_x.position_control", 150_000
+    busy(tmp_path / "none", 1)
+    busy(tmp_path / "some", 1_000)
+    assert times(tmp_path / "none", capsys) == times(tmp_path / "none", capsys)
+    (first, base), (_, longer) = (times(tmp_path / name, capsys) for name in ("none", "some"))
+    assert first == 0
+    each = (longer[row] - base[row]) / 1_000
+    assert each > 4  # an instruction of the loop takes 4 ns
+    others = [name for name, time in base.items() if time and "position_control" not in name]
+    apart = {name: abs(base[name] - longer[name]) for name in others}
+    assert max(apart.values()) < each * 100, apart  # of the loop nothing is in them
+    turns = {share: int((budget * share - base[row]) / each) for share in (0.9, 1.1)}
+    for share, count in turns.items():
+        home = tmp_path / str(share)
+        busy(home, count)
+        report = home / "report"
+        words = ["run", str(home / "model.yaml"), "--target", BOARD, "--seconds", "1"]
+        status = command_line.main([*words, "--report", str(report)])
+        printed = " ".join(capsys.readouterr().out.split())
+        page = (report / "report.html").read_text(encoding="utf-8")
+        if share < 1:
+            assert (status, f"{row} ran" in printed) == (0, False), printed
+            assert f"<td>{row}</td>" in page
+        else:
+            assert (status, f"{row} ran for longer than the model claims" in printed) == (1, True)
+            assert f"{row} ran for 16" in printed  # 165 us and what the loop cannot hit
+            assert f'<tr class="miss"><td>{row}</td>' in page
+
+
+# --- Scenarios: the bench is in the time of the board ----------------------------------
+
+
+def play(
+    scenario: Path,
+    report: Path,
+    capsys: pytest.CaptureFixture[str],
+    example: str = "cartesian_robot",
+) -> tuple[int, str]:
+    """Play a scenario with an example on boards; the exit status and what is printed."""
+    model = ROOT / "examples" / example / "model.yaml"
+    words = ["run", str(model), "--target", BOARD, "--scenario", str(scenario)]
+    status = command_line.main([*words, "--report", str(report)])
+    printed = capsys.readouterr()
+    return status, printed.out + printed.err
+
+
+def test_the_demo_of_the_robot_passes_on_the_board_and_is_the_same_each_time(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = ROOT / "examples" / "cartesian_robot" / "scenario.yaml"
+    runs = []
+    for number in range(2):
+        home = tmp_path / str(number)
+        status, printed = play(scenario, home, capsys)
+        assert status == 0, printed
+        assert "verdict: PASS\n" in printed  # and the timing was judged
+        assert len(OBSERVED.findall(printed)) == 4
+        page = (home / "report.html").read_text(encoding="utf-8")
+        assert "controller: target zynqmp, mode release" in page  # its stacks and memory
+        runs.append([(home / name).read_bytes() for name in ("serial.txt", "positions.png")])
+    assert len(runs[0][0].splitlines()) > 20_000
+    assert runs[0] == runs[1]
+
+
+def test_a_bench_that_falls_silent_stops_the_robot_on_the_board(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = ROOT / "examples" / "cartesian_robot" / "lost_bench.yaml"
+    status, printed = play(scenario, tmp_path, capsys)
+    assert status == 0, printed
+    assert "trace: joint_x.Motion in Drive" in printed
+
+
+def test_a_scenario_that_does_not_hold_fails_the_run_on_the_board(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = tmp_path / "wrong.yaml"
+    scenario.write_text(
+        "scenario: Ready without a command\nsteps:\n"
+        "  - {wait_for: robot_status.condition, is: Ready, within: 200 ms}\n",
+        encoding="utf-8",
+    )
+    status, printed = play(scenario, tmp_path / "report", capsys)
+    text = " ".join(printed.split())
+    assert status == 1
+    assert "verdict: FAIL: wait for robot_status.condition = Ready: not within 0.2 s" in text
+    assert "the trace is cut off" not in text  # the controller has ended by itself
+
+
+def test_two_boards_on_one_bus_pass_their_scenario_and_are_the_same_each_time(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = ROOT / "examples" / "two_nodes" / "scenario.yaml"
+    runs = []
+    for number in range(2):
+        home = tmp_path / str(number)
+        status, printed = play(scenario, home, capsys, "two_nodes")
+        assert status == 0, printed
+        assert "verdict: PASS\n" in printed
+        assert len(OBSERVED.findall(printed)) == 4
+        runs.append([(home / node / "serial.txt").read_bytes() for node in ("panel", "drive")])
+    assert all(len(text.splitlines()) > 500 for text in runs[0])
+    assert runs[0] == runs[1]
+
+
+def test_two_boards_run_without_a_scenario(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    printed = run("two_nodes", tmp_path, capsys, "1")
+    assert "verdict: PASS\n" in printed
+    assert "servo.Drive         Standing, Following" in printed

@@ -96,7 +96,10 @@ def test_a_trace_that_says_nothing_is_refused(
     ("options", "message"),
     [
         ([str(MODEL), "--export", "mast", "--compare", "x"], "--export goes without --compare"),
-        ([str(MODEL), "--json", "--html", "x"], "--json and --export go without --html and"),
+        (
+            [str(MODEL), "--json", "--html", "x"],
+            "--json and --export go without --html, --observed and",
+        ),
     ],
 )
 def test_options_that_do_not_go_together_are_refused(

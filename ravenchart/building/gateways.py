@@ -1,0 +1,72 @@
+"""A program for an emulated board together with the gateway to the bus of its host.
+
+The gateway is an Ada unit in the folder `gateway` of the target. A main program of its own starts
+it, and then the main program of the model, in a project that extends the generated one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.tools import toolchain
+
+from .programs import Program
+from .targets import Board, Gateway, file_of
+
+MODE = "release"
+MAIN = """\
+with {main};
+with Ravenchart.Gateways;
+with System;
+
+procedure Gateway_Main
+with Priority => System.Priority'First
+is
+begin
+   Ravenchart.Gateways.Start;
+   {main};
+end Gateway_Main;
+"""
+PROJECT = """\
+with "ravenchart.gpr";
+
+project Gateway extends "{program}" is
+
+   for Source_Dirs use (".", "{gateway}");
+   for Object_Dir use "objects";
+   for Exec_Dir use ".";
+   for Create_Missing_Dirs use "True";
+   for Main use ("gateway_main.adb");
+
+   package Compiler renames Ravenchart.Compiler;
+
+end Gateway;
+"""
+
+
+def build(program: Program, board: Board, gateway: Gateway, warn: Callable[[str], None]) -> Path:
+    """Compile the program and the gateway; the path of the image. Raises as `Program.build`."""
+    program.build(MODE, gateway.driver, warn=warn, board=board)
+    home = program.home(gateway.driver, board.target.name) / "gateway"
+    home.mkdir(parents=True, exist_ok=True)
+    main = f"{ada_case(program.checked.system.name)}_Main"
+    sources = file_of(board.target.name).parent / "gateway"
+    texts = {
+        "gateway_main.adb": MAIN.format(main=main),
+        "gateway.gpr": PROJECT.format(program=program.project, gateway=sources),
+    }
+    for name, text in texts.items():
+        path = home / name
+        if not path.is_file() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+    variables = {
+        **program.scenario(MODE, gateway.driver, board.target.name),
+        **board.scenario(),
+    }
+    options = [*board.options(), "-p", "-q", "-j0", "-P", "gateway.gpr"]
+    said = toolchain.run("gprbuild", options, home, variables)
+    if said.strip():
+        warn(said.rstrip())
+    return home / "gateway_main"

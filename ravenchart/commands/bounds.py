@@ -1,0 +1,72 @@
+"""`--bounds FILE`: bounds of execution times from a static WCET tool, held against the model."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from ravenchart.analysis.plain.bounds import Bound, read_bounds
+from ravenchart.analysis.units import microseconds
+from ravenchart.building.checking import Checked
+from ravenchart.failures import Refused
+from ravenchart.gen.model.system import System
+from ravenchart.running.measured import MeasuredRow, key_of, origin_of
+
+from .plain import text_of
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare where the bounds are."""
+    sub.add_argument(
+        "--bounds", type=Path, metavar="FILE",
+        help="compare the bounds of a static WCET tool with the budgets: CSV with the columns "
+        "row or function, and wcet_us, or cycles and clock_hz",
+    )  # fmt: skip
+
+
+def of_model(options: argparse.Namespace, checked: Checked) -> Mapping[str, Bound]:
+    """The bounds that are given, by row; Refused with everything that is wrong with the file."""
+    if options.bounds is None:
+        return {}
+    found = read_bounds(text_of(options.bounds), str(options.bounds), checked.system)
+    if isinstance(found, tuple):
+        raise Refused("\n".join(map(str, found)))
+    return found
+
+
+def rows(checked: Checked, given: Mapping[str, Bound]) -> list[MeasuredRow]:
+    """Every row with its budget and its bound; nothing is measured."""
+    slots = [slot for processor in checked.system.processors for slot in processor.slots]
+    found = {name: one.wcet for name, one in given.items()}
+    return [MeasuredRow(s.element, s.timing.wcet, None, None, found.get(s.element)) for s in slots]
+
+
+def findings(
+    table: Sequence[MeasuredRow], given: Mapping[str, Bound], system: System
+) -> Iterator[str]:
+    """An error for each claim that a figure refutes, where the claim stands, with a hint."""
+    for one in table:
+        place, key = origin_of(system, one.row), key_of(system, one.row)
+        claimed = f"its `{key}` of {microseconds(one.wcet)} us"
+        seen, bound = one.measured or 0, given.get(one.row)
+        took = f"{one.row} was measured to take {microseconds(seen)} us"
+        if seen > one.wcet:
+            wanted = microseconds(one.proposed or seen)
+            yield (
+                f"{place}: error: {took}, above {claimed}\n"
+                f"{place}: hint: write `{key}: {wanted} us` or more"
+            )
+        if bound is not None and bound.wcet > one.wcet:
+            longest = microseconds(bound.wcet)
+            yield (
+                f"{bound.place}: error: the bound of {one.row}, {longest} us, is above {claimed}\n"
+                f"{place}: note: the `{key}` of {one.row} is here\n"
+                f"{place}: hint: write `{key}: {longest} us` or more"
+            )
+        if bound is not None and seen > bound.wcet:
+            yield (
+                f"{bound.place}: error: {took}, above its bound of {microseconds(bound.wcet)} us\n"
+                f"{bound.place}: hint: let the tool analyse the program that was measured, for "
+                "the processor that it was measured on"
+            )

@@ -1,0 +1,104 @@
+"""What the commands share that run a model: its programs, built, and where they are run."""
+
+from __future__ import annotations
+
+import argparse
+from functools import partial
+from pathlib import Path
+
+from ravenchart.building import gateways, generation, programs, targets
+from ravenchart.building.checking import Checked
+from ravenchart.building.programs import TRACE_MAP
+from ravenchart.failures import Unusable
+from ravenchart.running import boards, scenarios
+from ravenchart.running.result import RunResult
+from ravenchart.running.runs import (
+    Controller,
+    Progress,
+    RunRequest,
+    controller,
+    run_on_this_machine,
+)
+from ravenchart.terminal import progress
+
+from . import common
+from .answer import say
+
+REPORTS = {"run": "report", "measure": "measurement"}
+"""The folder of what each command writes, beside what is built."""
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what is run, where and for how long."""
+    common.add_model(sub)
+    common.add_target(sub)
+    sub.add_argument("--scenario", type=Path, help="play this scenario on its CAN bus")
+    sub.add_argument(
+        "--seconds", type=float, default=10.0, help="how long without a scenario (default 10)"
+    )
+
+
+def request(
+    options: argparse.Namespace,
+    checked: Checked,
+    board: targets.Board | None,
+    mode: str,
+    folder: Path | None,
+    log: Path | None = None,
+) -> RunRequest:
+    """The programs, generated and built in that mode; Unusable where they cannot be run so.
+
+    What they write goes to the ``folder``, or beside what is built.
+    """
+    made_of = programs.programs_of(checked)
+    gateway = None
+    if board is not None:
+        gateway = _gateway(board, len(made_of), options.scenario, log)
+    if options.scenario is not None:
+        scenarios.checked(options.scenario, checked.system)
+    common.tell_written(generation.write_program(checked), options.answer)
+    warn = partial(say, options.answer, severity="warning")
+    controllers = []
+    for made in made_of:
+        with progress(f"compile {made.node}"):
+            if board is None or gateway is None:
+                controllers.append(controller(made, warn, board, mode))
+            else:
+                image = gateways.build(made, board, gateway, warn)
+                trace_map = made.generated / TRACE_MAP
+                memory = made.last_build()  # without the gateway
+                controllers.append(Controller(made.node, image, trace_map, memory))
+        print(f"built {controllers[-1].executable}")
+    target = board.target if board else None
+    driver = gateway.driver if gateway else programs.default_driver(checked, target)
+    home = programs.build_home(checked, driver, target.name if target else targets.NATIVE)
+    return RunRequest(
+        checked.analysis,
+        tuple(controllers),
+        checked.generated,
+        options.scenario,
+        options.seconds,
+        folder or home / REPORTS[options.command],
+        log,
+    )
+
+
+def _gateway(
+    board: targets.Board, nodes: int, scenario: Path | None, log: Path | None
+) -> targets.Gateway | None:
+    """How the bus of a board is joined to others; Unusable where it has to be and is not."""
+    name, emulator = board.target.name, board.target.facts.emulator
+    if scenario is None and nodes == 1:
+        if log is not None:
+            raise Unusable(f"without `--scenario` nobody is on the bus of {name}: no log")
+        return None
+    if emulator is None or emulator.gateway is None:
+        raise Unusable(f"{name} has no gateway between its bus and this machine")
+    return emulator.gateway
+
+
+def execute(board: targets.Board | None, request: RunRequest, progress: Progress) -> RunResult:
+    """Run it on this machine or on a board. Raises as `run_controller`."""
+    if board is None:
+        return run_on_this_machine(request, progress)
+    return boards.run_board(board, request, progress)
