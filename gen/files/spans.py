@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 import yaml
 from yaml.events import (
@@ -125,20 +126,20 @@ class _Building:
             case AliasEvent():
                 raise _NotAModelError
             case ScalarEvent():
-                start, end = event.start_mark.index, event.end_mark.index
+                start, end = _place(event.start_mark), _place(event.end_mark)
                 self._put(Scalar(start, end, event.value))
             case MappingStartEvent() | SequenceStartEvent():
                 if len(self.open) == DEEPEST:
                     raise _NotAModelError
                 kind = Mapping if isinstance(event, MappingStartEvent) else Sequence
-                start = event.start_mark.index
+                start = _place(event.start_mark)
                 begun = kind(start, start, bool(event.flow_style))
                 self._put(begun)
                 self.open.append(begun)
                 self.keys.append(None)
             case MappingEndEvent() | SequenceEndEvent():
                 self.keys.pop()
-                self._close(self.open.pop(), event.end_mark.index)
+                self._close(self.open.pop(), _place(event.end_mark))
 
     def _close(self, ended: Mapping | Sequence, behind: int) -> None:
         if ended.flow:
@@ -163,3 +164,9 @@ class _Building:
             self.keys[-1] = node
         else:
             raise _NotAModelError
+
+
+def _place(mark: Any) -> int:
+    """The character at which a mark stands; both parsers set it for all events used here."""
+    found: int = mark.index
+    return found
