@@ -178,7 +178,6 @@ def _row(
     declared: Json = {"kind": None, "times": {}, "settable": []}
     if row is not None:
         declared = _declared(where, row)
-    response = responses.get(item.value.lower())
     follows = {} if timing is None else {t: shown(getattr(timing, t)) for t in TIMES}
     return {
         "row": item.value,
@@ -187,7 +186,7 @@ def _row(
         "times": {time: declared["times"].get(time) or follows.get(time) for time in TIMES},
         "written": declared["times"],
         "settable": declared["settable"],
-        "response": None if response is None else microseconds(response),
+        "response": responses.get(item.value.lower()),
         "declared": {key: declared.get(key) for key in ("file", "line", "column")},
         **where.at(entry.file, item),
     }
