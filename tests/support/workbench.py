@@ -14,7 +14,7 @@ import threading
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +46,6 @@ class Running:
     port: int
     token: str
     lines: list[str]
-    streams: list[http.client.HTTPConnection] = field(default_factory=list)
 
     @property
     def address(self) -> str:
@@ -94,7 +93,6 @@ class Running:
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE)
         connection.request("GET", f"/{self.token}/events")
         answer = connection.getresponse()
-        self.streams.append(connection)
         told: queue.Queue[Any] = queue.Queue()
 
         def listen() -> None:
@@ -143,11 +141,9 @@ def running(model: Path, *words: str) -> Iterator[Running]:
     try:
         yield bench
     finally:
-        for stream in bench.streams:
-            stream.close()
         if process.poll() is None:
             process.terminate()
-            process.wait(PATIENCE)
+            process.wait(PATIENCE)  # its streams end with it
 
 
 def until(told: queue.Queue[Any], number: int) -> Any:

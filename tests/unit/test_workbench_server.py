@@ -205,11 +205,9 @@ def test_ten_thousand_malformed_messages_leave_all_as_it_was(bench: Running) -> 
         reply = bench.request("act", bytes(body), {"content-type": "application/json"})
         assert reply.status in (200, 400, 409, 422), body
         refused += reply.status != 200
-        if reply.status == 200 and reply.json["number"] != number:
-            undone = bench.act(kind="undo").json
-            number = undone["number"]
-            good = good.replace(b'"number": ', b'"number": ')
-            body = bytearray(good)
+        if reply.status == 200:  # still a message: the state and its number are put right
+            number = bench.act(kind="undo").json["number"]
+            good = re.sub(rb'"number": \d+', b'"number": %d' % number, good)
     assert refused > 9_500
 
 
