@@ -104,8 +104,24 @@ function connect(paper, places, show) {
       const found = inside.get(`${title}\n${plain(text.textContent)}`);
       if (found) button(text, plain(text.textContent), found, show);
     }
-    if (at) button(group, title.replace(/^(cluster|header|table) /, ""), at, show);
+    if (!at) continue;
+    const label = title.replace(/^(cluster|header|table) /, "");
+    if (!group.querySelector(".link")) {
+      button(group, label, at, show);
+      continue;
+    }
+    // A button holds no other button: the first text of its own is the one for the keyboard.
+    const own = group.querySelector(":scope > text:not(.link), :scope > g > text:not(.link)");
+    if (own) button(own, label, at, show);
+    group.onclick = clicked(at, show);
   }
+}
+
+function clicked(at, show) {
+  return (event) => {
+    event.stopPropagation();
+    show(at);
+  };
 }
 
 function button(element, label, at, show) {
@@ -113,10 +129,7 @@ function button(element, label, at, show) {
   element.setAttribute("tabindex", "0");
   element.setAttribute("role", "button");
   element.setAttribute("aria-label", `${label}, source ${at.file}:${at.line}`);
-  element.onclick = (event) => {
-    event.stopPropagation();
-    show(at);
-  };
+  element.onclick = clicked(at, show);
   element.onkeydown = (event) => {
     if (event.key !== "Enter" && event.key !== " ") return;
     event.preventDefault();
