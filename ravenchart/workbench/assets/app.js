@@ -34,10 +34,10 @@ function App() {
     }
   }, [state]);
 
-  async function act(message) {
+  async function act(message, row = message.row) {
     setProblem("");
     try {
-      if (message.kind === "move") moved.current = message.row;
+      if (row) moved.current = row;
       return await link.current.act(message);
     } catch (error) {
       moved.current = null;

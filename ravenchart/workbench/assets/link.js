@@ -34,13 +34,17 @@ export class Link {
   take(state) {
     if (state.number < this.number) return; // an older one that came later
     this.number = state.number;
+    this.state = state;
     this.show(state);
   }
 
-  /** Sends a message about the state that is shown when its turn comes. */
+  /** Sends a message about the state that is shown when its turn comes, or what a function makes
+      of that state: keys that are pressed fast are steps from there, not from what they saw. */
   act(message) {
     const sent = this.queue.then(async () => {
-      const body = JSON.stringify({ ...message, number: this.number });
+      const told = typeof message === "function" ? message(this.state) : message;
+      if (!told) return this.state;
+      const body = JSON.stringify({ ...told, number: this.number });
       const headers = { "content-type": "application/json" };
       const state = await answered(await fetch("act", { method: "POST", headers, body }));
       this.take(state);

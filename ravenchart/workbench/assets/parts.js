@@ -45,11 +45,11 @@ export function Field({ label, value, follows, width = 8, optional = false, send
     }
     event.stopPropagation();
   }
-  return html`<label class="field ${error ? "wrong" : ""}"><span class=${hidden ? "unseen" : ""}>${label}</span>
+  return html`<span class="field ${error ? "wrong" : ""}"><label><span class=${hidden ? "unseen" : ""}>${label}</span>
     <input type="text" size=${width} value=${text} placeholder=${follows ?? ""} spellcheck="false"
       autocomplete="off" aria-invalid=${error ? "true" : null} onInput=${(e) => setText(e.target.value)}
-      onBlur=${commit} onKeyDown=${key} />
-    ${error && html`<span class="error" role="alert">${error}</span>`}</label>`;
+      onBlur=${commit} onKeyDown=${key} /></label>
+    ${error && html`<span class="error" role="alert">${error}</span>`}</span>`;
 }
 
 /** A response against its deadline; the line across is the saved state's. */

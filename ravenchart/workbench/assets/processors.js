@@ -17,7 +17,7 @@ export function Processors() {
       (kind) => html`<span key=${kind}><i class="part ${kind}"></i>${kind}</span>`)}
       <span><i class="deadline"></i>deadline</span><span><i class="saved"></i>saved</span></div>
     ${state.loads.map((load) => html`<${Load} key=${load.name} of=${load} />`)}
-    ${state.processors.map((one, index) => html`<${Processor} key=${one.name} of=${one} index=${index}
+    ${state.processors.map((one) => html`<${Processor} key=${one.name} of=${one}
       drop=${drop} setDrop=${setDrop} />`)}
   </section>`;
 }
@@ -30,7 +30,7 @@ function Load({ of }) {
     <span class=${of.over ? "word bad" : "number"}>${of.text}${of.over ? " overloaded" : ""}${before}</span></div>`;
 }
 
-function Processor({ of, index, drop, setDrop }) {
+function Processor({ of, drop, setDrop }) {
   const { act, send, state } = useBench();
   const list = useRef(null);
   const set = (key) => (value) =>
@@ -82,7 +82,7 @@ function Processor({ of, index, drop, setDrop }) {
       <span class="number"><b>R ${time(of.bound)}</b> of ${time(of.limit)}${saved ? `, saved ${time(of.saved)}` : ""}</span></div>`}
     ${of.reason && html`<p class="error">${of.reason}</p>`}
     <ol ref=${list} aria-label="Activities of ${of.name}">
-      ${of.rows.map((row, number) => html`<${Row} key=${row.row} row=${row} number=${number} of=${of} index=${index}
+      ${of.rows.map((row, number) => html`<${Row} key=${row.row} row=${row} number=${number} of=${of}
         mark=${here === number} setDrop=${setDrop} processors=${state.processors} />`)}
       ${of.rows.length === 0 && html`<li class="empty">no activity</li>`}
       ${here === of.rows.length && html`<li class="here" aria-hidden="true"></li>`}
@@ -90,7 +90,7 @@ function Processor({ of, index, drop, setDrop }) {
   </article>`;
 }
 
-function Row({ row, number, of, index, mark, setDrop, processors }) {
+function Row({ row, number, of, mark, setDrop, processors }) {
   const { act, selected, select } = useBench();
   const chosen = selected === row.row;
   const move = (to, place) => act({ kind: "move", row: row.row, to, place }).catch(() => {});
@@ -104,10 +104,7 @@ function Row({ row, number, of, index, mark, setDrop, processors }) {
       all[all.indexOf(event.currentTarget) + step]?.focus();
       return;
     }
-    const aside = processors[index + { ArrowLeft: -1, ArrowRight: 1 }[event.key]];
-    if (event.key === "ArrowUp" && number > 0) move(of.name, number - 1);
-    if (event.key === "ArrowDown" && number < last) move(of.name, number + 1);
-    if (aside) move(aside.name, Math.min(number, aside.rows.length));
+    act((state) => step(state, row.row, event.key), row.row).catch(() => {});
   }
   function drag(event) {
     event.dataTransfer.setData("text/x-row", row.row);
@@ -127,6 +124,19 @@ function Row({ row, number, of, index, mark, setDrop, processors }) {
       ${chosen && html`<${Controls} row=${row} number=${number} last=${last} of=${of} move=${move}
         processors=${processors} />`}
     </li>`;
+}
+
+/** The message that moves a row by an arrow key; null where it leads nowhere. */
+function step(state, row, key) {
+  const index = state.processors.findIndex((one) => one.rows.some((other) => other.row === row));
+  const of = state.processors[index];
+  const number = of.rows.findIndex((one) => one.row === row);
+  const aside = state.processors[index + ({ ArrowLeft: -1, ArrowRight: 1 }[key] ?? 0)];
+  if (!aside) return null;
+  const down = { ArrowUp: -1, ArrowDown: 1 }[key] ?? 0;
+  const place = Math.min(number + down, aside.rows.length - (aside === of ? 1 : 0));
+  if (place < 0 || (aside === of && place === number)) return null;
+  return { kind: "move", row, to: aside.name, place };
 }
 
 function Controls({ row, number, last, of, move, processors }) {
