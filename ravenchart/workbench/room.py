@@ -48,7 +48,7 @@ def room_lines(analysis: Analysis) -> tuple[str, ...]:
 def grown(analysis: Analysis, rows: list[str]) -> dict[str, Any]:
     """The largest WCET of rows that have one, in ns and in words."""
     largest = largest_wcet(analysis, rows)
-    text = "a deadline or limit is not kept now" if largest is None else duration(largest)
+    text = "none, a deadline or limit is not kept now" if largest is None else duration(largest)
     return {"wcet": largest, "text": text}
 
 

@@ -17,7 +17,7 @@ function App() {
   const [at, setAt] = useState(null);
   const [saving, setSaving] = useState(false);
   const link = useRef(null);
-  const moved = useRef(null); // the row that keeps the focus when it moves
+  const moved = useRef(null); // the row that gets the focus back when it has moved
   const wasMet = useRef(true);
 
   useEffect(() => {
@@ -28,9 +28,8 @@ function App() {
     document.title = `${state.dirty ? "• " : ""}${state.system}: workbench`;
     if (wasMet.current && !state.met) setTab("findings");
     wasMet.current = state.met;
-    if (moved.current) {
+    if (moved.current && document.activeElement === document.body) { // its element was replaced
       document.querySelector(`.processors [data-row="${CSS.escape(moved.current)}"]`)?.focus();
-      moved.current = null;
     }
   }, [state]);
 
@@ -40,7 +39,6 @@ function App() {
       if (row) moved.current = row;
       return await link.current.act(message);
     } catch (error) {
-      moved.current = null;
       setProblem(error.message);
       throw error;
     }
@@ -66,8 +64,13 @@ function App() {
         quietly({ kind: "undo" });
       }
     }
+    const elsewhere = () => { moved.current = null; };
     window.addEventListener("keydown", key);
-    return () => window.removeEventListener("keydown", key);
+    window.addEventListener("pointerdown", elsewhere);
+    return () => {
+      window.removeEventListener("keydown", key);
+      window.removeEventListener("pointerdown", elsewhere);
+    };
   }, []);
 
   if (!state) return html`<main class="waiting"><h1>Ravenchart workbench</h1>
