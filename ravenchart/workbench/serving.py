@@ -39,7 +39,7 @@ def serve(model: Path, port: int, *, browser: bool, say: Callable[[str], None]) 
         secret, number = token(), listening.getsockname()[1]
         address = f"http://{ADDRESS}:{number}/{secret}/"
         say(f"{model}: the workbench is at {address}")
-        say("Ctrl-C ends it. Whoever has the address can change the model: keep it to yourself.")
+        say("Ctrl-C ends the workbench. Whoever has the address can change the model.")
         if browser:
             _open(address, say)
         config = uvicorn.Config(
