@@ -161,6 +161,8 @@ class Session:
 
     def take(self) -> None:
         """Take the files over as they are on the disk; the changes here can be had by `undo`."""
+        if not self._disk.outside:
+            return
         names = ", ".join(self._disk.outside)
         stamps = {name: _stamp(name) for name in self._disk.texts}
         fresh = evaluate(self.path, {})
@@ -171,6 +173,8 @@ class Session:
 
     def keep(self) -> None:
         """Keep the changes here: the diff then shows what `save` takes back of the others'."""
+        if not self._disk.outside:
+            return
         self._disk.texts |= self._disk.outside
         self._disk.outside = {}
         self._see_disk()

@@ -346,3 +346,11 @@ def test_a_model_with_errors_is_refused_as_check_refuses_it(folder: Path) -> Non
     with pytest.raises(Refused) as theirs:
         checking.check(folder / "model.yaml")
     assert mine.value.shown() == theirs.value.shown()
+
+
+def test_where_nothing_changed_outside_there_is_nothing_to_take_or_keep(session: Session) -> None:
+    time(session, "joint_x.position_control", "wcet", "400 us")
+    number, texts = session.number, session.now.texts
+    session.take()
+    session.keep()
+    assert (session.number, session.now.texts) == (number, texts)
