@@ -343,7 +343,7 @@ def test_a_change_of_a_hundred_activities_is_on_the_page_soon(
 
 
 CHANGE = """async (value) => {
-  const field = document.querySelector(".declared .times label:nth-child(2) input");
+  const field = document.querySelector(".declared .times .field:nth-child(2) input");
   const bound = () => document.querySelector('[data-processor="p20"] .response').textContent;
   const before = bound();
   field.focus();
