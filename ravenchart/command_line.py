@@ -27,6 +27,7 @@ COMMANDS = {
         "allocate",
         "allocate the periodic rows of a model to processors anew, and check",
     ),
+    "workbench": ("workbench", "change and analyse the model in a local web page"),
     "check-certificate": (
         "check_certificate",
         "compare the generated program with the model, by independent code",
@@ -61,8 +62,8 @@ ALIASES = {"import": ("import-dbc",)}
 
 JSON = "--json"
 
-WITHOUT_JSON = ("bus", "completion")
-"""Commands without an answer: one goes on until it is stopped, and one prints a script."""
+WITHOUT_JSON = ("bus", "completion", "workbench")
+"""Commands without an answer: two go on until they are stopped, and one prints a script."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

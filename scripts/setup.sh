@@ -4,7 +4,8 @@
 # With the word "arm" also the compiler for 32-bit Arm, which only figures need;
 # with the word "guest" QEMU, the compilers for s390x and 32-bit Arm and, unpacked
 # below build/guest and not installed, Debian's kernel, which only `make hw-test` needs.
-# With the word "board" the emulator and the compiler for `make board-test`.
+# With the word "board" the emulator and the compiler for `make board-test`; with the word
+# "browser" Chromium, in which the tests use the workbench.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -24,6 +25,9 @@ if [ "${1:-}" = board ]; then
    command -v aarch64-linux-gnu-gnatls >/dev/null 2>&1 ||
       packages="$packages gnat-12-aarch64-linux-gnu"
    command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 || packages="$packages gcc-aarch64-linux-gnu"
+fi
+if [ "${1:-}" = browser ]; then
+   command -v chromium >/dev/null 2>&1 || packages="$packages chromium"
 fi
 if [ "${1:-}" = guest ]; then
    command -v qemu-system-x86_64 >/dev/null 2>&1 || packages="$packages qemu-system-x86"

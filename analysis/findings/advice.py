@@ -82,6 +82,12 @@ def of_model(analysis: Analysis) -> Advice | None:
     periods = [task.element for task in free if not task.sporadic]
     periods += [message.element for message in system.messages if message.source is None]
     order = [*(task.element for task in free), *(m.element for m in system.messages)]
+    choices = Choices(costs, periods, order)
+    return advice(network, choices, analysis.scaling, analysis.schedulable, kept(analysis))
+
+
+def kept(analysis: Analysis) -> Met:
+    """Whether a changed network of a model keeps every deadline and limit, and loses nothing."""
 
     def holds(other: Network) -> bool:
         return any(
@@ -89,8 +95,7 @@ def of_model(analysis: Analysis) -> Advice | None:
             for found in holistic.analyses(other)
         )
 
-    choices = Choices(costs, periods, order)
-    return advice(network, choices, analysis.scaling, analysis.schedulable, holds)
+    return holds
 
 
 def of_network(network: Network, scaling: NetworkScaling | None, *, met: bool) -> Advice | None:

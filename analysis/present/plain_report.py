@@ -8,9 +8,10 @@ from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.findings.differences import Differences
 from ravenchart.analysis.plain.results import PlainResult, loads
 
+from .bars import row_of, slack_of
 from .page import page
 from .report import Execution
-from .rows import chain_picture, hops_of, instants_of, row_of, slack_of
+from .rows import chain_picture, hops_of, instants_of
 from .words import offset_lines, overload_lines
 
 SHOWN = 300

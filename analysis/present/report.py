@@ -26,9 +26,10 @@ from ravenchart.gen.model.buses import Bus
 from ravenchart.stacks.report import Memory
 
 from . import plots
+from .bars import row_of
 from .page import page
 from .picture import draw
-from .rows import chain_picture, hops_of, instants_of, row_of
+from .rows import chain_picture, hops_of, instants_of
 from .words import binding_lines, families, growth_line, offset_lines, verdict_line
 
 SHOWN_CHAINS = 40

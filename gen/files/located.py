@@ -254,7 +254,7 @@ def _no_tabs(text: str, file: str) -> None:
 def _events(text: str, file: str) -> Iterator[Event]:
     """PyYAML's events; whatever it finds wrong becomes a located `RefusedError`."""
     try:
-        yield from _parsed(text)
+        yield from parsed(text)
     except yaml.reader.ReaderError as problem:
         before = text[: problem.position]
         line = len(LINE_BREAK.findall(before))
@@ -274,7 +274,7 @@ def _events(text: str, file: str) -> Iterator[Event]:
         raise RefusedError(error("RV-0106", Origin(file, 1, 1), message, hint=hint)) from None
 
 
-def _parsed(text: str) -> Iterable[Event]:
+def parsed(text: str) -> Iterable[Event]:
     """PyYAML's events: by libyaml, the faster, where both parsers agree and all is well."""
     if yaml.__with_libyaml__ and not UNLIKE.search(text):
         try:

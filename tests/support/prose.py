@@ -24,7 +24,7 @@ PAGES = (
 SPOKEN = (
     *("gen/files", "gen/language", "gen/model", "gen/resolve", "gen/rules", "gen/derive"),
     *("analysis", "behaviour", "hw_can/bench", "ravenchart/commands", "ravenchart/running"),
-    *("ravenchart/databases", "ravenchart/building", "ravenchart/proof"),
+    *("ravenchart/databases", "ravenchart/building", "ravenchart/proof", "ravenchart/workbench"),
 )
 """Folders whose texts reach a user."""
 

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from ravenchart.building import drawings
 from ravenchart.commands import draw
 from ravenchart.gen.draw import structure_text
 from ravenchart.gen.draw.chart import chart_dot
@@ -200,7 +201,7 @@ def test_random_charts_can_be_drawn(tmp_path: Path) -> None:
     model.write_text(model_of(range(1, 5)))
     system = load(model).system
     assert system is not None
-    drawn = [text for name, text in draw.texts(system).items() if name.startswith("Chart_")]
+    drawn = [text for name, text in drawings.texts(system).items() if name.startswith("Chart_")]
     assert len(drawn) >= 4
     for dot in drawn:
         done = subprocess.run(["dot", "-Tsvg"], input=dot, capture_output=True, encoding="utf-8")
@@ -213,7 +214,7 @@ def _number(text: str) -> float:
 
 @DRAWN
 def test_the_svg_is_well_formed_and_holds_all_its_text(dot: str) -> None:
-    root = ElementTree.fromstring(draw.svg(dot))
+    root = ElementTree.fromstring(drawings.svg(dot))
     space = "{http://www.w3.org/2000/svg}"
     width, height = _number(root.attrib["width"]), _number(root.attrib["height"])
     move = root.find(f"{space}g")
@@ -232,8 +233,8 @@ def test_the_svg_is_well_formed_and_holds_all_its_text(dot: str) -> None:
 
 
 def test_the_svg_says_whose_picture_it_is_and_no_more() -> None:
-    svg = draw.svg(DOT)
-    assert draw.svg(DOT) == svg
+    svg = drawings.svg(DOT)
+    assert drawings.svg(DOT) == svg
     assert "<!--" not in svg and "graphviz" not in svg.lower()
     assert "<desc>ravenchart draw, DOT sha256 " in svg
 
@@ -242,10 +243,10 @@ def test_without_graphviz_the_text_formats_still_work(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
-    draw.write(draw.texts(plant(), "plantuml"), tmp_path)
-    draw.write(draw.texts(plant(), "mermaid"), tmp_path)
+    draw.write(drawings.texts(plant(), "plantuml"), tmp_path)
+    draw.write(drawings.texts(plant(), "mermaid"), tmp_path)
     with pytest.raises(ToolMissing, match="Debian package graphviz"):
-        draw.write(draw.texts(plant()), tmp_path / "svg")
+        draw.write(drawings.texts(plant()), tmp_path / "svg")
     assert not (tmp_path / "svg").exists()
     assert sorted(p.name for p in tmp_path.iterdir()) == [
         "Pump.Mode.mmd",
@@ -332,8 +333,8 @@ def test_structure_has_instances_ports_wires_messages_and_tables() -> None:
     assert "bus <b>field</b>" in dot and "500 kbit/s" in dot
 
 
-@pytest.mark.parametrize("form", draw.FORMATS)
+@pytest.mark.parametrize("form", drawings.FORMATS)
 def test_drawings_are_the_same_each_time_and_name_no_path(form: str) -> None:
-    first, second = draw.texts(plant(), form), draw.texts(plant(), form)
+    first, second = drawings.texts(plant(), form), drawings.texts(plant(), form)
     assert first == second
     assert all("plant.yaml" not in text and str(ROOT) not in text for text in first.values())

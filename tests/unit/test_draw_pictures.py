@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import checking
+from ravenchart.building import checking, drawings
 from ravenchart.command_line import main
-from ravenchart.commands import draw
 from ravenchart.gen.draw.svg import mark
 from ravenchart.paths import ROOT
 
@@ -17,7 +16,7 @@ EXAMPLES = sorted(path.parent.name for path in (ROOT / "examples").glob("*/model
 
 
 def _texts(example: str) -> dict[str, str]:
-    return draw.texts(checking.check(ROOT / "examples" / example / "model.yaml").system)
+    return drawings.texts(checking.check(ROOT / "examples" / example / "model.yaml").system)
 
 
 @pytest.mark.parametrize("example", EXAMPLES)

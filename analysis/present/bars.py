@@ -1,0 +1,64 @@
+"""A response against its deadline: a row of a report, with what its bar is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ravenchart.analysis.core.holistic import Holistic, Network
+from ravenchart.analysis.findings.deadlines import no_bound_reason
+
+from .words import response_parts
+
+KINDS = ("jitter", "blocking", "own", "interference", "overhead")
+"""What a response is made of, in the order of a bar."""
+
+
+def slack_of(found: Holistic, name: str) -> int | None:
+    """Deadline less response; negative when missed, None without a bound."""
+    needed = found.from_event(name)
+    return None if needed is None else found.deadline(name) - needed
+
+
+def row_of(network: Network, found: Holistic, name: str) -> dict[str, Any]:
+    """The row of a task or message, its parts as shares of the deadline (or of R if longer)."""
+    response = found.responses[name]
+    bound, deadline = found.from_event(name), found.deadline(name)
+    item = network.items()[name]
+    parts = response_parts(response, network.released_by.get(name))
+    scale = max(deadline, bound or 0)
+    kinds = {kind: sum(p.time for p in parts if p.kind == kind) for kind in KINDS}
+    met = found.meets(name)
+    return {
+        "name": name,
+        "response": response,
+        "item": item,
+        "cost": item.cost,
+        "deadline": deadline,
+        "jitter": item.jitter + found.inherited.get(name, 0),
+        "bound": bound,
+        "slack": slack_of(found, name),
+        "word": "ok" if met else "NONE" if bound is None else "MISS",
+        "met": met,
+        "reason": "" if bound is not None else no_bound_reason(response),
+        "shares": parts,
+        "deadline_at": 100 * deadline / scale,
+        "bar": [(k, 100 * time / scale) for k, time in _within(kinds, bound) if time > 0],
+    }
+
+
+def _within(kinds: Mapping[str, int], bound: int | None) -> list[tuple[str, int]]:
+    """The parts of a bar that is ``bound`` long in all; empty without a bound.
+
+    For a later job of the busy period the periods before its release are taken
+    off its own time first, then off what stands before and after it.
+    """
+    if bound is None:
+        return []
+    debt = sum(kinds.values()) - bound
+    kept = dict(kinds)
+    for kind in ("own", *KINDS):
+        less = min(debt, kept[kind])
+        kept[kind] -= less
+        debt -= less
+    return list(kept.items())

@@ -1,0 +1,93 @@
+"""The drawings of a model for the page, and where what they show stands in its files.
+
+Graphviz names each group of an SVG drawing in its ``title``: by that name, or by the name and a
+text inside the group, the page finds the location of what is clicked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ravenchart.gen.draw.chart import chart_dot
+from ravenchart.gen.draw.picture import label, picture
+from ravenchart.gen.draw.structure import structure_dot
+from ravenchart.gen.draw.wrapping import wrapped
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.statechart import Region, TransitionKind
+from ravenchart.gen.model.system import System
+from ravenchart.gen.origins import Origin
+
+STRUCTURE = "structure"
+"""The name of the drawing of the structure; a chart is called ``Component.Region``."""
+
+Located = tuple[str, str, Origin]
+"""The title of a group, a text in it ("" for the group itself), and where that stands."""
+
+
+def names(system: System) -> tuple[str, ...]:
+    """The drawings of a model."""
+    return (STRUCTURE, *_charts(system))
+
+
+def dot(system: System, name: str) -> str | None:
+    """The DOT text of a drawing, as `ravenchart draw` makes it; None of one that is not there."""
+    if name == STRUCTURE:
+        return structure_dot(system)
+    found = _charts(system).get(name)
+    return None if found is None else chart_dot(picture(*found))
+
+
+def _charts(system: System) -> dict[str, tuple[Component, Region]]:
+    return {
+        f"{c.name}.{region.name}": (c, region) for c in system.components for region in c.regions
+    }
+
+
+def locations(system: System, name: str) -> tuple[Located, ...]:
+    """Where the elements of a drawing stand; none of a drawing that is not there."""
+    if name == STRUCTURE:
+        return tuple(_of_structure(system))
+    found = _charts(system).get(name)
+    return () if found is None else tuple(_of_chart(*found))
+
+
+def _of_structure(system: System) -> Iterator[Located]:
+    for node in system.nodes:
+        yield f"cluster node {node.name}", "", node.origin
+    for bus in system.buses:
+        yield f"cluster bus {bus.name}", "", bus.origin
+    for instance in system.instances:
+        yield instance.name, "", instance.origin
+        for port in instance.component.ports:
+            yield instance.name, port.name, port.origin
+    for device in system.devices:
+        yield f"device {device.name}", "", device.origin
+    for message in system.messages:
+        yield f"message {message.name}", "", message.origin
+    for processor in system.processors:
+        for title in (f"cluster processor {processor.name}", f"table {processor.name}"):
+            yield title, "", processor.origin
+        for slot in processor.slots:
+            yield f"table {processor.name}", slot.element, slot.origin
+
+
+def _of_chart(component: Component, region: Region) -> Iterator[Located]:
+    vertices = [(state.name, state.origin) for state in region.states]
+    vertices += [(one.name, one.origin) for one in region.pseudostates]
+    for name, origin in vertices:
+        for title in (name, f"cluster {name}", f"header {name}"):
+            yield title, "", origin
+    for state in region.states:
+        for nested in state.regions:
+            yield f"cluster {state.name} {nested.name}", "", nested.origin
+    for transition in region.transitions:
+        if transition.kind is TransitionKind.INTERNAL:
+            for line in wrapped(label(transition)):
+                yield transition.source, line, transition.origin
+                yield f"header {transition.source}", line, transition.origin
+            continue
+        inside = f"{transition.source} to {transition.target}"
+        for title in (inside, f"{inside} inside"):
+            yield title, "", transition.origin
+            for line in wrapped(label(transition)):
+                yield title, line, transition.origin

@@ -1,0 +1,148 @@
+"""Where the text of a model says what runs where, when, and for how long.
+
+Names count without regard to case, as in the model. What is found here is text: it is there also
+where the model has errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from ravenchart.gen.files import spans
+from ravenchart.gen.files.spans import Scalar
+
+from .edits import Document
+
+TIMES = ("period", "wcet", "deadline")
+"""What a row says of its time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A named entry of a section: the file that it stands in, its name, and what it says."""
+
+    file: str
+    key: Scalar
+    mapping: spans.Mapping
+
+    @property
+    def name(self) -> str:
+        """Its name, as it is declared."""
+        return self.key.value
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """What a row of a table runs: declared once, also where several instances have it.
+
+    ``owner`` is the component, or the bus; ``keys`` are those for its times, by `TIMES`.
+    """
+
+    owner: str
+    name: str
+    kind: str
+    """``ports``, ``region``, ``activity``, ``receive`` or ``watch``."""
+    entry: Entry
+    keys: Mapping[str, str]
+
+    def text(self, time: str) -> str | None:
+        """What is written of a time; None where nothing is."""
+        key = self.keys.get(time)
+        found = None if key is None else self.entry.mapping.scalar(key)
+        return None if found is None else found.value
+
+
+@dataclass(frozen=True)
+class Places:
+    """The files of a model by name, main file first; None where one is not YAML."""
+
+    documents: Mapping[str, Document | None]
+
+    def section(self, name: str) -> Iterator[Entry]:
+        """The entries of a section, in the order of the files."""
+        for file, document in self.documents.items():
+            found = None if document is None else document.root.mapping(name)
+            for key, mapping in () if found is None else found.mappings():
+                yield Entry(file, key, mapping)
+
+    @cached_property
+    def processors(self) -> dict[str, Entry]:
+        """The processors, by name in lower case."""
+        return self._named("processors")
+
+    @cached_property
+    def components(self) -> dict[str, Entry]:
+        """The components."""
+        return self._named("components")
+
+    @cached_property
+    def instances(self) -> dict[str, Entry]:
+        """The instances."""
+        return self._named("instances")
+
+    @cached_property
+    def buses(self) -> dict[str, Entry]:
+        """The buses."""
+        return self._named("buses")
+
+    def _named(self, section: str) -> dict[str, Entry]:
+        found: dict[str, Entry] = {}
+        for entry in self.section(section):
+            found.setdefault(entry.name.lower(), entry)
+        return found
+
+    def table(self, processor: Entry) -> list[Scalar]:
+        """The rows of a processor."""
+        found = processor.mapping.get("activities")
+        items = found.items if isinstance(found, spans.Sequence) else []
+        return [item for item in items if isinstance(item, Scalar)]
+
+    def row_at(self, element: str) -> tuple[Entry, int] | None:
+        """The processor whose table holds a row, and its number there."""
+        wanted = element.lower()
+        for processor in self.processors.values():
+            for number, item in enumerate(self.table(processor)):
+                if item.value.lower() == wanted:
+                    return processor, number
+        return None
+
+    def component_of(self, instance: str) -> Entry | None:
+        """The component of an instance."""
+        found = self.instances.get(instance.lower())
+        name = None if found is None else found.mapping.scalar("component")
+        return None if name is None else self.components.get(name.value.lower())
+
+    def row(self, element: str) -> Row | None:
+        """What ``owner.name`` runs."""
+        owner, _, name = element.lower().partition(".")
+        component = self.component_of(owner)
+        if component is not None:
+            return next((one for one in self.rows(component) if one.name.lower() == name), None)
+        bus = self.buses.get(owner)
+        if bus is not None and name == "receive":
+            return Row(bus.name, name, name, bus, {"wcet": "driver_wcet"})
+        watch = None if bus is None or name != "watch" else _inner(bus, name)
+        return None if bus is None or watch is None else self._row(bus, name, name, watch)
+
+    def rows(self, component: Entry) -> Iterator[Row]:
+        """What an instance of a component has to run."""
+        ports = _inner(component, "port_region")
+        if ports is not None:
+            yield self._row(component, "ports", "ports", ports)
+        for section, kind in (("regions", "region"), ("activities", "activity")):
+            found = component.mapping.mapping(section)
+            for key, mapping in () if found is None else found.mappings():
+                yield self._row(component, key.value, kind, Entry(component.file, key, mapping))
+
+    def _row(self, owner: Entry, name: str, kind: str, entry: Entry) -> Row:
+        return Row(owner.name, name, kind, entry, {time: time for time in TIMES})
+
+
+def _inner(around: Entry, name: str) -> Entry | None:
+    """A mapping inside an entry."""
+    found = around.mapping.entry(name)
+    if found is None or not isinstance(found[1], spans.Mapping):
+        return None
+    return Entry(around.file, found[0], found[1])

@@ -1,0 +1,85 @@
+"""What the page asks for: each message in one form, and nothing else is accepted."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+Name = Annotated[str, Field(min_length=1, max_length=200)]
+Duration = Annotated[str, Field(min_length=1, max_length=40)]
+
+
+class Message(BaseModel):
+    """A message; ``number`` is the state that the page showed when it was asked for."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    number: int = Field(ge=0)
+
+
+class Move(Message):
+    """Put a row into a table, where it then has the number ``place``, counted from 0."""
+
+    kind: Literal["move"]
+    row: Name
+    to: Name
+    place: int = Field(ge=0, le=1024)
+
+
+class SetTime(Message):
+    """Change what a row takes: for all instances of its component. None: the key is removed."""
+
+    kind: Literal["time"]
+    row: Name
+    key: Literal["period", "wcet", "deadline"]
+    value: Duration | None
+
+
+class SetProcessor(Message):
+    """Change a processor. None: the key is removed, and the value follows from the table."""
+
+    kind: Literal["processor"]
+    processor: Name
+    key: Literal["period", "deadline", "priority"]
+    value: Duration | int | None
+
+
+class Step(Message):
+    """Go back by one change, or forward again."""
+
+    kind: Literal["undo", "redo"]
+
+
+class Save(Message):
+    """Write the files; with ``late`` also where a deadline or limit is not kept."""
+
+    kind: Literal["save"]
+    late: bool
+
+
+class Settle(Message):
+    """After files have changed outside: take them, or keep the changes made here."""
+
+    kind: Literal["take", "keep"]
+
+
+Request = Annotated[
+    Move | SetTime | SetProcessor | Step | Save | Settle, Field(discriminator="kind")
+]
+_READER: TypeAdapter[Move | SetTime | SetProcessor | Step | Save | Settle] = TypeAdapter(Request)
+
+
+class MalformedError(Exception):
+    """A message has none of the forms above; the text says where it differs."""
+
+
+def read(body: bytes) -> Move | SetTime | SetProcessor | Step | Save | Settle:
+    """The message of a request, or `MalformedError`."""
+    try:
+        return _READER.validate_json(body)
+    except ValidationError as problem:
+        first = problem.errors(include_url=False, include_context=False, include_input=False)[0]
+        where = ".".join(str(step) for step in first["loc"])
+        what = first["msg"][:1].lower() + first["msg"][1:]
+        raise MalformedError(f"malformed message: {where + ': ' if where else ''}{what}") from None

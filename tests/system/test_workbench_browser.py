@@ -1,0 +1,358 @@
+"""The workbench in a real browser, Debian's Chromium: by drag, by keyboard, and read aloud."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import statistics
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
+
+from ravenchart.paths import ROOT
+from tests.support.workbench import Running, running
+from tests.support.workbench_models import hundred_activities
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        CHROMIUM is None, reason="Chromium is missing: `scripts/setup.sh browser` installs it"
+    ),
+]
+
+PATIENCE = 20_000
+"""Milliseconds for what a page does on a busy machine."""
+
+SERIOUS = ("serious", "critical")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """Chromium without a screen."""
+    arguments = ["--no-sandbox"] if os.getuid() == 0 else []
+    with sync_playwright() as started:
+        found = started.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield found
+        found.close()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A copy of the robot's model, with a comment at a row."""
+    for path in (ROOT / "examples" / "cartesian_robot").glob("*.yaml"):
+        shutil.copy(path, tmp_path)
+    model = tmp_path / "model.yaml"
+    text = model.read_text(encoding="utf-8")
+    row = "      - joint_x.Monitoring\n"
+    assert text.count(row) == 1
+    model.write_text(text.replace(row, "      - joint_x.Monitoring  # watches the drive\n"))
+    return tmp_path
+
+
+@pytest.fixture
+def bench(folder: Path) -> Iterator[Running]:
+    """A workbench of it."""
+    with running(folder / "model.yaml") as found:
+        yield found
+
+
+class Pane:
+    """A page that shows the workbench, and what went wrong in it."""
+
+    def __init__(self, browser: Browser, address: str, **look: Any) -> None:
+        self.context = browser.new_context(**({"viewport": {"width": 1400, "height": 900}} | look))
+        self.page: Page = self.context.new_page()
+        self.page.set_default_timeout(PATIENCE)
+        expect.set_options(timeout=PATIENCE)
+        self.wrong: list[str] = []
+        self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
+        self.page.on("console", lambda one: self._heard(one.type, one.text))
+        self.asked: list[str] = []
+        self.page.on("request", lambda request: self.asked.append(request.url))
+        self.page.goto(address)
+        expect(self.page.locator(".paper svg")).to_be_visible()
+
+    def _heard(self, kind: str, text: str) -> None:
+        if kind == "error" and "status of 4" not in text:
+            self.wrong.append(text)
+
+    def row(self, name: str) -> Locator:
+        """The row of a table."""
+        return self.page.locator(f'.processors [data-row="{name}"]')
+
+    def rows(self, processor: str) -> list[str]:
+        """The table of a processor."""
+        names = self.page.locator(f'[data-processor="{processor}"] .row .name')
+        return names.all_text_contents()
+
+    def bound(self, processor: str) -> Locator:
+        """The response of a processor, in words."""
+        return self.page.locator(f'[data-processor="{processor}"] .response .number')
+
+
+@pytest.fixture
+def pane(browser: Browser, bench: Running) -> Iterator[Pane]:
+    """One page; nothing may go wrong in it, and nothing may be asked of elsewhere."""
+    found = Pane(browser, bench.address)
+    yield found
+    found.context.close()
+    assert found.wrong == []
+    assert [url for url in found.asked if not url.startswith((bench.address, "data:"))] == []
+
+
+def test_a_row_is_dragged_to_another_processor_saved_and_its_comment_kept(
+    pane: Pane, folder: Path
+) -> None:
+    page = pane.page
+    before = pane.bound("trajectory").text_content()
+    target = pane.row("joint_y.trajectory_step")
+    pane.row("joint_x.Monitoring").drag_to(target, target_position={"x": 20, "y": 3})
+    expect(pane.bound("trajectory")).not_to_have_text(before or "")
+    expect(pane.bound("trajectory")).to_contain_text("saved 865 us")
+    assert pane.rows("trajectory") == [
+        "joint_x.trajectory_step", "joint_x.Monitoring", "joint_y.trajectory_step",
+        "joint_z.trajectory_step",
+    ]  # fmt: skip
+    old = {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()}
+    page.get_by_role("button", name="Save …").click()
+    diff = page.get_by_role("dialog").locator(".diff")
+    expect(diff.locator(".added")).to_have_text("+      - joint_x.Monitoring  # watches the drive")
+    expect(diff.locator(".removed")).to_have_count(1)
+    page.get_by_role("dialog").get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    expect(page.get_by_role("button", name="Save …")).to_be_disabled()
+    new = {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()}
+    line = "      - joint_x.Monitoring  # watches the drive\n"
+    assert new.pop("model.yaml") == old.pop("model.yaml").replace(line, "").replace(
+        "      - joint_y.trajectory_step\n", f"{line}      - joint_y.trajectory_step\n"
+    )
+    assert new == old
+    page.get_by_role("button", name="Undo").click()
+    expect(page.get_by_role("button", name="Save …")).to_be_enabled()
+    assert "joint_x.Monitoring" in pane.rows("control")
+
+
+def test_a_row_is_moved_by_keys_and_keeps_the_focus(pane: Pane) -> None:
+    page = pane.page
+    row = "joint_x.Monitoring"
+    pane.row(row).focus()
+    page.keyboard.press("Shift+ArrowUp")
+    expect(page.locator('[data-processor="control"] .row .name').first).to_have_text(row)
+    expect(pane.row(row)).to_be_focused()
+    page.keyboard.press("Shift+ArrowRight")
+    expect(page.locator('[data-processor="supervision"] .row .name').first).to_have_text(row)
+    expect(pane.row(row)).to_be_focused()
+    page.keyboard.press("Shift+ArrowLeft")
+    page.keyboard.press("Shift+ArrowDown")
+    expect(page.locator('[data-processor="control"] .row .name').nth(1)).to_have_text(row)
+    page.keyboard.press("ArrowDown")
+    expect(pane.row("joint_x.position_control")).to_be_focused()
+    for _ in range(4):
+        page.keyboard.press("Control+z")
+    expect(page.get_by_role("button", name="Undo")).to_be_disabled()
+    page.keyboard.press("Control+Shift+z")
+    expect(page.get_by_role("button", name="Undo")).to_be_enabled()
+
+
+def test_the_buttons_of_a_selected_row_do_the_same(pane: Pane) -> None:
+    page = pane.page
+    row = "joint_x.Monitoring"
+    pane.row(row).press("Enter")
+    expect(pane.row(row)).to_have_attribute("aria-expanded", "true")
+    page.get_by_role("button", name="Later").click()
+    expect(page.locator('[data-processor="control"] .row .name').nth(2)).to_have_text(row)
+    page.get_by_label("Move to").select_option("supervision")
+    expect(page.locator('[data-processor="supervision"] .row .name').last).to_have_text(row)
+    expect(page.get_by_text("Largest C with every limit kept:")).to_contain_text(
+        re.compile(r"\d+ us")
+    )
+
+
+def test_a_longer_wcet_is_infeasible_in_words_and_its_save_asked_for(
+    pane: Pane, folder: Path
+) -> None:
+    page = pane.page
+    before = (folder / "joint.yaml").read_bytes()
+    field = page.locator(".declared", has_text="position_control").get_by_label("C", exact=True)
+    field.fill("4 ms")
+    field.press("Enter")
+    panel = page.get_by_role("tabpanel")
+    expect(panel).to_contain_text("control has no response-time bound")
+    expect(panel).to_contain_text("shorten worst-case execution times")
+    expect(page.locator("header .verdict")).to_contain_text("deadlines may be missed")
+    page.get_by_role("tab", name="Chains").click()
+    expect(panel.locator(".word.bad").first).to_have_text("MISS")
+    page.get_by_role("tab", name="Room and advice").click()
+    expect(panel).to_contain_text("all execution times must shrink by")
+    page.keyboard.press("Control+s")
+    page.get_by_role("dialog").get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_role("dialog")).to_contain_text("a deadline or limit is not kept")
+    assert (folder / "joint.yaml").read_bytes() == before
+    page.get_by_role("dialog").get_by_role("button", name="Save all the same").click()
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    assert b"wcet: 4 ms" in (folder / "joint.yaml").read_bytes()
+
+
+def test_an_error_is_shown_with_its_location_and_the_last_good_figures(pane: Pane) -> None:
+    page = pane.page
+    bound = pane.bound("control").text_content() or ""
+    field = page.locator(".declared", has_text="position_control").get_by_label("T", exact=True)
+    field.fill("15 ms")
+    field.press("Enter")
+    expect(page.get_by_role("alert")).to_contain_text("The model has errors, see Findings.")
+    expect(page.get_by_role("tabpanel")).to_contain_text("RV-0704")
+    expect(pane.bound("control")).to_have_text(bound)
+    field.fill("nonsense")
+    field.press("Enter")
+    expect(page.get_by_role("alert").last).to_contain_text("`nonsense` is not a duration")
+    expect(field).to_have_attribute("aria-invalid", "true")
+    field.press("Escape")
+    expect(field).to_have_value("15 ms")
+
+
+def test_a_click_on_a_drawing_shows_the_source(pane: Pane) -> None:
+    page = pane.page
+    page.locator(".drawing select").select_option("Joint.Motion")
+    page.get_by_role(
+        "button", name=re.compile("^Braking, source joint.yaml|^Braking, source .*joint")
+    ).first.click()
+    here = page.locator(".source .line.here")
+    expect(here).to_contain_text("Braking: {}")
+    expect(here).to_be_in_viewport()
+    page.locator(".drawing select").select_option("structure")
+    page.locator(".paper text.link", has_text="joint_z.supervise").click()
+    expect(here).to_contain_text("- joint_z.supervise")
+
+
+def test_a_drawing_is_zoomed(pane: Pane) -> None:
+    page = pane.page
+
+    def width() -> float:
+        box = page.locator(".paper svg").bounding_box()
+        assert box is not None
+        return box["width"]
+
+    fitted = width()
+    page.get_by_role("button", name="100 %").click()
+    page.get_by_role("button", name="Zoom in").click()
+    assert width() > 1.2 * fitted
+    page.get_by_role("button", name="Fit").click()
+    assert width() == fitted
+
+
+def test_two_browsers_see_the_same(pane: Pane, browser: Browser, bench: Running) -> None:
+    other = Pane(browser, bench.address)
+    pane.row("joint_x.Monitoring").focus()
+    pane.page.keyboard.press("Shift+ArrowRight")
+    expect(other.page.locator('[data-processor="supervision"] .row .name').nth(1)).to_have_text(
+        "joint_x.Monitoring"
+    )
+    other.page.get_by_role("button", name="Undo").click()
+    expect(pane.page.get_by_role("button", name="Undo")).to_be_disabled()
+    assert pane.rows("control") == other.rows("control")
+    assert other.wrong == []
+    other.context.close()
+
+
+def test_a_change_outside_is_shown_and_not_overwritten(pane: Pane, folder: Path) -> None:
+    page, path = pane.page, folder / "joint.yaml"
+    field = page.locator(".declared", has_text="position_control").get_by_label("C", exact=True)
+    field.fill("160 us")
+    field.press("Enter")
+    expect(page.get_by_role("button", name="Save …")).to_be_enabled()
+    theirs = path.read_text(encoding="utf-8") + "# theirs\n"
+    path.write_text(theirs, encoding="utf-8")
+    expect(page.get_by_role("alert")).to_contain_text("changed on the disk")
+    assert path.read_text(encoding="utf-8") == theirs
+    page.get_by_role("button", name="Show the files on the disk").click()
+    expect(field).to_have_value("150 us")
+    page.get_by_role("button", name="Undo").click()
+    expect(field).to_have_value("160 us")
+
+
+def test_the_end_of_the_workbench_is_told(pane: Pane, bench: Running) -> None:
+    assert bench.end() == 130
+    expect(pane.page.get_by_role("alert")).to_contain_text("The workbench has ended")
+    pane.wrong.clear()  # that the connection was lost is an error of the network
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [1400, 900, 400])
+def test_axe_finds_nothing_serious(
+    browser: Browser, bench: Running, scheme: str, width: int
+) -> None:
+    pane = Pane(
+        browser, bench.address, color_scheme=scheme, viewport={"width": width, "height": 900}
+    )
+    page = pane.page
+    pane.row("coordinator.Mission").click()
+    field = page.locator(".declared", has_text="Mission").get_by_label("C", exact=True)
+    field.fill("19 ms")
+    field.press("Enter")
+    expect(page.locator(".findings li").first).to_be_visible()
+    found = []
+    for tab in ("Findings", "Chains", "Buses", "Room and advice", "Source"):
+        page.get_by_role("tab", name=tab).click()
+        found += serious(page)
+    page.get_by_role("button", name="Save …").click()
+    expect(page.get_by_role("dialog").locator(".added").first).to_be_visible()
+    found += serious(page)
+    pane.context.close()
+    assert found == []
+
+
+def serious(page: Page) -> list[str]:
+    """What axe finds of weight: the rule and the element."""
+    answer = Axe().run(page).response
+    return [
+        f"{one['id']}: {node['html'][:200]} {node['failureSummary'][:200]}"
+        for one in answer["violations"]
+        if one["impact"] in SERIOUS
+        for node in one["nodes"]
+    ]
+
+
+def test_nothing_is_wider_than_the_window(browser: Browser, bench: Running) -> None:
+    for width in (1400, 1100, 900, 600, 400):
+        pane = Pane(browser, bench.address, viewport={"width": width, "height": 900})
+        assert pane.page.evaluate("document.documentElement.scrollWidth") <= width
+        pane.context.close()
+
+
+@pytest.mark.alone
+def test_a_change_of_a_hundred_activities_is_on_the_page_soon(
+    browser: Browser, tmp_path: Path
+) -> None:
+    model = tmp_path / "model.yaml"
+    model.write_text(hundred_activities(), encoding="utf-8")
+    with running(model) as bench:
+        pane = Pane(browser, bench.address)
+        taken = []
+        for number in range(10):
+            taken.append(pane.page.evaluate(CHANGE, f"{101 + number} us"))
+        pane.context.close()
+    print(f"median {statistics.median(taken):.0f} ms, longest {max(taken):.0f} ms")
+    assert statistics.median(taken) < 1_000
+
+
+CHANGE = """async (value) => {
+  const field = document.querySelector(".declared .times .field:nth-child(2) input");
+  const bound = () => document.querySelector('[data-processor="p20"] .response').textContent;
+  const before = bound();
+  field.focus();
+  field.value = value;
+  field.dispatchEvent(new Event("input", { bubbles: true }));
+  await new Promise((resolve) => setTimeout(resolve, 50));
+  const begin = performance.now();
+  field.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
+  while (bound() === before) await new Promise((resolve) => requestAnimationFrame(resolve));
+  return performance.now() - begin;
+}"""
+"""Types a WCET, and waits for the frame that shows another response; the ms between."""
