@@ -7,6 +7,8 @@ import statistics
 import time
 from pathlib import Path
 
+import pytest
+
 from ravenchart.workbench.requests import Move, SetTime
 from ravenchart.workbench.session import Session
 from ravenchart.workbench.view import view
@@ -16,6 +18,7 @@ LIMIT = 1.0
 """Seconds on a busy machine; the aim is 0.2 s."""
 
 
+@pytest.mark.alone
 def test_a_change_of_a_hundred_activities_is_analysed_at_once(tmp_path: Path) -> None:
     model = tmp_path / "model.yaml"
     model.write_text(hundred_activities(), encoding="utf-8")
