@@ -486,8 +486,8 @@ is
                      Self.Deferred)
                   and then Self.Lost
                     = (Before.Lost or Deferrals.Count (Before.Deferred) = 4)
-            else Self.Deferred = Kept and then Self.Lost = Before.Lost))
-      with Ghost;
+            else Self.Deferred = Before.Deferred
+               and then Self.Lost = Before.Lost)) with Ghost;
       pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
       function Lasts (Before : Region) return Boolean is
         (Self.Timers = Before.Timers

@@ -122,17 +122,15 @@ class Moves:
         if self.shape.memories:
             past = (Object("Past", "Memory", Ref("Self.Past"), constant=True),)
         procedures = self.moving.procedures()
-        kept = Ref("Kept") if self.shape.deferring and procedures else None
-        if kept is not None:
-            held = Ref("Self.Deferred")
-            past += (Object(kept.text, "Deferrals.List", held, constant=True, aspects=ghost),)
+        if self.shape.deferring and procedures:
+            kept = Ref("Self.Deferred")
+            past += (Object("Kept", "Deferrals.List", kept, constant=True, aspects=ghost),)
         procedures = (*self.lasting.frames(), *procedures)
         if len(rows) > MANY:
             before = [equal(o.value, Ref(o.name)) for o in past if o.value is not None]
             #  said once, and not with each batch
             agrees = Subprogram("Is_Agreed", (), "Boolean", ghost, expression=agreed)
-            lasts = self.lasting.fired("Chosen", at_once=True, deferred=kept)
-            facts = both(Ref("Self.Started"), moved, *lasts)
+            facts = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen", at_once=True))
             fired: list[Decl] = []
             known = facts
             if of_before(facts) != facts:

@@ -367,12 +367,10 @@ class Lasting:
         ghost = (Aspect("Ghost"), Aspect("Pre", both(*bounds)))
         return [Subprogram("Is_Timed", params, "Boolean", ghost, expression=both(*rows))]
 
-    def fired(
-        self, chosen: str, *, at_once: bool = False, deferred: Ref | None = None
-    ) -> list[Expr]:
+    def fired(self, chosen: str, *, at_once: bool = False) -> list[Expr]:
         """After a firing: what is declared; ``chosen`` names the transition.
 
-        ``at_once``: with `Is_Timed`. ``deferred``: a name of what was deferred before.
+        ``at_once``: with `Is_Timed`.
         """
         facts: list[Expr] = []
         held = f"Self.{self.shape.place}"
@@ -406,16 +404,12 @@ class Lasting:
             ends = any(terminates(self.shape, f) for f in self.shape.firings)
             goes_on = Chain("/=", (domain, Ref("Ending")))
             facts.append(IfExpr(((goes_on, freed),), None) if ends else freed)
-        return [*facts, *self._deferred(chosen, deferred)]
+        return [*facts, *self._deferred(chosen)]
 
     # --- parts
 
-    def _deferred(self, chosen: str, same_as: Ref | None) -> list[Expr]:
-        """A deferral keeps its event, or counts it as lost; nothing else touches what is kept.
-
-        ``same_as``: by that name exits and entries say so. That two lists are equal because both
-        equal a third is a proof through all their elements.
-        """
+    def _deferred(self, chosen: str) -> list[Expr]:
+        """A deferral keeps its event, or counts it as lost; nothing else touches what is kept."""
         shape = self.shape
         deferrals = [f for f in shape.firings if f.kind is Kind.DEFERRAL]
         if not deferrals:
@@ -433,7 +427,7 @@ class Lasting:
             )
             for item, of in names.items()
         )
-        same = both(equal(kept, same_as or before), equal(Ref("Self.Lost"), Ref("Self.Lost'Old")))
+        same = both(equal(kept, before), equal(Ref("Self.Lost"), Ref("Self.Lost'Old")))
         return [IfExpr(added, same)]
 
     def _freed(self, left: str | None = None) -> list[Expr]:
