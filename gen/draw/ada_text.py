@@ -121,7 +121,7 @@ class _Reader(Transformer[Token, object]):
         """A leaf for each component that does not stay as it was."""
         return dict(part for part in parts if isinstance(part, tuple))
 
-    def move(self, _: Meta, parts: Sequence[object]) -> Leaves:
+    def move(self, _: Meta, parts: Sequence[object]) -> dict[str, object]:
         """Transitions and where they lead."""
         return {str(name): parts[-1] for name in parts[:-1]}
 

@@ -1252,7 +1252,7 @@ is
          Active_Top := Chart.Moved (Active_Top, Chart.Alarm, Chart.Silent);
          Self.Data.Buzzer := False;
       end Enter_Silent;
-      subtype From_Turned is Selection range Turned .. Give_Up;
+      subtype From_Turned is Selection range Turned .. Enough;
       procedure Fire_From_Turned (Chosen : From_Turned)
       with
         Pre =>
@@ -1294,8 +1294,7 @@ is
                   and then Active_Sensor
                     = Chart.Innermost_Sensor (Self.Place));
                Enter_Maintaining;
-            when Defer_New_Portion_In_Loading
-               | Defer_New_Portion_In_Filling =>
+            when Defer_New_Portion_In_Loading =>
                if Deferrals.Count (Self.Deferred) = 4 then
                   Self.Lost := True;
                else
@@ -1313,6 +1312,36 @@ is
                Leave_Giving;
                Exit_Giving;
                Enter_All_Given;
+         end case;
+      end Fire_From_Turned;
+      subtype From_Defer_New_Portion_In_Filling is
+        Selection
+        range Defer_New_Portion_In_Filling
+        .. Again;
+      procedure Fire_From_Defer_New_Portion_In_Filling
+        (Chosen : From_Defer_New_Portion_In_Filling)
+      with
+        Pre =>
+          Self.Started
+          and then In_Source (Chosen, Self.Place)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Guards_Hold (Chosen, Self.Data, Ins, Item)
+          and then Self.Past = Past
+          and then Self.Deferred = Kept
+          and then Is_Agreed,
+        Post =>
+          Is_Fired (Self'Old, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
+      is
+      begin
+         case Chosen is
+            when Defer_New_Portion_In_Filling =>
+               if Deferrals.Count (Self.Deferred) = 4 then
+                  Self.Lost := True;
+               else
+                  Deferrals.Append (Self.Deferred, Item);
+               end if;
             when Finished =>
                Leave_Running;
                Exit_Running;
@@ -1378,6 +1407,29 @@ is
                            Chart.Listening)
                   else Chart.Disorder);
                Self.Place.In_Sensor := Infusion_States.Listening;
+         end case;
+      end Fire_From_Defer_New_Portion_In_Filling;
+      subtype From_Order_Portion is
+        Selection
+        range Order_Portion
+        .. Give_Up;
+      procedure Fire_From_Order_Portion (Chosen : From_Order_Portion)
+      with
+        Pre =>
+          Self.Started
+          and then In_Source (Chosen, Self.Place)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Guards_Hold (Chosen, Self.Data, Ins, Item)
+          and then Self.Past = Past
+          and then Self.Deferred = Kept
+          and then Is_Agreed,
+        Post =>
+          Is_Fired (Self'Old, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
+      is
+      begin
+         case Chosen is
             when Order_Portion =>
                Self.Data.Portion := Item.Value_Portion;
             when Order_Volume =>
@@ -1418,7 +1470,7 @@ is
                Exit_Alarm;
                Enter_Programming;
          end case;
-      end Fire_From_Turned;
+      end Fire_From_Order_Portion;
       subtype From_Defer_New_Portion_In_Self_Test is
         Selection
         range Defer_New_Portion_In_Self_Test
@@ -1476,8 +1528,12 @@ is
                         Chart.Listening)
                else Chart.Disorder);
             Self.Place.In_Sensor := Infusion_States.Listening;
-         when Turned .. Give_Up =>
+         when Turned .. Enough =>
             Fire_From_Turned (Chosen);
+         when Defer_New_Portion_In_Filling .. Again =>
+            Fire_From_Defer_New_Portion_In_Filling (Chosen);
+         when Order_Portion .. Give_Up =>
+            Fire_From_Order_Portion (Chosen);
          when Defer_New_Portion_In_Self_Test .. Not_Yet =>
             Fire_From_Defer_New_Portion_In_Self_Test (Chosen);
       end case;

@@ -53,8 +53,9 @@ from .safety import Safety
 from .shape import START, RegionShape
 
 MANY = 24
-"""More transitions than so many are fired by procedures of so many each: what the prover
-must see at a time stays small."""
+"""More transitions than so many are fired by procedures of a few each (`BATCH`)."""
+BATCH = 8
+"""So many transitions each of them fires: what the prover must see at a time stays small."""
 
 _Row = tuple[str, tuple[Stmt, ...]]
 
@@ -143,7 +144,7 @@ class Moves:
                 Aspect("Post", both(*flat([known, *safe, agreeing]))),
             )
             procedures = (agrees, *self.lasting.timing(), *fired, *procedures)
-            batches = [rows[at : at + MANY] for at in range(0, len(rows), MANY)]
+            batches = [rows[at : at + BATCH] for at in range(0, len(rows), BATCH)]
             procedures += tuple(d for batch in batches for d in _procedure(batch, claims))
             rows = [_call(batch) for batch in batches]
         return Subprogram(
