@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.system.observed import Observation
-from ravenchart.building import checking, generation, programs
+from ravenchart.building import checking, generation, programs, stacks
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
 from ravenchart.running import runs as run
@@ -309,6 +309,7 @@ def test_the_command_fails_and_its_last_lines_have_the_reason(
     model = built("checks", True)[0].path
     monkeypatch.setenv("RAVENCHART_TEST_FAULT", "assert")
     monkeypatch.setattr(programs.Program, "_examine", lambda *_: None)  # one fault is recursion
+    monkeypatch.setattr(stacks, "kept", lambda _: None)
     assert main(["run", str(model), "--seconds", "2", "--report", str(tmp_path / "report")]) == 1
     last = capsys.readouterr().out.rstrip().splitlines()[-2:]
     assert any("verdict: FAIL" in line and "ASSERTION_ERROR" in line for line in last)
