@@ -34,9 +34,8 @@ class Bound:
 def read_bounds(text: str, file: str, system: System) -> dict[str, Bound] | tuple[Problem, ...]:
     """The bound of each row of a table that the file lists, or what is wrong with it."""
     reading = read(text, file)
-    slots = [slot for processor in system.processors for slot in processor.slots]
     known: dict[tuple[str, str], list[Slot]] = {}
-    for slot in slots:
+    for slot in system.slots:
         known.setdefault(("row", slot.element.lower()), []).append(slot)
         known.setdefault(("function", function_of(slot, system)), []).append(slot)
     found: dict[str, Bound] = {}

@@ -134,10 +134,9 @@ class Execution:
 
 def executions(analysis: Analysis, seen: Observation) -> tuple[Execution, ...]:
     """The rows that ran, closest to their claim first."""
-    slots = [slot for processor in analysis.system.processors for slot in processor.slots]
     rows = [
         Execution(slot.element, seen.executions[slot.element], slot.timing.wcet)
-        for slot in slots
+        for slot in analysis.system.slots
         if slot.element in seen.executions
     ]
     return tuple(sorted(rows, key=lambda row: -Fraction(row.observed, max(1, row.claimed))))

@@ -86,7 +86,7 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Sequenc
     """When something happened at each place of a chain's way that the trace tells of."""
     sources = {message.name: message.source for message in system.messages}
     inputs = {f"{i.name}.{port.name}" for i in system.instances for port in i.component.inputs()}
-    rows = {slot.element for processor in system.processors for slot in processor.slots}
+    rows = {slot.element for slot in system.slots}
     for place in chain.way:
         if place.startswith("message "):
             name = place.removeprefix("message ")

@@ -17,6 +17,9 @@ from .schema_base import (
     optional,
 )
 
+PRIORITIES = range(1, 31)
+"""Those that a model may give."""
+
 
 class ProbeForm(Element):
     """The host probe of a node: it wakes once per period and notes how late it is."""
@@ -114,7 +117,9 @@ class ProcessorForm(Element):
     offset: Span = PydanticField(default=0, description="Time of the first release after start.")
     deadline: PositiveSpan | None = optional("Relative deadline; the shortest of its table if none")
     priority: int | None = optional(
-        "1 to 30, larger is more urgent; deadline-monotonic unless given.", ge=1, le=30
+        "1 to 30, larger is more urgent; deadline-monotonic unless given.",
+        ge=PRIORITIES[0],
+        le=PRIORITIES[-1],
     )
     stack: StackSize = key("Stack of the task, 1 KiB to 64 MiB.")
     activities: list[OwnedReference] = key(

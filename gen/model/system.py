@@ -336,14 +336,18 @@ class System:
     def _objects(self) -> dict[str, SharedObject]:
         return {item.element: item for item in self.objects}
 
+    @cached_property
+    def slots(self) -> tuple[Slot, ...]:
+        """The rows of all tables, in order of processor and table."""
+        return tuple(slot for processor in self.processors for slot in processor.slots)
+
     def slots_of(self, owner: str) -> tuple[Slot, ...]:
         """The rows of an instance or bus, in order of processor and table."""
-        return self._slots.get(owner, ())
+        return self._owned.get(owner, ())
 
     @cached_property
-    def _slots(self) -> dict[str, tuple[Slot, ...]]:
+    def _owned(self) -> dict[str, tuple[Slot, ...]]:
         found: defaultdict[str, list[Slot]] = defaultdict(list)
-        for processor in self.processors:
-            for slot in processor.slots:
-                found[slot.owner].append(slot)
+        for slot in self.slots:
+            found[slot.owner].append(slot)
         return {owner: tuple(slots) for owner, slots in found.items()}

@@ -10,8 +10,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.stacks.report import Memory
 from ravenchart.tools import toolchain
 
+from . import stacks
 from .programs import Program
 from .targets import Board, Gateway, file_of
 
@@ -46,9 +48,13 @@ end Gateway;
 """
 
 
-def build(program: Program, board: Board, gateway: Gateway, warn: Callable[[str], None]) -> Path:
-    """Compile the program and the gateway; the path of the image. Raises as `Program.build`."""
-    program.build(MODE, gateway.driver, warn=warn, board=board)
+def build(
+    program: Program, board: Board, gateway: Gateway, warn: Callable[[str], None]
+) -> tuple[Path, Memory]:
+    """Compile the program and the gateway; the path of the image, and the stacks and the memory of
+    the program without the gateway. Raises as `Program.build`.
+    """
+    memory = stacks.kept(program.build(MODE, gateway.driver, warn=warn, board=board))
     home = program.home(gateway.driver, board.target.name) / "gateway"
     home.mkdir(parents=True, exist_ok=True)
     main = f"{ada_case(program.checked.system.name)}_Main"
@@ -69,4 +75,4 @@ def build(program: Program, board: Board, gateway: Gateway, warn: Callable[[str]
     said = toolchain.run("gprbuild", options, home, variables)
     if said.strip():
         warn(said.rstrip())
-    return home / "gateway_main"
+    return home / "gateway_main", memory

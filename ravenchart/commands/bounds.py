@@ -37,9 +37,11 @@ def of_model(options: argparse.Namespace, checked: Checked) -> Mapping[str, Boun
 
 def rows(checked: Checked, given: Mapping[str, Bound]) -> list[MeasuredRow]:
     """Every row with its budget and its bound; nothing is measured."""
-    slots = [slot for processor in checked.system.processors for slot in processor.slots]
     found = {name: one.wcet for name, one in given.items()}
-    return [MeasuredRow(s.element, s.timing.wcet, None, None, found.get(s.element)) for s in slots]
+    return [
+        MeasuredRow(slot.element, slot.timing.wcet, None, None, found.get(slot.element))
+        for slot in checked.system.slots
+    ]
 
 
 def findings(

@@ -64,9 +64,8 @@ def request(
             if board is None or gateway is None:
                 controllers.append(controller(made, warn, board, mode))
             else:
-                image = gateways.build(made, board, gateway, warn)
+                image, memory = gateways.build(made, board, gateway, warn)
                 trace_map = made.generated / TRACE_MAP
-                memory = made.last_build()  # without the gateway
                 controllers.append(Controller(made.node, image, trace_map, memory))
         print(f"built {controllers[-1].executable}")
     target = board.target if board else None

@@ -93,7 +93,7 @@ def measured(
 ) -> Measurement:
     """What a run showed, with a margin in percent."""
     rows = []
-    for slot in (slot for processor in system.processors for slot in processor.slots):
+    for slot in system.slots:
         longest = seen.executions.get(slot.element) or None  # 0: it was not executed
         with_margin = None if longest is None else -(-longest * (100 + margin) // 100)
         bound = bounds.get(slot.element)
@@ -118,7 +118,7 @@ def _left(system: System) -> Iterator[str]:
 
 
 def _slot(system: System, row: str) -> Slot:
-    return next(s for p in system.processors for s in p.slots if s.element == row)
+    return next(slot for slot in system.slots if slot.element == row)
 
 
 def origin_of(system: System, row: str) -> Origin:

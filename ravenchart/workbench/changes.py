@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ravenchart.gen.files.schema_deployment import PRIORITIES
 from ravenchart.gen.language.quantities import LONGEST, duration
 
 from . import edits
@@ -11,9 +12,6 @@ from .edits import Document, LayoutError
 from .evaluation import Evaluation, Texts, content
 from .places import Entry, Places
 from .requests import Move, SetProcessor, SetTime
-
-FIRST, LAST = 1, 30
-"""The priorities that a model may give."""
 
 
 class RefusedError(Exception):
@@ -90,8 +88,9 @@ def _set_up(state: Evaluation, wish: SetProcessor) -> Changed:
     processor = _processor(state.places, wish.processor)
     value = wish.value
     if wish.key == "priority":
-        if value is not None and not (isinstance(value, int) and FIRST <= value <= LAST):
-            raise RefusedError(f"a priority is a whole number from {FIRST} to {LAST}")
+        if value is not None and not (isinstance(value, int) and value in PRIORITIES):
+            first, last = PRIORITIES[0], PRIORITIES[-1]
+            raise RefusedError(f"a priority is a whole number from {first} to {last}")
         text = None if value is None else str(value)
     else:
         text = None if value is None else _duration(str(value))

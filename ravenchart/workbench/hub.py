@@ -212,6 +212,6 @@ def _alike(now: Evaluation, row: str) -> list[str]:
     declared = now.places.row(row)
     if declared is None or now.analysis is None:
         return []
-    elements = [slot.element for p in now.analysis.system.processors for slot in p.slots]
+    elements = [slot.element for slot in now.analysis.system.slots]
     mine = declared.entry.key
     return [e for e in elements if (one := now.places.row(e)) and one.entry.key is mine]

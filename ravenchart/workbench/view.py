@@ -144,7 +144,7 @@ def _processors(where: _Where, good: Analysis, saved: Analysis) -> Iterator[Json
     """The processors in the order of the model, each with its table."""
     by_name = {one.name.lower(): one for one in good.system.processors}
     responses = {row.row.name.lower(): row.bound for _, row in good.rows()}
-    slots = {s.element.lower(): s.timing for p in good.system.processors for s in p.slots}
+    slots = {slot.element.lower(): slot.timing for slot in good.system.slots}
     for entry in where.places.processors.values():
         processor = by_name.get(entry.name.lower())
         written = {key: _written(entry, key) for key in ("period", "deadline", "priority")}

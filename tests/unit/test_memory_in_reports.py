@@ -18,13 +18,6 @@ from tests.support import evidence
 HEADING = ">Stacks and memory</h2>"
 
 
-@pytest.fixture(scope="module")
-def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    home = tmp_path_factory.mktemp("memory") / "base"
-    evidence.write(home)
-    return home
-
-
 @pytest.fixture
 def home(base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of the model; what is built of it would be below the folder of the test."""

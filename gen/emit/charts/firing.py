@@ -134,9 +134,10 @@ class Moves:
             facts = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen", at_once=True))
             fired: list[Decl] = []
             known = facts
-            if of_before(facts) != facts:
+            named = of_before(facts)
+            if named != facts:
                 params = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
-                fired = in_one_word("Is_Fired", params, of_before(facts))
+                fired = in_one_word("Is_Fired", params, named)
                 known = call("Is_Fired", Ref("Self'Old"), Ref("Chosen"))
             agreeing = Ref(agrees.name)
             claims = (

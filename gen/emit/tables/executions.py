@@ -31,8 +31,7 @@ EXECUTED = Param("Executed", "in out", ELEMENT_ID)
 
 def bus_row(system: System, bus: Bus, work: Work) -> Slot:
     """The row that does a bus's own work."""
-    slots = (slot for processor in system.processors for slot in processor.slots)
-    return next(s for s in slots if s.work is work and s.owner == bus.name)
+    return next(s for s in system.slots if s.work is work and s.owner == bus.name)
 
 
 def row_of(slot: Slot) -> Expr:
