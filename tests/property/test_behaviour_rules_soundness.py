@@ -42,6 +42,7 @@ def _lanes(thread: Thread, active: Collection[str]) -> Iterator[tuple[str, ...]]
         yield tree.ordered(chain)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limits", LIMITS.values(), ids=LIMITS)
 @pytest.mark.parametrize("seed", CHARTS)
 def test_every_configuration_and_transition_of_a_run_is_found(

@@ -81,6 +81,7 @@ def _frame(identifier: int, data: bytes) -> can.Message:
     )
 
 
+@pytest.mark.slow
 def test_attacks_on_the_bus_are_noticed_and_nothing_wrong_is_used(
     gate: Callable[[Play], Observation],
 ) -> None:

@@ -168,6 +168,7 @@ def test_a_server_that_is_killed_and_one_that_comes_in_its_place(echo: Path) -> 
         assert a.said.count(JOINED + port) == 1
 
 
+@pytest.mark.slow
 def test_a_node_that_is_cut_off_becomes_passive_and_active_again(echo: Path) -> None:
     with (
         started("bitrate=10000", "event=3000000000:cut:2", "event=4000000000:mend") as channel,
@@ -183,6 +184,7 @@ def test_a_node_that_is_cut_off_becomes_passive_and_active_again(echo: Path) -> 
         assert (now.state, now.lost_out, now.rejected) == ("ERROR_ACTIVE", 0, 0)
 
 
+@pytest.mark.slow
 def test_a_node_that_is_bus_off_recovers(echo: Path) -> None:
     with (
         started(
@@ -206,6 +208,7 @@ def test_a_node_that_is_bus_off_recovers(echo: Path) -> None:
 HELD = ("bitrate=10000", "event=3000000000:hold_recessive", "event=4000000000:let_go")
 
 
+@pytest.mark.slow
 def test_a_node_that_recovers_on_request_is_bus_off_until_then(echo: Path) -> None:
     with (
         started(*HELD) as channel,
@@ -223,6 +226,7 @@ def test_a_node_that_recovers_on_request_is_bus_off_until_then(echo: Path) -> No
         assert now.state == "ERROR_ACTIVE" and now.off <= now.back <= now.passive
 
 
+@pytest.mark.slow
 @shows(
     "bus-off, with recovery on request only",
     found_by="the driver",
@@ -282,6 +286,7 @@ def test_a_server_that_says_garbage_is_left_and_tried_again(echo: Path, first: b
     server.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", [b"", encode(Record(Kind.STATE))[:44]], ids=["no", "half"])
 def test_a_server_that_says_no_record_is_left_and_tried_again(echo: Path, first: bytes) -> None:
     server = BusServer(first=first)

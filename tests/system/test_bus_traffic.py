@@ -130,6 +130,7 @@ class Node(threading.Thread):
         return some
 
 
+@pytest.mark.slow
 def test_eight_nodes_at_full_load_lose_nothing(start: Start) -> None:
     """All frames arrive everywhere in order, on a bus that is never idle.
 

@@ -28,6 +28,8 @@ from tests.hardware.machines import HERE, OTHERS, Machine
 from tests.support.codec_runner import Runner, Values, boundaries, literal, runners_of
 from tests.support.elsewhere import needed
 
+pytestmark = pytest.mark.slow
+
 FEATURES = ROOT / "tests" / "feature"
 CASES = sorted(
     (

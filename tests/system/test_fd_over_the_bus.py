@@ -40,6 +40,7 @@ def folder(tmp_path: Path) -> Path:
     return copy
 
 
+@pytest.mark.slow
 def test_frames_of_both_formats_go_between_nodes_and_from_the_bench(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

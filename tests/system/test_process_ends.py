@@ -150,6 +150,7 @@ def test_an_interrupt_that_a_callback_swallows_is_not_lost() -> None:
     assert time.monotonic() - begun < 5
 
 
+@pytest.mark.slow
 def test_an_interrupt_at_any_time_of_the_start_prints_no_traceback() -> None:
     for step in range(24):
         process = subprocess.Popen(

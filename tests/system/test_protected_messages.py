@@ -83,6 +83,7 @@ def _first(level: int, counter: int, data_id: int = 0x123) -> bytes:
     return bytes(data)
 
 
+@pytest.mark.slow
 def test_faults_on_the_bus_are_noticed_and_nothing_wrong_is_used(
     gate: Callable[[Callable[[RavenchartBus], None]], Observation],
 ) -> None:
@@ -238,6 +239,7 @@ def test_a_scenario_exchanges_protected_messages(playing: Playing) -> None:
     assert outcome.observation.faults["Protection_Error"] == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wrong", get_args(Wrong))
 def test_what_the_bench_sends_with_a_fault_is_never_used(
     wrong: Wrong, gate: Callable[[Callable[[RavenchartBus], None]], Observation], tmp_path: Path

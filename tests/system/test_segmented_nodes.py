@@ -22,7 +22,7 @@ from ravenchart.running import server as bus
 from ravenchart.running.process import ControllerProcess
 from ravenchart.running.runs import Controller, controller, run_nodes
 
-pytestmark = pytest.mark.alone
+pytestmark = [pytest.mark.alone, pytest.mark.slow]
 
 STALE_INPUT, PROTECTION_ERROR = "3", "7"
 """Their numbers among the kinds of faults."""

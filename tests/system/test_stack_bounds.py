@@ -91,6 +91,7 @@ def _compared(found: Memory, observed: dict[str, int], known: dict[str, str]) ->
     return {known[body]: used for body, used in observed.items()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", ["checks", "release"])
 def test_no_task_of_the_robot_uses_more_than_its_bound(mode: str, tmp_path: Path) -> None:
     program = _program(ROOT / "examples" / "cartesian_robot")

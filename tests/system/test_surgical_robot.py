@@ -64,6 +64,7 @@ def _bodies(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in found}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sensed", SENSED)
 def test_every_way_to_sense_is_built_with_its_stand_ins_only(sensed: str, variant: Variant) -> None:
     members, needed = SENSED[sensed]

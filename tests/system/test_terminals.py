@@ -66,6 +66,7 @@ def test_colour_for_a_pipe_is_for_those_who_ask_and_do_not_ask_for_none() -> Non
     assert ESCAPE not in called("analyse", PUMP, FORCE_COLOR="1", NO_COLOR="1")[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("more", [{"NO_COLOR": "1"}, {"TERM": "dumb"}], ids=str)
 @pytest.mark.parametrize(
     "words",

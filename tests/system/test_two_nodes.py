@@ -73,6 +73,7 @@ def played(checked: checking.Checked, scenario: str, to: Path) -> str:
     return shown.getvalue()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("scenario", "chains"), [("scenario", True), ("cut_bus", False)])
 def test_both_nodes_do_what_the_scenario_expects(
     checked: checking.Checked, tmp_path: Path, scenario: str, *, chains: bool
@@ -81,6 +82,7 @@ def test_both_nodes_do_what_the_scenario_expects(
     assert ("longest reactions of chains" in shown) == chains
 
 
+@pytest.mark.slow
 def test_a_run_of_several_nodes_writes_a_log_of_its_bus(
     checked: checking.Checked, tmp_path: Path
 ) -> None:

@@ -15,6 +15,7 @@ from tests.support.behaviour_models import model, region, said
 from tests.support.interpreted import system_of
 
 
+@pytest.mark.slow
 def test_120_leaves_in_four_regions_are_checked_to_the_end() -> None:
     assert [item.code for item in findings(system_of(orthogonal_chart(4, 120)))] == []
 
@@ -23,6 +24,7 @@ def _thread(system: System) -> Thread:
     return Reach(system.components[0], system, Clock(300.0)).threads[0]
 
 
+@pytest.mark.slow
 def test_each_further_leaf_is_a_node_more(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(thread_rules, "MOST_CONFIGURATIONS", 10)
     threads = [_thread(system_of(orthogonal_chart(4, n))) for n in (60, 120, 240)]

@@ -117,6 +117,7 @@ def test_each_refusal_is_counted_by_the_next_send(
     assert refused == before > 0
 
 
+@pytest.mark.slow
 def test_who_only_sends_need_not_receive(server: BusServer) -> None:
     with RavenchartBus(server.channel) as bus:
         for number in range(20_000):

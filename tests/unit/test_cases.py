@@ -212,6 +212,7 @@ def test_the_program_plays_the_cases_as_the_interpreter_does(
     assert "execute different behaviours" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_old_cases_are_replaced_and_other_files_stay(crossing: Path) -> None:
     folder = crossing.parent / "cases"
     folder.mkdir()

@@ -22,6 +22,8 @@ from ravenchart.analysis.core.fixed_priority import analyse
 from ravenchart.analysis.core.tasks import Row, Task
 from tests.support.exhaustive import Toy, longest_responses
 
+pytestmark = pytest.mark.slow
+
 LONG = "RAVENCHART_LONG_TESTS" in os.environ
 """`make test-long`: sets of four tasks, and longer periods."""
 

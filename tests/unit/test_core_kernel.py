@@ -144,6 +144,7 @@ def test_what_the_library_cannot_hold_is_left_to_integers() -> None:
     compare(near)
 
 
+@pytest.mark.slow
 def test_counts_are_exact_next_to_whole_numbers() -> None:
     """One tick to either side of a release."""
     for period in (3, 7, 10**6 + 3, (1 << 40) - 1):

@@ -292,6 +292,7 @@ def test_one_response_alone_is_the_same(
         assert (alone.bound, alone.window, alone.alignment) == (r.bound, r.window, r.alignment)
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(systems())
 def test_offsets_only_make_bounds_shorter(

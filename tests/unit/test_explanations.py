@@ -62,6 +62,7 @@ def said_of(folder: Path, model: str) -> str:
 CORRECTED = [code for code, one in explanations().items() if one.corrected is not None]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("code", CORRECTED)
 def test_the_correction_removes_the_error(code: str, tmp_path: Path) -> None:
     found = explanations()[code]

@@ -191,6 +191,7 @@ def test_all_invariants_of_the_crossing_are_contracts() -> None:
     assert safe.alone == ("walk",)
 
 
+@pytest.mark.slow
 def test_a_model_that_was_checked_before_has_the_same_contracts(tmp_path: Path) -> None:
     text = (ROOT / "examples" / "crossing" / "model.yaml").read_text()
     (tmp_path / "model.yaml").write_text(f"# {tmp_path}\n{text}")

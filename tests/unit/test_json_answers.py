@@ -84,6 +84,7 @@ def test_an_unknown_command_is_an_answer_without_command(capsys: PRINTED) -> Non
     assert "invalid choice" in answer["diagnostics"][0]["message"]
 
 
+@pytest.mark.slow
 def test_a_missing_tool_is_an_answer(
     model: Path, monkeypatch: pytest.MonkeyPatch, capsys: PRINTED
 ) -> None:
@@ -129,6 +130,7 @@ def test_an_internal_error_is_an_answer() -> None:
     assert "IndexError: no such thing" in done.stderr
 
 
+@pytest.mark.slow
 def test_generate_tells_what_it_wrote(model: Path, capsys: PRINTED) -> None:
     first = answered(capsys, "generate", model)["result"]
     assert first["files"] == first["changed"] > 10 and first["edited"] == []

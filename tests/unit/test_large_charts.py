@@ -18,6 +18,8 @@ from tests.bench.large_charts import large_chart
 from tests.bench.random_models import random_model
 from tests.support.interpreted import system_of
 
+pytestmark = pytest.mark.slow
+
 BUSY = 3 * SECONDS
 """What `SECONDS` are on a host whose other work slows this down; alone it takes 2 to 3 s."""
 

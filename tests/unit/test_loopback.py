@@ -66,6 +66,7 @@ def relay() -> Iterator[SlcanRelay]:
     one.close()
 
 
+@pytest.mark.slow
 def test_slcan_passes_and_says_what_it_cannot(relay: SlcanRelay) -> None:
     ends = open_ends(Setup("slcan", relay.channel, "slcan", relay.channel, fd=True))
     try:
@@ -78,6 +79,7 @@ def test_slcan_passes_and_says_what_it_cannot(relay: SlcanRelay) -> None:
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_slcan_that_is_cut_fails_in_words(relay: SlcanRelay) -> None:
     ends = open_ends(Setup("slcan", relay.channel, "slcan", relay.channel), patience=0.3)
     try:

@@ -84,6 +84,7 @@ def test_a_build_of_other_sources_does_not_count(home: Path) -> None:
     assert "Valve_House.Work.Execute" not in text
 
 
+@pytest.mark.slow
 def test_a_build_of_another_model_does_not_count(home: Path) -> None:
     keep(home, memory(the_program(home)))
     assert "is not built from" not in analysed(home)

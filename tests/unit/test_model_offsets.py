@@ -213,6 +213,7 @@ def shorter(whole: System, names: list[str]) -> System:
     return replace(whole, tasks=tuple(tasks))
 
 
+@pytest.mark.slow
 def test_certificates_of_random_systems_hold_by_their_offsets(tmp_path: Path) -> None:
     """What they claim is exact: a nanosecond less of a window, or to the deadline, is refused."""
     shown = fewer = 0

@@ -156,6 +156,7 @@ def test_an_explanation_counts_only_while_the_text_is_the_same(rich: Files, tmp_
     assert reason_of(known, "robot", mutant, diff) == ""
 
 
+@pytest.mark.slow
 def test_each_explanation_is_of_a_mutant_of_today(tmp_path: Path) -> None:
     known = explanations(EXPLAINED)
     for subject in SUBJECTS:

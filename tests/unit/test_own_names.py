@@ -187,6 +187,7 @@ def test_no_name_is_reserved(written: Written, tmp_path: Path) -> None:
     assert [d.message for d in result.diagnostics if d.severity is Severity.ERROR] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("written", WRITTEN)
 @pytest.mark.parametrize("mode", MODES)
 def test_code_with_own_names_compiles(written: Written, mode: str, tmp_path: Path) -> None:

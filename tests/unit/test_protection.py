@@ -71,6 +71,7 @@ def test_rates_and_times_of_a_message(system: System) -> None:
     assert fourth.silences[0].found is None
 
 
+@pytest.mark.slow
 def test_the_report_has_them(system: System) -> None:
     analysis = analyse(system)
     found = json.loads(json.dumps(figures(analysis)))["protected"]

@@ -246,6 +246,7 @@ def test_where_other_nodes_call_a_full_queue_is_an_error_whatever_a_near_caller_
     assert [text for text in told if "up to 11 requests may wait in mover_1.Motion," in text]
 
 
+@pytest.mark.slow
 def test_the_report_says_of_each_command_how_it_is_provided_and_when_it_is_done() -> None:
     found = analyse(_system(*OTHERS))
     told = {(one.caller, one.command): one for one in costs(found)}

@@ -134,6 +134,7 @@ def test_every_key_of_scenarios_and_events_is_on_the_page() -> None:
     assert missing == set()
 
 
+@pytest.mark.slow
 def test_the_examples_of_the_page_are_valid(tmp_path: Path) -> None:
     plans = re.findall(r"```yaml\n(scenario:.*?)```", PAGE, re.S)
     events = re.findall(r"```yaml\n(- \{at.*?)```", PAGE, re.S)

@@ -161,6 +161,7 @@ def test_no_random_system_with_offsets_is_observed_above_its_bounds() -> None:
     assert shorter > SYSTEMS // 10
 
 
+@pytest.mark.slow
 def test_every_task_attains_a_bound_that_comes_of_offsets() -> None:
     """No sections; priorities that differ; tables among them."""
     attained = 0

@@ -125,6 +125,7 @@ def test_a_driver_must_be_one_of_the_target(tmp_path: Path) -> None:
         programs.check_driver(checked, "bus", chosen)
 
 
+@pytest.mark.slow
 def test_a_driver_without_can_fd_takes_none(tmp_path: Path) -> None:
     path = tmp_path / "model.yaml"
     pump = ROOT / "examples" / "pump" / "model.yaml"

@@ -157,6 +157,7 @@ def test_longer_blocks_take_less_time(tmp_path: Path) -> None:
     assert bounds[-1] == bounds[-2]
 
 
+@pytest.mark.slow
 def test_report_and_figures_have_the_transfers(tmp_path: Path) -> None:
     analysis = _analysed(tmp_path)
     found = json.loads(json.dumps(figures(analysis)))["transfers"]

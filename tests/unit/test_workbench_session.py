@@ -85,6 +85,7 @@ def test_a_time_is_changed_in_the_file_in_which_it_stands(session: Session, fold
     assert differing == [(b"wcet: 300 us", b"wcet: 400 us")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", ["move", "wcet", "priority"])
 def test_the_analysis_is_that_of_the_saved_files(session: Session, change: str) -> None:
     if change == "move":
