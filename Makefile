@@ -83,6 +83,7 @@ docs: setup
 site: setup
 	@for e in pump cartesian_robot two_nodes; do \
 	   $(RAVENCHART) evidence examples/$$e/model.yaml --out build/site_extra/evidence/$$e \
+	      $$(find examples/$$e -name requirements.csv -printf '--requirements %p') \
 	      $(if $(wildcard $(RESULTS)),--tests $(RESULTS)) || test $$? -eq 1 || exit 1; done
 	@.venv/bin/sphinx-build -q -W --keep-going -b html -c docs/site . build/site
 	@echo build/site/docs/index.html
