@@ -2,6 +2,7 @@ with Ada.Streams.Stream_IO;
 with Ada.Text_IO;
 with Bus_Options;
 with Ravenchart.Can.Bus_Clients;
+with Ravenchart.Can.Bus_Names;
 with Ravenchart.Can.Bus_Queues;
 with Ravenchart.Can.Bus_Records;
 
@@ -43,7 +44,7 @@ package body Bus_Logs is
            (File, Ada.Streams.Stream_IO.Out_File, Name);
          Put
            (Bus_Records.Welcome
-              (Profile.Name (1 .. Profile.Length), Profile.Data > 0,
+              (Bus_Names.Text (Profile.Name), Profile.Data > 0,
                Profile.Nominal, Profile.Data, Profile.Began, 0, 255));
       end if;
    exception

@@ -4,6 +4,7 @@ with Ada.Text_IO;
 with Interfaces;
 with Ravenchart.Can.Bus_Faults;
 with Ravenchart.Can.Bus_Frames;
+with Ravenchart.Can.Bus_Names;
 with Ravenchart.Can.Bus_Nodes;
 with Ravenchart.Can.Bus_Records;
 with Ravenchart.Can.Line_Events;
@@ -163,8 +164,7 @@ package body Bus_Options is
             raise Constraint_Error;
          end if;
       elsif Name = "name" and then Bus_Records.Is_Name (Value) then
-         Bus.Profile.Length := Value'Length;
-         Bus.Profile.Name (1 .. Value'Length) := Value;
+         Bus.Profile.Name := Bus_Names.Named (Value);
       elsif Name = "bitrate" then
          Bus.Profile.Nominal := Rate (Value);
       elsif Name = "data_bitrate" then
@@ -179,10 +179,11 @@ package body Bus_Options is
          Paced := Value = "paced";
       elsif Name = "buffer" and then Value in "fifo" | "priority" then
          for B of Bus.Net.Buffers loop
-            B.Order :=
-              (if Value = "fifo"
-               then Transmit_Buffers.First_In_First_Out
-               else Transmit_Buffers.By_Priority);
+            Transmit_Buffers.Reset
+              (B,
+               (if Value = "fifo"
+                then Transmit_Buffers.First_In_First_Out
+                else Transmit_Buffers.By_Priority));
          end loop;
       elsif Name = "seed" then
          Bus.Plan.Seed :=
@@ -208,8 +209,7 @@ package body Bus_Options is
       use type Bus_Records.Bit_Rate;
    begin
       Port := 29_536;
-      Bus.Profile.Length := 4;
-      Bus.Profile.Name (1 .. 4) := "can0";
+      Bus.Profile.Name := Bus_Names.Named ("can0");
       for I in 1 .. Ada.Command_Line.Argument_Count loop
          declare
             Word  : constant String := Ada.Command_Line.Argument (I);

@@ -6,6 +6,7 @@ with Ada.Text_IO;
 with Bus_Logs;
 with Bus_Options;
 with Ravenchart.Can.Bus_Clients;
+with Ravenchart.Can.Bus_Names;
 with Ravenchart.Can.Bus_Nodes;
 with Ravenchart.Can.Bus_Records;
 with Ravenchart.Can.Bus_Servers;
@@ -131,7 +132,7 @@ begin
    end if;
    Bus_Logs.Open;
    Ada.Text_IO.Put_Line
-     ("bus " & Bus.Profile.Name (1 .. Bus.Profile.Length) & " at 127.0.0.1:"
+     ("bus " & Bus_Names.Text (Bus.Profile.Name) & " at 127.0.0.1:"
       & Port'Image (2 .. Port'Image'Last));
    Ada.Text_IO.Flush;
 

@@ -108,7 +108,7 @@ is
                Say
                  (To,
                   Bus_Records.Welcome
-                    (P.Name (1 .. P.Length), P.Data > 0, P.Nominal, P.Data,
+                    (Bus_Names.Text (P.Name), P.Data > 0, P.Nominal, P.Data,
                      P.Began, Now, Positive (C)),
                   Now);
                Tell_State (To, Fresh);
@@ -139,9 +139,10 @@ is
    procedure Refuse_All
      (To : in out Client; B : Transmit_Buffers.Buffer) is
    begin
-      for I in 1 .. B.Count loop
+      for I in 1 .. Transmit_Buffers.Count (B) loop
          pragma Loop_Invariant (To.Last = To.Last'Loop_Entry);
-         Refuse (To, B.Slots (I).Tag, Bus_Records.Is_Bus_Off);
+         Refuse
+           (To, Transmit_Buffers.Item (B, I).Tag, Bus_Records.Is_Bus_Off);
       end loop;
    end Refuse_All;
 

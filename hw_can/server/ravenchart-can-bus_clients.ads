@@ -8,6 +8,7 @@
 with Interfaces;
 with Ravenchart.Can.Bus_Faults;
 with Ravenchart.Can.Bus_Frames;
+with Ravenchart.Can.Bus_Names;
 with Ravenchart.Can.Bus_Nodes;
 with Ravenchart.Can.Bus_Queues;
 with Ravenchart.Can.Bus_Records;
@@ -44,8 +45,7 @@ is
    --  Limit: by when it must have said hello, by the clock of the server.
 
    type Profile is record
-      Name    : String (1 .. 16) := (others => '-');
-      Length  : Bus_Records.Name_Length := 1;
+      Name    : Bus_Names.Bus_Name;
       Nominal : Bus_Records.Bit_Rate range 1 .. 1_000_000 := 500_000;
       Data    : Bus_Records.Bit_Rate range 0 .. 20_000_000 := 2_000_000;
       Began   : Nanoseconds := 0;
@@ -54,11 +54,6 @@ is
    --  What a bus says of itself. Rates in bit/s; without a data rate it
    --  carries no FD frames. Began: when bus time 0 was, in ns since 1970; 0
    --  in virtual time. Restart: of the nodes that want none of their own.
-
-   function Is_Sound (P : Profile) return Boolean
-   is (Bus_Records.Is_Name (P.Name (1 .. P.Length)))
-   with Global => null;
-   --  Has the bus a name?
 
    function Suits (R : Bus_Records.Request; P : Profile) return Boolean
    is ((R.Nominal = 0 or else R.Nominal = P.Nominal)
@@ -119,7 +114,6 @@ is
       Joins : out Boolean)
    with
      Global => null,
-     Pre    => Is_Sound (P),
      Post   =>
        Joins
        = (C <= Most_Nodes

@@ -25,14 +25,14 @@ is
    procedure Apply_Next (N : in out Networks.Network; A : in out Agenda)
    with
      Global => null,
-     Pre    => Networks.Is_Sound (N) and then A.Next <= A.Count,
-     Post   => Networks.Is_Sound (N);
+     Pre    => A.Next <= A.Count;
    --  The next event happens to the line.
 
    function Holds
      (B : Transmit_Buffers.Buffer; Tag : Interfaces.Unsigned_32)
       return Boolean
-   is (for some I in 1 .. B.Count => B.Slots (I).Tag = Tag)
+   is (for some I in 1 .. Transmit_Buffers.Count (B) =>
+         Transmit_Buffers.Item (B, I).Tag = Tag)
    with Global => null;
    --  Is a request of this number still to be sent?
 
@@ -50,10 +50,7 @@ is
       C   : Node_Index;
       R   : Bus_Records.Request;
       Now : Nanoseconds)
-   with
-     Global => null,
-     Pre    => Networks.Is_Sound (N),
-     Post   => Networks.Is_Sound (N);
+   with Global => null;
    --  Client C asks for a frame to be sent.
 
    procedure Publish
@@ -63,10 +60,7 @@ is
       Result  : Buses.Outcome;
       Receipt : Networks.Receipt;
       Fault   : Bus_Faults.Fault)
-   with
-     Global => null,
-     Pre    => Networks.Is_Sound (N),
-     Post   => Networks.Is_Sound (N);
+   with Global => null;
    --  What client C is told of what happened on the bus. When it is bus-off,
    --  what it had asked for is refused.
 
@@ -83,10 +77,7 @@ is
    with
      Global => null,
      Pre    =>
-       Networks.Is_Sound (N)
-       and then
-         M.Start in N.Bus.Free_At (M.Segment) .. Buses.Last_Start,
-     Post   => Networks.Is_Sound (N);
+       M.Start in N.Bus.Free_At (M.Segment) .. Buses.Last_Start;
    --  What begins on the bus at M, and who is told of it.
 
    ----------------
@@ -205,7 +196,6 @@ is
       end if;
       Write_Down (Log, Result);
       for C in Node_Index loop
-         pragma Loop_Invariant (Networks.Is_Sound (N));
          if Clients (C).State = Bus_Clients.Joined then
             Publish (Clients (C), N, C, Result, Receipts (C), Fault);
          end if;
@@ -306,7 +296,6 @@ is
    begin
       Busy := True;
       for Count in 1 .. Steps loop
-         pragma Loop_Invariant (Is_Sound (S));
          Moment := Networks.Next (S.Net);
          if Is_Due (S.Agenda, Horizon)
            and then

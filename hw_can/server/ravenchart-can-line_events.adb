@@ -8,12 +8,9 @@ is
    procedure Divide (N : in out Networks.Network)
    with
      Global => null,
-     Pre    => Networks.Is_Sound (N),
      Post   =>
-       Networks.Is_Sound (N)
-       and then
-         (for all S in Node_Index =>
-            N.Bus.Free_At (S) >= N.Bus.Free_At'Old (S));
+       (for all S in Node_Index =>
+          N.Bus.Free_At (S) >= N.Bus.Free_At'Old (S));
    --  Both segments go on from the later time of the two.
 
    ------------

@@ -31,21 +31,16 @@ is
    procedure Apply (N : in out Networks.Network; E : Event)
    with
      Global => null,
-     Pre    => Networks.Is_Sound (N),
      Post   =>
-       Networks.Is_Sound (N)
-       and then
-         (for all S in Node_Index =>
-            N.Bus.Free_At (S) >= N.Bus.Free_At'Old (S));
+       (for all S in Node_Index =>
+          N.Bus.Free_At (S) >= N.Bus.Free_At'Old (S));
    --  It happens now.
 
    procedure Join (N : in out Networks.Network; I : Node_Index)
    with
      Global => null,
-     Pre    => Networks.Is_Sound (N),
      Post   =>
-       Networks.Is_Sound (N)
-       and then Takes_Part (N.Bus.Nodes (I))
+       Takes_Part (N.Bus.Nodes (I))
        and then Networks.Waiting (N, I) = 0
        and then N.Bus.Free_At = N.Bus.Free_At'Old;
    --  A new controller, error-active, with nothing to send.
@@ -53,10 +48,8 @@ is
    procedure Leave (N : in out Networks.Network; I : Node_Index)
    with
      Global => null,
-     Pre    => Networks.Is_Sound (N),
      Post   =>
-       Networks.Is_Sound (N)
-       and then not Takes_Part (N.Bus.Nodes (I))
+       not Takes_Part (N.Bus.Nodes (I))
        and then Networks.Waiting (N, I) = 0
        and then N.Bus.Free_At = N.Bus.Free_At'Old;
    --  What it had still to send is gone with it.

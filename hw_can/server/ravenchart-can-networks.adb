@@ -33,7 +33,7 @@ is
       elsif Takes_Part (Node) and then Waiting (N, I) > 0 then
          return
            Later
-             (Later (Free, Node.Ready_At), N.Buffers (I).Slots (1).Since);
+             (Later (Free, Node.Ready_At), Head (N, I).Since);
       elsif Comes_Back (Node)
         and then Later (Free, Node.Ready_At) <= Buses.Last_Start
       then
@@ -55,9 +55,9 @@ is
       Result : Buses.Offer_List := N.Babble;
    begin
       for I in Node_Index loop
-         if not N.Babble (I).Present and then N.Buffers (I).Count > 0 then
+         if not N.Babble (I).Present and then Waiting (N, I) > 0 then
             Result (I) :=
-              (Frame => N.Buffers (I).Slots (1).Frame, Present => True);
+              (Frame => Head (N, I).Frame, Present => True);
          end if;
          pragma Loop_Invariant
            (for all J in Node_Index =>
@@ -67,9 +67,7 @@ is
                  Result (J).Present = (Waiting (N, J) > 0)
                  and then
                    (if Waiting (N, J) > 0
-                    then
-                      Result (J).Frame
-                      = N.Buffers (J).Slots (1).Frame)));
+                    then Result (J).Frame = Head (N, J).Frame)));
       end loop;
       return Result;
    end Offers;
@@ -148,20 +146,18 @@ is
       for I in Node_Index loop
          if Result.Sent (I) and then not N.Babble (I).Present then
             Receipts (I) :=
-              (Tag   => N.Buffers (I).Slots (1).Tag,
-               Since => N.Buffers (I).Slots (1).Since);
+              (Tag   => Head (N, I).Tag,
+               Since => Head (N, I).Since);
             Transmit_Buffers.Drop_Head (N.Buffers (I));
          end if;
-         pragma Loop_Invariant (Is_Sound (N));
          pragma Loop_Invariant
            (for all J in Node_Index =>
               (if J > I then N.Buffers (J) = N.Buffers'Loop_Entry (J)));
          pragma Loop_Invariant
            (for all J in 1 .. I =>
               (if Result.Sent (J) and then not N.Babble (J).Present
-               then Waiting (N, J) = N.Buffers'Loop_Entry (J).Count - 1
-                 and then
-                   Receipts (J).Tag = N.Buffers'Loop_Entry (J).Slots (1).Tag
+               then Waiting (N, J) = Waiting (N'Loop_Entry, J) - 1
+                 and then Receipts (J).Tag = Head (N'Loop_Entry, J).Tag
                else N.Buffers (J) = N.Buffers'Loop_Entry (J)));
       end loop;
    end Step;

@@ -45,17 +45,16 @@ is
    --  From Cut_At upwards, nodes are apart from those below. A node that
    --  babbles offers that frame in place of its own, for ever.
 
-   function Is_Sound (N : Network) return Boolean
-   is (for all I in Node_Index =>
-         Transmit_Buffers.Is_Ordered (N.Buffers (I)))
-   with Global => null;
-   --  Is every buffer in order?
-
    function Waiting
      (N : Network; I : Node_Index) return Transmit_Buffers.Slot_Count
-   is (N.Buffers (I).Count)
+   is (Transmit_Buffers.Count (N.Buffers (I)))
    with Global => null;
    --  How many frames node I has still to send.
+
+   function Head (N : Network; I : Node_Index) return Transmit_Buffers.Request
+   is (Transmit_Buffers.Item (N.Buffers (I), 1))
+   with Global => null, Pre => Waiting (N, I) > 0;
+   --  What node I offers next.
 
    function Offers (N : Network) return Buses.Offer_List
    with
@@ -69,8 +68,7 @@ is
              Offers'Result (I).Present = (Waiting (N, I) > 0)
              and then
                (if Waiting (N, I) > 0
-                then
-                  Offers'Result (I).Frame = N.Buffers (I).Slots (1).Frame)));
+                then Offers'Result (I).Frame = Head (N, I).Frame)));
    --  What each node would send.
 
    procedure Submit
@@ -80,15 +78,12 @@ is
       Status : out Send_Status)
    with
      Global => null,
-     Pre    => Is_Sound (N),
      Post   =>
-       Is_Sound (N)
-       and then
-         (Status = Queued)
-         = (N.Buffers'Old (I).Count < Transmit_Buffers.Room)
+       (Status = Queued)
+         = (Waiting (N'Old, I) < Transmit_Buffers.Room)
        and then
          (if Status = Queued
-          then Waiting (N, I) = N.Buffers'Old (I).Count + 1
+          then Waiting (N, I) = Waiting (N'Old, I) + 1
           else N.Buffers (I) = N.Buffers'Old (I))
        and then
          (for all J in Node_Index =>
@@ -98,10 +93,8 @@ is
    procedure Withdraw (N : in out Network; I : Node_Index)
    with
      Global => null,
-     Pre    => Is_Sound (N),
      Post   =>
-       Is_Sound (N)
-       and then Waiting (N, I) = 0
+       Waiting (N, I) = 0
        and then N.Bus = N.Bus'Old;
    --  Forget all that node I has still to send.
 
@@ -138,12 +131,9 @@ is
    with
      Global => null,
      Pre    =>
-       Is_Sound (N)
-       and then
-         M.Start in N.Bus.Free_At (M.Segment) .. Buses.Last_Start,
+       M.Start in N.Bus.Free_At (M.Segment) .. Buses.Last_Start,
      Post   =>
-       Is_Sound (N)
-       and then N.Babble = N.Babble'Old
+       N.Babble = N.Babble'Old
        and then Result.Start = M.Start
        and then
          (for all S in Buses.Segment =>
@@ -151,10 +141,9 @@ is
        and then
          (for all I in Node_Index =>
             (if Result.Sent (I) and then not N.Babble (I).Present
-             then Waiting (N, I) = N.Buffers'Old (I).Count - 1
-               and then Result.Frame = N.Buffers'Old (I).Slots (1).Frame
-               and then
-                 Receipts (I).Tag = N.Buffers'Old (I).Slots (1).Tag
+             then Waiting (N, I) = Waiting (N'Old, I) - 1
+               and then Result.Frame = Head (N'Old, I).Frame
+               and then Receipts (I).Tag = Head (N'Old, I).Tag
              else N.Buffers (I) = N.Buffers'Old (I)));
    --  What begins at M. A request leaves its buffer when it was sent, and
    --  nothing else does.

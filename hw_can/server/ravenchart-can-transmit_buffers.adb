@@ -19,10 +19,9 @@ is
    ---------------
 
    function Place_For
-     (B : Buffer; Frame : Bus_Frames.Bus_Frame) return Slot_Index
+     (B : Buffer; What : Request) return Slot_Index
    is
-      Rank   : constant Arbitration.Rank :=
-        Arbitration.Rank_Of (Bus_Frames.Contender_Of (Frame));
+      Rank   : constant Arbitration.Rank := Rank_Of (What);
       Result : Slot_Index := B.Count + 1;
    begin
       if B.Order = By_Priority then
@@ -41,19 +40,39 @@ is
    -- Put --
    ---------
 
-   procedure Put (B : in out Buffer; Item : Request) is
-      Place : constant Slot_Index := Place_For (B, Item.Frame);
+   procedure Put (B : in out Buffer; What : Request) is
+      Place : constant Slot_Index := Place_For (B, What);
       Start : constant Buffer := B
       with Ghost;
    begin
+      pragma Assert
+        (if B.Order = By_Priority and then Place <= B.Count
+         then Rank_Of (What) < Rank_At (B, Place));
       B.Slots (Place + 1 .. B.Count + 1) := B.Slots (Place .. B.Count);
-      B.Slots (Place) := Item;
+      B.Slots (Place) := What;
       B.Count := B.Count + 1;
       pragma Assert
-        (for all I in 1 .. Place - 1 => Rank_At (B, I) = Rank_At (Start, I));
+        (for all I in 1 .. Start.Count =>
+           B.Slots (if I < Place then I else I + 1) = Start.Slots (I));
+      pragma Assert (B.Slots (Place) = What);
+      pragma Assert
+        (for all I in 1 .. Place - 1 =>
+           Rank_Of (B.Slots (I)) = Rank_Of (Start.Slots (I)));
       pragma Assert
         (for all I in Place + 1 .. B.Count =>
-           Rank_At (B, I) = Rank_At (Start, I - 1));
+           Rank_Of (B.Slots (I)) = Rank_Of (Start.Slots (I - 1)));
+      if B.Order = By_Priority then
+         pragma Assert
+           (for all I in 2 .. Place =>
+              Rank_Of (B.Slots (I - 1)) <= Rank_Of (B.Slots (I)));
+         pragma Assert
+           (if Place < B.Count
+            then Rank_Of (What) <= Rank_Of (B.Slots (Place + 1)));
+         pragma Assert (Is_Ordered (Start.Slots, Start.Count));
+         pragma Assert
+           (for all I in Place + 2 .. B.Count =>
+              Rank_Of (B.Slots (I - 1)) <= Rank_Of (B.Slots (I)));
+      end if;
    end Put;
 
    ---------------
@@ -67,8 +86,7 @@ is
       B.Slots (1 .. B.Count - 1) := B.Slots (2 .. B.Count);
       B.Count := B.Count - 1;
       pragma Assert
-        (for all I in 1 .. B.Count =>
-           Rank_At (B, I) = Rank_At (Start, I + 1));
+        (for all I in 1 .. B.Count => B.Slots (I) = Start.Slots (I + 1));
    end Drop_Head;
 
    -----------
@@ -79,5 +97,15 @@ is
    begin
       B.Count := 0;
    end Clear;
+
+   -----------
+   -- Reset --
+   -----------
+
+   procedure Reset (B : in out Buffer; Order : Discipline) is
+   begin
+      B.Count := 0;
+      B.Order := Order;
+   end Reset;
 
 end Ravenchart.Can.Transmit_Buffers;

@@ -33,92 +33,129 @@ is
    end record;
    --  A frame, a number by which its owner knows it, and when it was queued.
 
+   function Rank_Of (R : Request) return Arbitration.Rank
+   is (Arbitration.Rank_Of (Bus_Frames.Contender_Of (R.Frame)))
+   with Global => null;
+   --  Its place in arbitration.
+
+   type Buffer is private
+   with
+     Default_Initial_Condition =>
+       Order (Buffer) = First_In_First_Out and then Count (Buffer) = 0;
+   --  In a buffer by priority nothing stands behind something less urgent.
+
+   function Order (B : Buffer) return Discipline
+   with Global => null;
+   --  Which of its frames it offers.
+
+   function Count (B : Buffer) return Slot_Count
+   with Global => null;
+   --  How many frames it holds.
+
+   function Item (B : Buffer; Index : Slot_Index) return Request
+   with Global => null, Pre => Index <= Count (B);
+   --  What is there.
+
+   function Rank_At
+     (B : Buffer; Index : Slot_Index) return Arbitration.Rank
+   is (Rank_Of (Item (B, Index)))
+   with Global => null, Pre => Index <= Count (B);
+   --  The place in arbitration of what is there.
+
+   procedure Head_Is_First (B : Buffer)
+   with
+     Ghost,
+     Global => null,
+     Pre    => Order (B) = By_Priority,
+     Post   =>
+       (for all I in 1 .. Count (B) => Rank_At (B, 1) <= Rank_At (B, I));
+   --  What is offered is the most urgent of all.
+
+   function Place_For
+     (B : Buffer; What : Request) return Slot_Index
+   with
+     Global => null,
+     Pre    => Count (B) < Room,
+     Post   =>
+       Place_For'Result <= Count (B) + 1
+       and then
+         (if Order (B) = First_In_First_Out
+          then Place_For'Result = Count (B) + 1
+          else
+            (if Place_For'Result > 1
+             then Rank_At (B, Place_For'Result - 1) <= Rank_Of (What))
+            and then
+              (for all I in Place_For'Result .. Count (B) =>
+                 Rank_At (B, I) > Rank_Of (What)));
+   --  Where it goes: behind all that is as urgent.
+
+   procedure Put (B : in out Buffer; What : Request)
+   with
+     Global => null,
+     Pre    => Count (B) < Room,
+     Post   =>
+       Order (B) = Order (B'Old)
+       and then Count (B) = Count (B'Old) + 1
+       and then Item (B, Place_For (B'Old, What)) = What
+       and then
+         (for all I in 1 .. Count (B'Old) =>
+            Item
+              (B, (if I < Place_For (B'Old, What) then I else I + 1))
+            = Item (B'Old, I));
+   --  Queue it; what was there keeps its order.
+
+   procedure Drop_Head (B : in out Buffer)
+   with
+     Global => null,
+     Pre    => Count (B) > 0,
+     Post   =>
+       Order (B) = Order (B'Old)
+       and then Count (B) = Count (B'Old) - 1
+       and then
+         (for all I in 1 .. Count (B) => Item (B, I) = Item (B'Old, I + 1));
+   --  The head was sent, or is not to be sent.
+
+   procedure Clear (B : in out Buffer)
+   with
+     Global => null,
+     Post   => Count (B) = 0 and then Order (B) = Order (B'Old);
+   --  Nothing is to be sent any more.
+
+   procedure Reset (B : in out Buffer; Order : Discipline)
+   with
+     Global => null,
+     Post   =>
+       Count (B) = 0 and then Transmit_Buffers.Order (B) = Order;
+   --  Nothing is to be sent, and what comes is offered in this order.
+
+private
+
    type Request_List is array (Slot_Index) of Request;
 
    type Buffer is record
       Order : Discipline := First_In_First_Out;
       Count : Slot_Count := 0;
       Slots : Request_List;
-   end record;
+   end record
+   with
+     Type_Invariant =>
+       (if Order = By_Priority then Is_Ordered (Slots, Count));
    --  What stands beyond Count means nothing.
 
-   function Rank_At
-     (B : Buffer; Index : Slot_Index) return Arbitration.Rank
-   is (Arbitration.Rank_Of
-         (Bus_Frames.Contender_Of (B.Slots (Index).Frame)))
-   with Global => null;
-   --  The place in arbitration of what is there.
-
-   function Is_Ordered (B : Buffer) return Boolean
-   is (if B.Order = By_Priority
-       then
-         (for all I in 2 .. B.Count =>
-            Rank_At (B, I - 1) <= Rank_At (B, I)))
+   function Is_Ordered
+     (Slots : Request_List; Count : Slot_Count) return Boolean
+   is (for all I in 2 .. Count =>
+         Rank_Of (Slots (I - 1)) <= Rank_Of (Slots (I)))
    with Global => null;
    --  Does nothing urgent stand behind something less urgent?
 
-   procedure Head_Is_First (B : Buffer)
-   with
-     Ghost,
-     Global => null,
-     Pre    => B.Order = By_Priority and then Is_Ordered (B),
-     Post   =>
-       (for all I in 1 .. B.Count => Rank_At (B, 1) <= Rank_At (B, I));
-   --  What is offered is the most urgent of all.
+   function Order (B : Buffer) return Discipline
+   is (B.Order);
 
-   function Place_For
-     (B : Buffer; Frame : Bus_Frames.Bus_Frame) return Slot_Index
-   with
-     Global => null,
-     Pre    => B.Count < Room and then Is_Ordered (B),
-     Post   =>
-       Place_For'Result <= B.Count + 1
-       and then
-         (if B.Order = First_In_First_Out
-          then Place_For'Result = B.Count + 1
-          else
-            (if Place_For'Result > 1
-             then
-               Rank_At (B, Place_For'Result - 1)
-               <= Arbitration.Rank_Of (Bus_Frames.Contender_Of (Frame)))
-            and then
-              (for all I in Place_For'Result .. B.Count =>
-                 Rank_At (B, I)
-                 > Arbitration.Rank_Of (Bus_Frames.Contender_Of (Frame))));
-   --  Where Frame goes: behind all that is as urgent.
+   function Count (B : Buffer) return Slot_Count
+   is (B.Count);
 
-   procedure Put (B : in out Buffer; Item : Request)
-   with
-     Global => null,
-     Pre    => B.Count < Room and then Is_Ordered (B),
-     Post   =>
-       Is_Ordered (B)
-       and then B.Order = B.Order'Old
-       and then B.Count = B.Count'Old + 1
-       and then B.Slots (Place_For (B'Old, Item.Frame)) = Item
-       and then
-         (for all I in 1 .. B.Count'Old =>
-            B.Slots
-              (if I < Place_For (B'Old, Item.Frame) then I else I + 1)
-            = B.Slots'Old (I));
-   --  Queue Item; what was there keeps its order.
-
-   procedure Drop_Head (B : in out Buffer)
-   with
-     Global => null,
-     Pre    => B.Count > 0 and then Is_Ordered (B),
-     Post   =>
-       Is_Ordered (B)
-       and then B.Order = B.Order'Old
-       and then B.Count = B.Count'Old - 1
-       and then
-         (for all I in 1 .. B.Count => B.Slots (I) = B.Slots'Old (I + 1));
-   --  The head was sent, or is not to be sent.
-
-   procedure Clear (B : in out Buffer)
-   with
-     Global => null,
-     Post   => B.Count = 0 and then B.Order = B.Order'Old;
-   --  Nothing is to be sent any more.
+   function Item (B : Buffer; Index : Slot_Index) return Request
+   is (B.Slots (Index));
 
 end Ravenchart.Can.Transmit_Buffers;

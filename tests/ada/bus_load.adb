@@ -85,9 +85,10 @@ procedure Bus_Load is
    begin
       Start (8);
       for I in Bus_Nodes.Node_Index range 1 .. 8 loop
-         Net.Buffers (I).Order :=
-           (if By_Priority then Transmit_Buffers.By_Priority
-            else Transmit_Buffers.First_In_First_Out);
+         Transmit_Buffers.Reset
+           (Net.Buffers (I),
+            (if By_Priority then Transmit_Buffers.By_Priority
+             else Transmit_Buffers.First_In_First_Out));
       end loop;
       Net.Bus.Times.Nominal := Next_Number;
       Plan.Seed := Interfaces.Unsigned_32 (Next_Number);

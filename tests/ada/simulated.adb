@@ -1,3 +1,5 @@
+with Ravenchart.Can.Transmit_Buffers;
+
 package body Simulated is
 
    use type Bus_Nodes.Node_Index;
@@ -14,8 +16,8 @@ package body Simulated is
       Net.Babble  := Clean.Babble;
       Net.Cut_At  := Clean.Cut_At;
       for I in Bus_Nodes.Node_Index loop
-         Net.Buffers (I).Count := 0;
-         Net.Buffers (I).Order := Clean.Buffers (I).Order;
+         Transmit_Buffers.Reset
+           (Net.Buffers (I), Transmit_Buffers.Order (Clean.Buffers (I)));
          if I <= Nodes then
             Line_Events.Join (Net, I);
          end if;

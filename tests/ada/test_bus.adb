@@ -84,7 +84,7 @@ procedure Test_Bus is
       Facts.Check ("a FIFO buffer keeps the order", Sound);
 
       Start (2);
-      Net.Buffers (1).Order := Transmit_Buffers.By_Priority;
+      Transmit_Buffers.Reset (Net.Buffers (1), Transmit_Buffers.By_Priority);
       for Tag in Interfaces.Unsigned_32 range 1 .. 4 loop
          Send (1, Plain (Identifier (4 - Tag / 2)), Tag);
       end loop;
