@@ -8,7 +8,7 @@ export RAVENCHART_WARNINGS := errors
 RESULTS    := build/tests.xml
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
-.PHONY: help setup demo test test-all test-long hw-test board-test check prove generate bench bench-proof mutate docs site
+.PHONY: help setup demo test test-all test-long hw-test board-test check prove generate bench bench-proof mutate mutate-runtime docs site
 .PHONY: lock clean
 
 help:
@@ -24,6 +24,7 @@ help:
 	@echo 'make bench     figures: runtime, codecs (beside C), buses, charts, generator, analysis (beside a Rust crate)'
 	@echo 'make bench-proof  does the proof of a chart grow linearly?'
 	@echo 'make mutate    break generated code in small ways: who notices?'
+	@echo 'make mutate-runtime  the same of runtime and HAL; ARGS="--unit queues --all"'
 	@echo 'make docs      model reference, JSON Schemas, manual page and error list; pictures of the examples'
 	@echo 'make site      the documentation as a site, which needs no network: build/site/docs/index.html'
 
@@ -72,6 +73,9 @@ bench-proof: setup
 
 mutate: setup
 	@$(PYTHON) -P -m tests.mutation
+
+mutate-runtime: setup
+	@$(PYTHON) -P -m tests.mutation.hand_written $(ARGS)
 
 docs: setup
 	@$(PYTHON) -P -m ravenchart.gen.files.reference

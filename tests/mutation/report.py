@@ -65,11 +65,11 @@ def _trimmed(diff: str) -> str:
     return "\n".join(line.rstrip() for line in diff.splitlines()).strip("\n")
 
 
-def table(outcomes: Sequence[Outcome]) -> str:
+def table(outcomes: Sequence[Outcome], kinds: Sequence[str] = KINDS) -> str:
     """Rows of kinds, columns of catchers."""
     columns = ("made", *CATCHERS, "explained", "survived")
     rows = [f"{'kind':<26}" + "".join(f"{c:>13}" for c in columns)]
-    order = [row for k in KINDS for row in (k, f"{k}, declared", f"{k}, model")]
+    order = [row for k in kinds for row in (k, f"{k}, declared", f"{k}, model")]
     known = {o.mutant.row for o in outcomes}
     for row in [*(r for r in order if r in known), "all"]:
         own = [o for o in outcomes if row in (o.mutant.row, "all")]

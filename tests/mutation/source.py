@@ -84,7 +84,7 @@ def _block(text: str, match: re.Match[str]) -> Subprogram | None:
 
 def _expression(text: str, match: re.Match[str]) -> Subprogram | None:
     stop = _end_of_declaration(text, match.end())
-    opening = re.compile(r"\bis\n\s*\(").search(text, match.end(), stop)
+    opening = re.compile(r"\bis\s+\(").search(text, match.end(), stop)
     if opening is None:
         return None
     inner = Span(opening.end(), _closing(text, opening.end() - 1))
