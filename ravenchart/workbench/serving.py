@@ -15,6 +15,8 @@ from pathlib import Path
 
 import uvicorn
 
+from ravenchart import terminal
+
 from ravenchart.failures import Unusable
 
 from .guard import LARGEST, token
@@ -34,7 +36,8 @@ def serve(model: Path, port: int, *, browser: bool, say: Callable[[str], None]) 
     ``port`` 0: a free one. Refused where the model has errors, Unusable where the port is taken.
     """
     with _bound(port) as listening:
-        session = Session(model)
+        with terminal.progress(f"read and analyse {model}"):
+            session = Session(model)
         hub = Hub(session)
         secret, number = token(), listening.getsockname()[1]
         address = f"http://{ADDRESS}:{number}/{secret}/"
