@@ -10,6 +10,7 @@ with Ravenchart.Can.Fd_Frames;
 with Ravenchart.Can.Iso_Tp;
 with Ravenchart.Can.Iso_Tp.Receivers;
 with Ravenchart.Can.Iso_Tp.Senders;
+with Reassembled;
 
 procedure Test_Iso_Tp is
    use Ravenchart.Can.Iso_Tp;
@@ -59,6 +60,8 @@ procedure Test_Iso_Tp is
    procedure Check_Faults;
 
    procedure Check_Any_Bytes;
+
+   procedure Check_Reassembly;
 
    -----------
    -- Drawn --
@@ -415,10 +418,82 @@ procedure Test_Iso_Tp is
         ("any bytes leave both ends sound:" & Wrong'Image, Wrong = 0);
    end Check_Any_Bytes;
 
+   ----------------------
+   -- Check_Reassembly --
+   ----------------------
+
+   procedure Check_Reassembly is
+      use type Reassembled.Flow_Request;
+
+      S       : constant Senders.Setting := (19, 1, 5, 1, 1_000);
+      Longer  : constant Senders.Setting := (20, 1, 5, 1, 1_000);
+      V       : constant Value_Bytes := Value_Of (19);
+      From    : Sender;
+      Flow    : Flow_Notice;
+      Fault   : Transfer_Fault;
+      Now     : Ravenchart.Nanoseconds := 0;
+      Result  : Outcome := Ignored;
+      Got     : Value_Bytes;
+      Wanted  : Reassembled.Flow_Request;
+      Expired : array (1 .. 3) of Boolean;
+
+      procedure Begin_Anew (S : Senders.Setting; V : Value_Bytes);
+      --  A new sender has given its first segment.
+
+      procedure Begin_Anew (S : Senders.Setting; V : Value_Bytes) is
+      begin
+         From := (others => <>);
+         Give (From, V);
+         while not Is_Due (From, S) loop
+            Count (From, S, Flow, Fault);
+         end loop;
+         Reassembled.Take (Next_Segment (From, S), 8, Now, Result);
+      end Begin_Anew;
+
+   begin
+      Give (From, V);
+      for Turn in 1 .. 20 loop
+         Now := Now + 1_000_000;
+         Count (From, S, Flow, Fault);
+         if Is_Due (From, S) then
+            Reassembled.Take (Next_Segment (From, S), 8, Now, Result);
+            Record_Sent (From, S);
+            Reassembled.Look (Now, Wanted, Expired (1));
+            Flow := (Wanted.Count, Wanted.Status, 1, 0);
+         end if;
+         exit when Result = Complete;
+      end loop;
+      Reassembled.Read (Got);
+      Facts.Check
+        ("the object of a reassembly asks for each segment once",
+         Result = Complete
+         and then Got = V
+         and then Wanted = (2, Continue_To_Send));
+
+      Begin_Anew (Longer, Value_Of (20));
+      Reassembled.Look (Now, Wanted, Expired (1));
+      Facts.Check
+        ("it refuses a longer value",
+         Result = Wrong_Length and then Wanted = (3, Overflow));
+
+      Begin_Anew (S, V);
+      Reassembled.Look (Now + 4_000_000, Wanted, Expired (1));
+      Reassembled.Look (Now + 4_000_001, Wanted, Expired (2));
+      Reassembled.Look (Now + 4_000_002, Wanted, Expired (3));
+      Facts.Check
+        ("it tells once that a transfer was given up",
+         Result = Taken
+         and then Wanted = (4, Continue_To_Send)
+         and then not Expired (1)
+         and then Expired (2)
+         and then not Expired (3));
+   end Check_Reassembly;
+
 begin
    Check_All_Lengths;
    Check_Separation;
    Check_Faults;
    Check_Any_Bytes;
+   Check_Reassembly;
    Facts.Finish;
 end Test_Iso_Tp;

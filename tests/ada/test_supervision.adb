@@ -80,6 +80,7 @@ procedure Test_Supervision is
          and then Ravenchart.Liveness.Is_Silent
            ((0, 1, 1), (Ravenchart.Event_Count'Last - 1, False, 0), Last)
          and then Ravenchart.Liveness.Is_Stuck (1, (0, True, 0), Last)
+         and then Ravenchart.Liveness.Is_Stuck (Last, (0, True, 0), Last)
          and then not Ravenchart.Liveness.Is_Stuck (Last, (0, True, 1), Last)
          and then not Ravenchart.Liveness.Is_Stuck (1, (0, False, 0), Last));
       Ravenchart.Liveness.Note (Reported, False, First);
