@@ -30,7 +30,7 @@ OUTSIDE = "Outside"
 TRAILER = "SecOC_"
 """How the signals of an authenticated message begin that stand behind its data."""
 
-Value = int | str
+Value = int | float | str
 Values = dict[str, Value]
 
 
@@ -44,6 +44,10 @@ def unrecorded(_frame: can.Message) -> None:
 
 class BenchError(Exception):
     """The bench cannot go on: the bus is gone, or a message does not fit the DBC."""
+
+
+class MalformedFrameError(BenchError):
+    """A frame has the identifier of a message, but not its data; the bus goes on."""
 
 
 class Codec:
@@ -144,7 +148,7 @@ class Codec:
         try:
             decoded = message.decode(bytes(frame.data), decode_choices=True)
         except (CodecFault, ValueError) as fault:
-            raise BenchError(f"{name} cannot be decoded: {fault}") from None
+            raise MalformedFrameError(f"{name} cannot be decoded: {fault}") from None
         assert isinstance(decoded, dict)
         return name, {field: _plain(value) for field, value in decoded.items()}
 
@@ -173,8 +177,12 @@ class Peer:
         codec: Codec,
         link: socket.socket | None = None,
         record: Record = unrecorded,
+        gone: str = "the controller left the bus",
     ) -> None:
-        """Speak on ``bus``, which is closed together with the peer; ``link`` is its socket."""
+        """Speak on ``bus``, which is closed together with the peer; ``link`` is its socket.
+
+        ``gone`` says who failed where the bus does.
+        """
         self.codec = codec
         self.sent: Counter[str] = Counter()
         self.received: Counter[str] = Counter()
@@ -183,6 +191,7 @@ class Peer:
         self._bus = bus
         self._link = link
         self._record = record
+        self._gone = gone
         self._open = True
         self._closed = False
 
@@ -195,9 +204,7 @@ class Peer:
             )
         except (can.CanError, OSError) as fault:
             raise BenchError(f"no slcan server on port {port}: {fault}") from None
-        link = socket.socket(fileno=os.dup(bus.fileno()))
-        link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        return Peer(bus, codec, link, record)
+        return Peer(bus, codec, link_of(bus), record)
 
     @staticmethod
     def join(channel: str, codec: Codec) -> Peer:
@@ -237,7 +244,7 @@ class Peer:
         try:
             self._bus.send(frame)
         except (can.CanError, OSError) as fault:
-            raise BenchError(f"the controller left the bus: {fault}") from None
+            raise BenchError(f"{self._gone}: {fault}") from None
         self.sent[name] += 1
         copied = copy.copy(frame)
         copied.timestamp, copied.is_rx = self._stamp(), False
@@ -281,16 +288,30 @@ class Peer:
         """The next frame, waiting without load; None at the deadline."""
         try:
             while (rest := deadline - time.monotonic()) > 0:
-                if select.select([self._bus.fileno()], [], [], rest)[0]:
-                    frame = self._bus.recv(timeout=0)
-                    if frame is not None:
-                        self._record(copy.copy(frame))
-                        return frame
+                frame = self._received(rest)
+                if frame is not None:
+                    self._record(copy.copy(frame))
+                    return frame
             return None
         except (can.CanError, OSError) as fault:
-            raise BenchError(f"the controller left the bus: {fault}") from None
+            raise BenchError(f"{self._gone}: {fault}") from None
         except (ValueError, IndexError) as fault:
             raise BenchError(f"the controller sent a malformed slcan line: {fault}") from None
+
+    def _received(self, rest: float) -> can.Message | None:
+        """What comes within ``rest`` s, or earlier nothing; not every driver has a descriptor."""
+        try:
+            readable = select.select([self._bus.fileno()], [], [], rest)[0]
+        except NotImplementedError:
+            return self._bus.recv(timeout=rest)
+        return self._bus.recv(timeout=0) if readable else None
+
+
+def link_of(bus: can.BusABC) -> socket.socket:
+    """The TCP connection of an slcan bus, which delays no frame from now on."""
+    link = socket.socket(fileno=os.dup(bus.fileno()))
+    link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return link
 
 
 def _switches(database: Database) -> bool:
@@ -301,5 +322,7 @@ def _switches(database: Database) -> bool:
 
 
 def _plain(value: object) -> Value:
-    """A decoded value without cantools' types."""
-    return int(value) if isinstance(value, int | float) else str(value)
+    """A decoded value without cantools' types, and without the noise of binary fractions."""
+    if isinstance(value, int | float):
+        return int(value) if value == int(value) else float(f"{value:.12g}")
+    return str(value)

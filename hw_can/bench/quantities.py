@@ -1,4 +1,7 @@
-"""Quantities of a scenario, with their units (``430 mm``, ``1 mm/s``, ``8 s``), in m, m/s and s."""
+"""Quantities of a scenario, with their units (``430 mm``, ``1 mm/s``, ``8 s``), in m, m/s and s.
+
+Values of fields have no unit: they are what the CAN database counts.
+"""
 
 from __future__ import annotations
 
@@ -26,3 +29,15 @@ def _quantity(value: object, units: Mapping[str, float]) -> float:
 Length = Annotated[float, BeforeValidator(lambda value: _quantity(value, _LENGTHS))]
 Speed = Annotated[float, BeforeValidator(lambda value: _quantity(value, _SPEEDS))]
 Time = Annotated[float, BeforeValidator(lambda value: _quantity(value, _TIMES)), Field(ge=0)]
+
+
+_FRACTION = re.compile(r"-?\d+\.\d+")
+
+
+def _number(value: object) -> object:
+    """Numbers with a fraction, which are texts for the reader of YAML."""
+    return float(value) if isinstance(value, str) and _FRACTION.fullmatch(value) else value
+
+
+Scalar = Annotated[bool | int | float | str, BeforeValidator(_number)]
+"""A value of a field: a number, or a name."""

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from .drives import Bench, Track, press
-from .peer import BenchError, Peer, Values
+from .peer import BenchError, Peer, Value, Values
 from .plant import UM
 from .replay import from_outside, read_log
 from .scenario import (
@@ -46,7 +46,7 @@ class Sending:
 
     at: float
     message: str
-    values: Mapping[str, int | str]
+    values: Mapping[str, Value]
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +207,7 @@ class _Runner:
     def _wait_for(self, step: WaitFor) -> tuple[bool, str]:
         """Only messages that arrive from now on count."""
         message, field = step.wait_for.split(".")
-        found: list[int | str] = []
+        found: list[Value] = []
 
         def look(name: str, values: Values) -> None:
             if name == message:

@@ -21,7 +21,7 @@ from ravenchart.gen.origins import Origin
 
 from .plant import Axis
 from .protection import Wrong
-from .quantities import Length, Speed, Time
+from .quantities import Length, Scalar, Speed, Time
 from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, rendered
 from .reading import Path as Place
 from .replay import fault_of_log
@@ -31,7 +31,6 @@ class ScenarioError(Exception):
     """A scenario that cannot be run: every mistake, with file, line, column, code and hint."""
 
 
-Scalar = bool | int | str
 Signal = Annotated[str, Field(pattern=r"^\w+\.\w+$")]
 """``message.field``"""
 Element = Annotated[str, Field(pattern=r"^\w+\.\w+$")]

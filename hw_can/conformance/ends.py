@@ -7,15 +7,12 @@ import time
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any
 
 import can
-from can.interfaces import BACKENDS
 
+from ravenchart.hw_can.bench import interfaces
+from ravenchart.hw_can.bench.interfaces import Interface
 from ravenchart.hw_can.bench.peer import BenchError
-
-BACKENDS.setdefault("ravenchart", ("ravenchart.hw_can.bench.bus_client", "RavenchartBus"))
-"""So that it is there in a checkout that is on the path and not installed, too."""
 
 PATIENCE = 2.0
 """Seconds without a frame after which no more is waited for."""
@@ -44,11 +41,6 @@ class Setup:
     def names(self) -> tuple[str, ...]:
         """The interfaces, each once."""
         return tuple(dict.fromkeys((self.interface, self.receive_interface)))
-
-    def options(self) -> dict[str, Any]:
-        """What `can.Bus` is told beside interface and channel."""
-        wanted: dict[str, Any] = {} if self.bitrate is None else {"bitrate": self.bitrate}
-        return wanted | ({"fd": True} if self.fd else {})
 
 
 @dataclass(slots=True)
@@ -113,30 +105,13 @@ def open_ends(setup: Setup, patience: float = PATIENCE) -> Ends:
 
 
 def opened(interface: str, channel: str, setup: Setup, *, echo: bool = False) -> can.BusABC:
-    """One bus object; BenchError when that is impossible. Drivers raise what they like."""
-    if interface not in BACKENDS:
-        known = ", ".join(sorted(BACKENDS))
-        raise BenchError(f"python-can has no interface {interface!r}; it has {known}")
-    options = setup.options() | ({"receive_own_messages": True} if echo else {})
-    try:
-        return can.Bus(channel, interface, ignore_config=True, **options)
-    except PermissionError as fault:
-        raise BenchError(f"no permission for {interface} {channel!r}: {fault}") from None
-    except Exception as fault:
-        raise BenchError(f"{interface} {channel!r} cannot be opened: {words(fault)}") from None
+    """One bus object; BenchError when that is impossible."""
+    return interfaces.opened(Interface(interface, channel, setup.bitrate, fd=setup.fd), echo=echo)
 
 
 def is_faulty(bus: can.BusABC) -> bool:
     """Does the interface say that its controller is not error-active?"""
     return type(bus).state is not can.BusABC.state and bus.state is not can.BusState.ACTIVE
-
-
-def words(fault: BaseException) -> str:
-    """What a driver's exception says, on one printable line."""
-    said = " ".join(str(fault).split()) or type(fault).__name__
-    if not isinstance(fault, can.CanError | OSError | BenchError):
-        said = f"{type(fault).__name__}: {said}"
-    return "".join(c if c.isprintable() else "?" for c in said)
 
 
 AHEAD = 200

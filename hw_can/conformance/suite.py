@@ -9,8 +9,10 @@ from enum import Enum
 
 import can
 
+from ravenchart.hw_can.bench.interfaces import words
+
 from .cases import CASES, LAST, Case, Failed, Skipped, frame
-from .ends import Ends, Setup, is_faulty, words
+from .ends import Ends, Setup, is_faulty
 
 Progress = Callable[[str], None]
 

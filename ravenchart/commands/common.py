@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ravenchart.failures import Unusable
+
 from .answer import Answer, say
 from .results import GenerateResult
 
@@ -14,6 +16,8 @@ if TYPE_CHECKING:
     from ravenchart.building.checking import Checked
     from ravenchart.building.generation import Written
     from ravenchart.building.targets import Board
+    from ravenchart.gen.model.system import System
+    from ravenchart.hw_can.bench.interfaces import Interface
 
 
 def add_model(sub: argparse.ArgumentParser) -> None:
@@ -45,6 +49,33 @@ def board(options: argparse.Namespace, found: Checked) -> Board | None:
     for text in targets.check_system(made, found.system):
         say(options.answer, text)
     return made
+
+
+def add_interface(sub: argparse.ArgumentParser, use: str) -> None:
+    """The end of a bus on which a controller runs already; ``use`` says what is done there."""
+    sub.add_argument(
+        "--interface", metavar="NAME",
+        help=f"{use} on an interface of python-can, such as socketcan, slcan or ravenchart, at "
+        "the bit rate of the model; nothing is built or started",
+    )  # fmt: skip
+    sub.add_argument(
+        "--channel", help="its channel, such as can0, /dev/ttyACM0 or socket://HOST:PORT"
+    )
+
+
+def interface(options: argparse.Namespace, system: System) -> Interface | None:
+    """The interface that was named; Unusable where half of it is, or the model has no bus."""
+    from ravenchart.hw_can.bench.interfaces import Interface
+
+    if (options.interface is None) != (options.channel is None):
+        raise Unusable("--interface and --channel go together")
+    if options.interface is None:
+        return None
+    if not system.buses:
+        raise Unusable(f"{system.name} has no bus, so there is nothing to do at --interface")
+    bus = system.buses[0]
+    data_rate = (bus.data_rate or bus.bit_rate) if bus.takes_fd else None
+    return Interface(options.interface, options.channel, bus.bit_rate, data_rate, fd=bus.takes_fd)
 
 
 def add_log(sub: argparse.ArgumentParser) -> None:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 from ravenchart.building import programs
+from ravenchart.building.checking import Checked
 from ravenchart.failures import NOT_JUDGED, OK, WRONG, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
+from ravenchart.running.bus_runs import run_on_bus
 from ravenchart.running.result import RunResult
-from ravenchart.running.runs import joins_a_server, run_model
+from ravenchart.running.runs import Progress, RunRequest, joins_a_server, run_model
 
 from . import common, results, running
 
@@ -24,6 +27,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--strict", action="store_true",
         help="exit status 3 where the run passed, but its timing could not be judged",
     )  # fmt: skip
+    common.add_interface(sub, "play the scenario to a controller that runs already,")
     common.add_log(sub)
     sub.add_argument("--report", type=Path, metavar="DIR", help="where the report goes")
 
@@ -31,15 +35,13 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Run it; the exit status."""
     checked = common.checked(options)
-    board = common.board(options, checked)
-    nodes = len(programs.programs_of(checked))
-    alone = options.scenario is None and not joins_a_server(checked.system, nodes)
-    if options.log is not None and alone and board is None:
-        raise Unusable(f"ravenchart: error: no log of {checked.system.name}: {ALONE}")
-    mode = "release" if board else "checks"
-    request = running.request(options, checked, board, mode, options.report, options.log)
+    interface = common.interface(options, checked.system)
+    if interface is None:
+        execute, request = _started(options, checked)
+    else:
+        execute = partial(run_on_bus, interface)
+        request = running.on_bus(options, checked, options.report, options.log)
     try:
-        execute = partial(running.execute, board)
         outcome = run_model(request, refuse=options.answer.fail, execute=execute)
     except BenchError as problem:
         raise Unusable(str(problem)) from problem
@@ -49,6 +51,20 @@ def execute(options: argparse.Namespace) -> int:
     if not outcome.passed:
         return WRONG
     return NOT_JUDGED if options.strict and outcome.not_judged else OK
+
+
+def _started(
+    options: argparse.Namespace, checked: Checked
+) -> tuple[Callable[[RunRequest, Progress], RunResult], RunRequest]:
+    """How the programs are run, once they are built; Unusable where they cannot be."""
+    board = common.board(options, checked)
+    nodes = len(programs.programs_of(checked))
+    alone = options.scenario is None and not joins_a_server(checked.system, nodes)
+    if options.log is not None and alone and board is None:
+        raise Unusable(f"no log of {checked.system.name}: {ALONE}")
+    mode = "release" if board else "checks"
+    request = running.request(options, checked, board, mode, options.report, options.log)
+    return partial(running.execute, board), request
 
 
 def _judged(outcome: RunResult, folder: Path) -> results.RunResult:

@@ -40,6 +40,8 @@ class RunResult:
     clock_offset: float | None
     not_judged: str | None = None
     """Why the timing was not judged, where it was not."""
+    unseen: tuple[str, ...] = ()
+    """What else was not judged, for the same reason."""
 
     @property
     def passed(self) -> bool:
@@ -51,8 +53,13 @@ class RunResult:
         """The last line of the summary."""
         if not self.passed:
             return f"verdict: FAIL: {self.failures[0]}"
-        but = f" (timing not judged: {self.not_judged})" if self.not_judged else ""
-        return f"verdict: PASS{but}"
+        return f"verdict: PASS ({self.gaps})" if self.gaps else "verdict: PASS"
+
+    @property
+    def gaps(self) -> str:
+        """What was not judged, and why; nothing where all was."""
+        what = ", ".join(("timing", *self.unseen))
+        return f"{what} not judged: {self.not_judged}" if self.not_judged else ""
 
 
 def notes(

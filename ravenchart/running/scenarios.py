@@ -9,20 +9,17 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-import cantools
 from cantools.database.can import Message as DbcMessage
 from cantools.database.can import Signal as DbcSignal
 
 from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.emit.tables.trace_map import CONTROLLER_STATES, elements
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
-from ravenchart.hw_can.bench.naming import as_in_model
-from ravenchart.hw_can.bench.peer import OUTSIDE, BenchError, Codec
+from ravenchart.hw_can.bench.peer import BenchError, Value
 from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
 from ravenchart.hw_can.bench.reading import Path as Place
 from ravenchart.hw_can.bench.replay import from_outside, read_log
@@ -41,14 +38,19 @@ from ravenchart.hw_can.bench.scenario import (
     load_scenario,
 )
 
+from .vocabulary import Vocabulary
+
 LOSSES = ("lost_out", "lost_in", "rejected_lines")
 """What the controller of a bus counts as lost."""
 VALUE = "RV-1305"
 """A value that the field of a message does not have."""
 
 
-def checked(path: Path, system: System) -> Scenario:
-    """The scenario in a file; Refused with everything that does not fit it or the model."""
+def checked(path: Path, system: System, *, simulated: bool = True) -> Scenario:
+    """The scenario in a file; Refused with everything that does not fit it or the model.
+
+    ``simulated``: the bus is, so that events on it can be had.
+    """
     try:
         scenario = load_scenario(path)
     except ScenarioError as fault:
@@ -56,6 +58,10 @@ def checked(path: Path, system: System) -> Scenario:
     source = scenario.source
     assert source is not None
     found = problems(scenario, system)
+    if scenario.bus_events and not (simulated or found):
+        told = "`bus` is for the simulated bus, not for one at `--interface`"
+        source.wrong(MISFIT, ("bus",), told, "remove `bus`, or run it without", key=True)
+        found = source.found
     if found:
         raise Refused(rendered(found, source.file, source.text), found)
     return scenario
@@ -68,10 +74,7 @@ def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
     if not system.buses:
         message = f"{system.name} has no bus for a scenario to play on"
         return [error(UNKNOWN, source.tree.origin, message, hint="run it without `--scenario`")]
-    database = cantools.database.load_string(emit_dbc(system, system.buses[0]), "dbc")
-    assert isinstance(database, cantools.database.Database)
-    database = as_in_model(database)
-    check = _Check(source, system, {m.name: m for m in database.messages}, Codec(database))
+    check = _Check(source, system, Vocabulary.of(system))
     check.drives(scenario)
     for index, step in enumerate(scenario.steps):
         if isinstance(step, Send):
@@ -91,19 +94,12 @@ def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
 class _Check:
     """What a scenario may name."""
 
-    def __init__(
-        self, source: Source, system: System, messages: dict[str, DbcMessage], codec: Codec
-    ) -> None:
+    def __init__(self, source: Source, system: System, vocabulary: Vocabulary) -> None:
         self.source = source
         self.system = system
-        self.messages = messages
-        self.codec = codec
-        partial = {(m.name, s.name) for m in system.messages for s in m.signals if s.other}
-        self.partial = {
-            id(signal) for m in messages.values() for signal in m.signals
-            if (m.name, signal.name) in partial
-        }  # fmt: skip
-        """Signals that have values without a name, which are told as numbers."""
+        self.vocabulary = vocabulary
+        self.messages = vocabulary.messages
+        self.codec = vocabulary.codec
 
     # --- messages
 
@@ -136,7 +132,7 @@ class _Check:
         for name, value in step.fields.items():
             signal = self.field(message, name, (*path, "with", name), key=True)
             if signal is not None:
-                self.value(signal, value, (*path, "with", name))
+                self.value(message, signal, value, (*path, "with", name))
         if len(self.source.found) == before:
             try:
                 self.codec.encode(step.send, step.fields)
@@ -149,21 +145,22 @@ class _Check:
         drives = frozenset(drive.feedback for drive in scenario.drives.values())
         if not from_outside(read_log(scenario.file_of(step)), self.codec, drives):
             told = f"no frame of {step.replay} is a message that comes from outside the model"
-            outside = [name for name, one in self.messages.items() if one.senders == [OUTSIDE]]
+            outside = self.vocabulary.outside()
             names = ", ".join(name for name in outside if name not in drives) or "none"
             self.source.wrong(MISFIT, path, told, f"the messages from outside: {names}")
 
     def wait_for(self, step: WaitFor, path: Place) -> None:
         """A field, and a value that it can have."""
-        signal = self.signal(step.wait_for, (*path, "wait_for"))
-        if signal is not None:
-            self.value(signal, step.value, (*path, "is"), by_name=True)
+        found = self.signal(step.wait_for, (*path, "wait_for"))
+        if found is not None:
+            self.value(*found, step.value, (*path, "is"), by_name=True)
 
-    def signal(self, text: str, path: Place) -> DbcSignal | None:
-        """The field of ``message.field``."""
+    def signal(self, text: str, path: Place) -> tuple[DbcMessage, DbcSignal] | None:
+        """The message and the field of ``message.field``."""
         owner, _, name = text.partition(".")
         message = self.message(owner, path)
-        return None if message is None else self.field(message, name, path)
+        signal = None if message is None else self.field(message, name, path)
+        return None if message is None or signal is None else (message, signal)
 
     def message(self, name: str, path: Place) -> DbcMessage | None:
         """A message of the bus."""
@@ -185,29 +182,17 @@ class _Check:
         return None
 
     def value(
-        self, signal: DbcSignal, value: bool | int | str, path: Place, *, by_name: bool = False
+        self,
+        message: DbcMessage,
+        signal: DbcSignal,
+        value: Value,
+        path: Place,
+        *,
+        by_name: bool = False,
     ) -> None:
-        """A value that the field has: one of its names, or a number in its range.
-
-        What arrives is told ``by_name`` where values have names.
-        """
-        low, high = signal.minimum, signal.maximum
-        if signal.choices is not None:
-            names = [str(choice) for choice in signal.choices.values()]
-            coded = not by_name and not isinstance(value, str) and value in signal.choices
-            fits = value in names or coded
-            wanted = f"one of {', '.join(names)}"
-            if id(signal) in self.partial and low is not None and high is not None:
-                if isinstance(value, int) and value not in signal.choices:
-                    fits = low <= value <= high
-                wanted += f", or another number from {low} to {high}"
-        else:
-            assert low is not None and high is not None
-            fits = not isinstance(value, str) and low <= value <= high
-            wanted = f"a number from {low} to {high}"
-            wanted += "" if signal.unit is None else f", in {signal.unit}"
-        if not fits:
-            told = f"`{signal.name}` must be {wanted}, not `{value}`"
+        """A value that the field has."""
+        told = self.vocabulary.misfit(message.name, signal, value, by_name=by_name)
+        if told is not None:
             self.source.wrong(VALUE, path, told)
 
     # --- regions, states, ports, nodes

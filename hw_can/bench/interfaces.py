@@ -1,0 +1,73 @@
+"""Any interface of python-can, opened: the one place where drivers of others are called to life."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import can
+from can.interfaces import BACKENDS
+
+from .peer import BenchError, Codec, Peer, Record, link_of, unrecorded
+
+BACKENDS.setdefault("ravenchart", ("ravenchart.hw_can.bench.bus_client", "RavenchartBus"))
+"""So that it is there in a checkout that is on the path and not installed, too."""
+
+
+@dataclass(frozen=True, slots=True)
+class Interface:
+    """One end of a bus, by its names in python-can."""
+
+    name: str
+    channel: str
+    bitrate: int | None = None
+    """In bit/s; None: that of the interface."""
+    data_bitrate: int | None = None
+    """The same for the data of CAN FD frames."""
+    fd: bool = False
+    """CAN FD frames go over it too."""
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.channel!r}"
+
+    def options(self) -> dict[str, Any]:
+        """What `can.Bus` is told beside interface and channel."""
+        told: dict[str, Any] = {"bitrate": self.bitrate, "data_bitrate": self.data_bitrate}
+        told = {name: rate for name, rate in told.items() if rate is not None}
+        if self.fd:
+            told["fd"] = True
+        if self.name == "slcan" and "://" in self.channel:
+            told["sleep_after_open"] = 0  # no adapter that starts when its line is opened
+        return told
+
+
+def opened(interface: Interface, *, echo: bool = False) -> can.BusABC:
+    """One bus object, which receives its own frames with ``echo``; BenchError when there is none.
+
+    Drivers raise what they like.
+    """
+    if interface.name not in BACKENDS:
+        known = ", ".join(sorted(BACKENDS))
+        raise BenchError(f"python-can has no interface {interface.name!r}; it has {known}")
+    options = interface.options() | ({"receive_own_messages": True} if echo else {})
+    try:
+        return can.Bus(interface.channel, interface.name, ignore_config=True, **options)
+    except PermissionError as fault:
+        raise BenchError(f"no permission for {interface}: {fault}") from None
+    except Exception as fault:
+        raise BenchError(f"{interface} cannot be opened: {words(fault)}") from None
+
+
+def words(fault: BaseException) -> str:
+    """What a driver's exception says, on one printable line."""
+    said = " ".join(str(fault).split()) or type(fault).__name__
+    if not isinstance(fault, can.CanError | OSError | BenchError):
+        said = f"{type(fault).__name__}: {said}"
+    return "".join(c if c.isprintable() else "?" for c in said)
+
+
+def joined(interface: Interface, codec: Codec, record: Record = unrecorded) -> Peer:
+    """A peer at that end of a bus; BenchError when there is none."""
+    bus = opened(interface)
+    link = link_of(bus) if interface.name == "slcan" and "socket://" in interface.channel else None
+    return Peer(bus, codec, link, record, gone=str(interface))

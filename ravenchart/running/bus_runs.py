@@ -1,0 +1,75 @@
+"""A scenario played to a controller that runs already, at the other end of any bus.
+
+Only frames are seen there: no trace, no times of the controller, no count of its faults. What a
+scenario expects of these is neither passed nor failed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ravenchart.failures import Unusable
+from ravenchart.hw_can.bench.interfaces import Interface, joined
+from ravenchart.hw_can.bench.peer import BenchError
+from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
+from ravenchart.hw_can.bench.scenario import Scenario, load_scenario
+
+from . import bus_log, judge, result
+from .process import Ended, separate_cores
+from .result import RunResult
+from .runs import Progress, RunRequest
+from .vocabulary import Vocabulary
+
+WHY = "only the frames on the bus are seen"
+
+GOES_ON = Ended(exit_code=0, killed=False, real_time=True, warnings=())
+"""Of a controller that is neither started nor stopped here."""
+
+
+def run_on_bus(interface: Interface, request: RunRequest, progress: Progress) -> RunResult:
+    """Play the scenario, and leave the controller as it is then; Unusable where there is no bus."""
+    assert request.scenario is not None
+    plan = load_scenario(request.scenario)
+    vocabulary = Vocabulary.of(request.analysis.system)
+    with bus_log.recorded(request.log, vocabulary.bus.name) as record:
+        try:
+            peer = joined(interface, vocabulary.codec, record)
+        except BenchError as fault:
+            raise Unusable(str(fault)) from None
+        with separate_cores():
+            played = run_scenario(plan, peer, progress=progress)
+    unseen = {"expect_trace": plan.trace_checks, "expect": plan.expected}
+    return RunResult(
+        title=f"{plan.title}, on {interface}",
+        scenario=plan,
+        scenario_result=played,
+        observation=None,
+        ended=GOES_ON,
+        steps=judge.step_rows(played, ()),
+        compared=(),
+        journeys=(),
+        failures=(
+            *judge.failures(GOES_ON, played, None, (), ()),
+            *_silence(vocabulary, interface, played),
+        ),
+        notes=(*result.notes(GOES_ON, played, None, (), ()), *_unjudged(plan)),
+        clock_offset=None,
+        not_judged=WHY,
+        unseen=tuple(key for key, entries in unseen.items() if entries),
+    )
+
+
+def _silence(vocabulary: Vocabulary, interface: Interface, played: ScenarioResult) -> Iterator[str]:
+    """Nothing that the controller sends came: most likely it is on another bus, or on none."""
+    own = vocabulary.messages.keys() - vocabulary.outside()
+    if own and not own & played.received.keys():
+        yield (
+            f"no frame of the controller came from {interface}: does it run there, at "
+            f"{vocabulary.bus.bit_rate} bit/s?"
+        )
+
+
+def _unjudged(plan: Scenario) -> Iterator[str]:
+    """What the scenario expects, and nobody saw."""
+    yield from (f"not judged: {check}" for check in plan.trace_checks)
+    yield from (f"not judged: {one.limit} {one.name}" for one in plan.expected)

@@ -1,0 +1,193 @@
+"""What is said on the bus of a model: its messages, their fields and values, by the model's names.
+
+Scenarios, the shell and `RemoteSystem` look their words up here. The messages are those of the
+bus's CAN database, which is what the bench speaks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+
+import cantools
+from cantools.database.can import Message as DbcMessage
+from cantools.database.can import Signal as DbcSignal
+
+from ravenchart.gen.emit.buses.dbc import emit_dbc
+from ravenchart.gen.model.buses import Bus
+from ravenchart.gen.model.system import System
+from ravenchart.hw_can.bench.naming import as_in_model
+from ravenchart.hw_can.bench.peer import OUTSIDE, Codec, Value
+from ravenchart.hw_can.bench.protection import HEADER
+
+TRUTH = {"False", "True"}
+"""The names of the values of a Boolean: none of them is a command."""
+
+
+class WordError(ValueError):
+    """A name or a value that the bus does not have; the text has a hint behind it."""
+
+    def __init__(self, message: str, hint: str = "") -> None:
+        super().__init__(f"{message}\n  hint: {hint}" if hint else message)
+
+
+@dataclass(frozen=True, slots=True)
+class Vocabulary:
+    """The messages of one bus."""
+
+    system: System
+    bus: Bus
+    messages: Mapping[str, DbcMessage]
+    codec: Codec
+    partial: frozenset[tuple[str, str]]
+    """Fields, by message, that have values without a name; these are numbers."""
+    commands: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    """Literals that tell what to do: each is a value of one field, of one message from outside."""
+
+    @staticmethod
+    def of(system: System) -> Vocabulary:
+        """That of the first bus, the one that scenarios are played on; there is one."""
+        bus = system.buses[0]
+        database = cantools.database.load_string(emit_dbc(system, bus), "dbc")
+        assert isinstance(database, cantools.database.Database)
+        database = as_in_model(database)
+        partial = {(m.name, s.name) for m in system.messages for s in m.signals if s.other}
+        messages = {message.name: message for message in database.messages}
+        commands = dict(_commands(messages.values()))
+        return Vocabulary(system, bus, messages, Codec(database), frozenset(partial), commands)
+
+    def outside(self) -> list[str]:
+        """The messages that no node of the model sends."""
+        return [name for name, one in self.messages.items() if one.senders == [OUTSIDE]]
+
+    def fields(self, message: str) -> dict[str, DbcSignal]:
+        """The fields of a message that its sender gives: not the header of its protection."""
+        signals = self.messages[message].signals
+        return {one.name: one for one in signals if one.name not in HEADER}
+
+    def observable(self) -> list[str]:
+        """Every field that a frame can be waited for by, `message.field`."""
+        return [f"{name}.{one}" for name in self.messages for one in self.fields(name)]
+
+    def order(self, name: str, fields: Mapping[str, Value]) -> tuple[str, dict[str, Value]]:
+        """The message that a name and fields stand for, and its fields; WordError.
+
+        The name is that of a message from outside, or a command: then the field that has the
+        command is given with it.
+        """
+        message, given = name, dict(fields)
+        if name in self.commands:
+            message, carrier = self.commands[name]
+            if carrier in given:
+                raise WordError(f"`{carrier}` is `{name}` already", f"leave `{carrier}` out")
+            given = {carrier: name, **given}
+        outside = self.outside()
+        if message not in outside:
+            known = [*self.commands, *outside]
+            if message in self.messages:
+                told = f"`{message}` is sent by the controller itself"
+                raise WordError(told, f"it takes {', '.join(known)}" if known else "")
+            raise WordError(f"there is no command or message `{name}`", hint_of(name, known))
+        known_fields = self.fields(message)
+        if not known_fields:
+            told = f"`{message}` travels in several frames (ISO 15765-2), which cannot be sent here"
+            raise WordError(told)
+        for one, value in given.items():
+            if one not in known_fields:
+                told = f"`{message}` has no field `{one}`"
+                raise WordError(told, hint_of(one, [*known_fields]))
+            misfit = self.misfit(message, known_fields[one], value)
+            if misfit is not None:
+                raise WordError(misfit)
+        return message, given
+
+    def missing(self, message: str, given: Mapping[str, Value]) -> list[str]:
+        """The fields that are not given. None of a message with pages, whose fields depend."""
+        if self.messages[message].is_multiplexed():
+            return []
+        return [one for one in self.fields(message) if one not in given]
+
+    def signal(self, text: str) -> tuple[str, DbcSignal]:
+        """The message and the field of `message.field`, or of a field of one message; WordError."""
+        message, dot, name = text.partition(".")
+        if dot and message in self.messages and name in self.fields(message):
+            return message, self.fields(message)[name]
+        own = [one for one in self.messages if one not in self.outside()]
+        owners = [one for one in own if not dot and text in self.fields(one)]
+        if len(owners) == 1:
+            return owners[0], self.fields(owners[0])[text]
+        if owners:
+            told = f"`{text}` is a field of {' and '.join(owners)}"
+            raise WordError(told, f"write `{owners[0]}.{text}`")
+        raise WordError(f"no message has a field `{text}`", self._instead(text))
+
+    def _instead(self, text: str) -> str:
+        """Which field may be meant: of a chart, those that its instance sends."""
+        for instance in self.system.instances:
+            regions = [region.name for region in instance.component.regions]
+            if text in regions or text in [f"{instance.name}.{one}" for one in regions]:
+                sent = [
+                    message.name
+                    for message in self.system.messages
+                    if message.source is not None
+                    and message.source.instance == instance.name
+                    and message.name in self.messages
+                ]
+                fields = ", ".join(f"{one}.{name}" for one in sent for name in self.fields(one))
+                told = f"the states of the chart {text} are in no message"
+                return f"{told}; {instance.name} sends {fields}" if fields else told
+        return hint_of(text, self.observable())
+
+    def misfit(
+        self, message: str, signal: DbcSignal, value: Value, *, by_name: bool = False
+    ) -> str | None:
+        """Why a field has no such value: it is none of its names, or no number in its range.
+
+        What arrives is told ``by_name`` where values have names.
+        """
+        low, high = signal.minimum, signal.maximum
+        assert low is not None and high is not None
+        if signal.choices is None:
+            fits = not isinstance(value, str) and low <= value <= high
+        else:
+            coded = not isinstance(value, str) and value in signal.choices
+            named = value in [str(choice) for choice in signal.choices.values()]
+            other = (message, signal.name) in self.partial and isinstance(value, int) and not coded
+            fits = named or (coded and not by_name) or (other and low <= int(value) <= high)
+        if fits:
+            return None
+        return f"`{signal.name}` must be {self.range_of(message, signal)}, not `{value}`"
+
+    def range_of(self, message: str, signal: DbcSignal) -> str:
+        """The values of a field in words, with their unit."""
+        low, high = signal.minimum, signal.maximum
+        if signal.choices is None:
+            unit = "" if signal.unit is None else f", in {signal.unit}"
+            return f"a number from {low} to {high}{unit}"
+        names = ", ".join(str(choice) for choice in signal.choices.values())
+        other = (message, signal.name) in self.partial
+        return f"one of {names}" + (f", or another number from {low} to {high}" if other else "")
+
+
+def _commands(messages: Iterable[DbcMessage]) -> Iterator[tuple[str, tuple[str, str]]]:
+    """Each literal of one field alone, of all that comes from outside, and that field."""
+    found: dict[str, list[tuple[str, str]]] = {}
+    names = set()
+    for message in messages:
+        names.add(message.name)
+        for signal in message.signals if message.senders == [OUTSIDE] else ():
+            for choice in (signal.choices or {}).values():
+                found.setdefault(str(choice), []).append((message.name, signal.name))
+    for literal, places in found.items():
+        if len(places) == 1 and literal not in names | TRUTH:
+            yield literal, places[0]
+
+
+def hint_of(name: str, known: Iterable[str]) -> str:
+    """What may be meant by a name that is not known."""
+    names = [*known]
+    near = get_close_matches(name, names, 1) or [n for n in names if n.lower() == name.lower()]
+    if near:
+        return f"did you mean `{near[0]}`?"
+    return f"one of {', '.join(names)}" if names else ""
