@@ -33,6 +33,7 @@ COMMANDS = {
         "compare the generated program with the model, by independent code",
     ),
     "run": ("run", "build and run the controller on this machine"),
+    "shell": ("shell", "send commands to the running controller, and see what it says"),
     "measure": ("measure", "run the controller, and measure the execution time of each row"),
     "requirements": (
         "requirements",

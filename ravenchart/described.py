@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 
@@ -13,3 +14,8 @@ class Described:
         "use_attribute_docstrings": True,
         "extra": "forbid",
     }
+
+
+@dataclass(slots=True)
+class Result(Described):
+    """What a command did or found."""

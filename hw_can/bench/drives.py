@@ -60,8 +60,13 @@ class Bench:
         forms: Mapping[str, DriveForm],
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
+        *,
+        tracks: bool = True,
     ) -> None:
-        """Power on: every axis at its start. BenchError when a message does not fit."""
+        """Power on: every axis at its start. BenchError when a message does not fit.
+
+        Without ``tracks`` no motion is kept, so the bench may go on for days.
+        """
         for form in forms.values():
             _check_fields(peer, form.feedback, FEEDBACK_FIELDS)
             _check_fields(peer, form.set_point, SET_POINT_FIELDS)
@@ -78,6 +83,7 @@ class Bench:
         self.start = clock()
         self._clock = clock
         self._sleep = sleep
+        self._tracks = tracks
         self._tick = 0
         self._steps = 0
 
@@ -107,7 +113,7 @@ class Bench:
             for station in self.stations.values():
                 if not station.silent:
                     self.peer.send(station.form.feedback, _feedback(station.drive))
-        for station in self.stations.values():
+        for station in self.stations.values() if self._tracks else ():
             _record(station, due * PERIOD)
 
     def order(self, message: str, values: Mapping[str, object]) -> None:

@@ -17,6 +17,14 @@ _SPEEDS = {"um/s": 1e-6, "mm/s": 1e-3, "m/s": 1.0}
 _TIMES = {"us": 1e-6, "ms": 1e-3, "s": 1.0}
 
 
+def time_of(text: str) -> float:
+    """A time in s; ValueError says what it must be."""
+    found = _quantity(text, _TIMES)
+    if found < 0:
+        raise ValueError("at least 0 s")
+    return found
+
+
 def _quantity(value: object, units: Mapping[str, float]) -> float:
     """A number with one of ``units``, in the unit whose factor is 1."""
     match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None

@@ -16,13 +16,11 @@ from dataclasses import asdict, dataclass, field
 from os import devnull
 from typing import Any, Literal
 
-from ravenchart.described import Described
+from ravenchart.described import Described, Result
 from ravenchart.failures import INTERNAL, INTERNAL_TEXT
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import version
-
-from .results import Result
 
 FORMAT = 1
 """The version of the object: raised when a key goes or changes its meaning."""

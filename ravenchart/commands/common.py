@@ -65,17 +65,13 @@ def add_interface(sub: argparse.ArgumentParser, use: str) -> None:
 
 def interface(options: argparse.Namespace, system: System) -> Interface | None:
     """The interface that was named; Unusable where half of it is, or the model has no bus."""
-    from ravenchart.hw_can.bench.interfaces import Interface
+    from ravenchart.running.attaching import interface_of
 
     if (options.interface is None) != (options.channel is None):
         raise Unusable("--interface and --channel go together")
     if options.interface is None:
         return None
-    if not system.buses:
-        raise Unusable(f"{system.name} has no bus, so there is nothing to do at --interface")
-    bus = system.buses[0]
-    data_rate = (bus.data_rate or bus.bit_rate) if bus.takes_fd else None
-    return Interface(options.interface, options.channel, bus.bit_rate, data_rate, fd=bus.takes_fd)
+    return interface_of(system, options.interface, options.channel)
 
 
 def add_log(sub: argparse.ArgumentParser) -> None:

@@ -15,7 +15,7 @@ from ravenchart.running.bus_runs import run_on_bus
 from ravenchart.running.result import RunResult
 from ravenchart.running.runs import Progress, RunRequest, joins_a_server, run_model
 
-from . import common, results, running
+from . import common, run_results, running
 
 ALONE = "without a scenario nobody is on the bus of one node"
 
@@ -67,21 +67,21 @@ def _started(
     return partial(running.execute, board), request
 
 
-def _judged(outcome: RunResult, folder: Path) -> results.RunResult:
-    return results.RunResult(
+def _judged(outcome: RunResult, folder: Path) -> run_results.RunResult:
+    return run_results.RunResult(
         outcome.title,
         outcome.passed,
         outcome.verdict,
         outcome.not_judged,
         list(outcome.failures),
         list(outcome.notes),
-        [results.Step(one.at, one.text, one.passed, one.outcome) for one in outcome.steps],
+        [run_results.Step(one.at, one.text, one.passed, one.outcome) for one in outcome.steps],
         [
-            results.Observed(one.task, one.releases, one.observed, one.bound)
+            run_results.Observed(one.task, one.releases, one.observed, one.bound)
             for one in outcome.compared
         ],
         [
-            results.Observed(one.chain, one.count, one.observed, one.bound)
+            run_results.Observed(one.chain, one.count, one.observed, one.bound)
             for one in outcome.journeys
         ],
         str(folder / "report.html"),

@@ -22,7 +22,7 @@ from ravenchart.running.runs import (
 from ravenchart.terminal import progress
 
 from . import common
-from .answer import say
+from .answer import Answer, say
 
 REPORTS = {"run": "report", "measure": "measurement"}
 """The folder of what each command writes, beside what is built."""
@@ -50,36 +50,48 @@ def request(
 
     What they write goes to the ``folder``, or beside what is built.
     """
-    made_of = programs.programs_of(checked)
     gateway = None
     if board is not None:
-        gateway = _gateway(board, len(made_of), options.scenario, log)
+        nodes = len(programs.programs_of(checked))
+        gateway = _gateway(board, nodes, options.scenario, log)
     if options.scenario is not None:
         scenarios.checked(options.scenario, checked.system)
-    common.tell_written(generation.write_program(checked), options.answer)
-    warn = partial(say, options.answer, severity="warning")
-    controllers = []
-    for made in made_of:
-        with progress(f"compile {made.node}"):
-            if board is None or gateway is None:
-                controllers.append(controller(made, warn, board, mode))
-            else:
-                image, memory = gateways.build(made, board, gateway, warn)
-                trace_map = made.generated / TRACE_MAP
-                controllers.append(Controller(made.node, image, trace_map, memory))
-        print(f"built {controllers[-1].executable}")
+    made = controllers(checked, options.answer, board, gateway, mode)
     target = board.target if board else None
     driver = gateway.driver if gateway else programs.default_driver(checked, target)
     home = programs.build_home(checked, driver, target.name if target else targets.NATIVE)
     return RunRequest(
         checked.analysis,
-        tuple(controllers),
+        made,
         checked.generated,
         options.scenario,
         options.seconds,
         folder or home / REPORTS[options.command],
         log,
     )
+
+
+def controllers(
+    checked: Checked,
+    answer: Answer,
+    board: targets.Board | None = None,
+    gateway: targets.Gateway | None = None,
+    mode: str = "checks",
+) -> tuple[Controller, ...]:
+    """The program of each node, generated and built."""
+    common.tell_written(generation.write_program(checked), answer)
+    warn = partial(say, answer, severity="warning")
+    made: list[Controller] = []
+    for one in programs.programs_of(checked):
+        with progress(f"compile {one.node}"):
+            if board is None or gateway is None:
+                made.append(controller(one, warn, board, mode))
+            else:
+                image, memory = gateways.build(one, board, gateway, warn)
+                trace_map = one.generated / TRACE_MAP
+                made.append(Controller(one.node, image, trace_map, memory))
+        print(f"built {made[-1].executable}")
+    return tuple(made)
 
 
 def on_bus(

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.failures import Unusable
-from ravenchart.hw_can.bench.interfaces import Interface, joined
-from ravenchart.hw_can.bench.peer import BenchError
+from ravenchart.hw_can.bench.interfaces import Interface
 from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Scenario, load_scenario
 
 from . import bus_log, judge, result
+from .attaching import attached
 from .process import Ended, separate_cores
 from .result import RunResult
 from .runs import Progress, RunRequest
@@ -32,10 +31,7 @@ def run_on_bus(interface: Interface, request: RunRequest, progress: Progress) ->
     plan = load_scenario(request.scenario)
     vocabulary = Vocabulary.of(request.analysis.system)
     with bus_log.recorded(request.log, vocabulary.bus.name) as record:
-        try:
-            peer = joined(interface, vocabulary.codec, record)
-        except BenchError as fault:
-            raise Unusable(str(fault)) from None
+        peer = attached(interface, vocabulary, record)
         with separate_cores():
             played = run_scenario(plan, peer, progress=progress)
     unseen = {"expect_trace": plan.trace_checks, "expect": plan.expected}

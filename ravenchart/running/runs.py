@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from pathlib import Path
 
 from rich.console import Console
@@ -400,8 +401,8 @@ def run_nodes(
 ) -> RunResult:
     """Run the controllers of several nodes on one simulated bus, through ``scenario``.
 
-    Without one they run for ``seconds``. Each gets a core as far as there are as many.
-    Raises as `run_controller`; ToolMissing and ToolFailed where the bus cannot be built.
+    Without one they run for ``seconds``. Raises as `run_controller`; ToolMissing and ToolFailed
+    where the bus cannot be built.
     """
     plan = None if scenario is None else load_scenario(scenario)
     codec = Codec.from_file(dbc)
@@ -415,18 +416,13 @@ def run_nodes(
     played: ScenarioResult | None = None
     ended: list[Ended] = []
     cores = sorted(os.sched_getaffinity(0))
-    words = _bus_words(analysis, controllers, plan)
+    words = bus_words(analysis, controllers, plan)
     with separate_cores(), server.running("port=0", *words, log=log) as (_, channel):
         running: list[ControllerProcess] = []
         try:
-            for number, (one, trace) in enumerate(zip(controllers, traces, strict=True)):
-                told = {
-                    "RAVENCHART_BUS_PORT": channel.rpartition(":")[2],
-                    "RAVENCHART_BUS_NAME": one.node[:NAME_LENGTH],
-                }
-                core = cores[number % len(cores)]
-                running.append(ControllerProcess(one.executable, trace, core, **told))
-                running[-1].wait_until_joined()
+            for process in joining(controllers, traces, channel, cores):
+                running.append(process)
+                process.wait_until_joined()
             if plan is None:
                 early = next((p for p in running if not p.runs_for(seconds / len(running))), None)
                 if early is not None:
@@ -449,7 +445,17 @@ def run_nodes(
     return concluded(title, plan, played, seen, all_ended(ended), problems, analysis)
 
 
-def _bus_words(
+def joining(
+    controllers: Sequence[Controller], traces: Sequence[Path], channel: str, cores: Sequence[int]
+) -> Iterator[ControllerProcess]:
+    """Start one process after the other, to join the bus at ``host:port``. StartError."""
+    for one, trace, core in zip(controllers, traces, cycle(cores), strict=False):
+        name, port = one.node[:NAME_LENGTH], channel.rpartition(":")[2]
+        told = {"RAVENCHART_BUS_PORT": port, "RAVENCHART_BUS_NAME": name}
+        yield ControllerProcess(one.executable, trace, core, **told)
+
+
+def bus_words(
     analysis: Analysis, controllers: Sequence[Controller], plan: Scenario | None
 ) -> list[str]:
     """What the bus server is told: its bit rates, and what happens on the bus when.

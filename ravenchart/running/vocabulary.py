@@ -87,7 +87,7 @@ class Vocabulary:
             known = [*self.commands, *outside]
             if message in self.messages:
                 told = f"`{message}` is sent by the controller itself"
-                raise WordError(told, f"it takes {', '.join(known)}" if known else "")
+                raise WordError(told, f"to send: {', '.join(known)}" if known else "")
             raise WordError(f"there is no command or message `{name}`", hint_of(name, known))
         known_fields = self.fields(message)
         if not known_fields:

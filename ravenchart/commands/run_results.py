@@ -1,0 +1,71 @@
+"""What `run` and `shell` answer with `--json`, beside the forms of `results`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ravenchart.described import Described, Result
+
+
+@dataclass(slots=True)
+class Step(Described):
+    """A step of the scenario."""
+
+    at: float
+    """When, in s from the start."""
+    text: str
+    """What it asked for."""
+    passed: bool
+    """Whether it passed."""
+    outcome: str
+    """How it ended."""
+
+
+@dataclass(slots=True)
+class Observed(Described):
+    """The longest response of a processor, or reaction of a chain, in the run."""
+
+    name: str
+    """Of the processor or chain."""
+    count: int
+    """How many releases or reactions there were."""
+    observed: int
+    """The longest, in ns."""
+    bound: int | None
+    """Its bound in ns; null where there is none."""
+
+
+@dataclass(slots=True)
+class RunResult(Result):
+    """A run of the controller, judged."""
+
+    title: str
+    """What was run."""
+    passed: bool
+    """Whether nothing failed."""
+    verdict: str
+    """The last line of the summary."""
+    not_judged: str | None
+    """Why the timing was not judged, where it was not."""
+    failures: list[str]
+    """The reasons; empty exactly when the run passed."""
+    notes: list[str]
+    """What a reader should know besides."""
+    steps: list[Step]
+    """Of the scenario."""
+    processors: list[Observed]
+    """Longest responses."""
+    chains: list[Observed]
+    """Longest reactions."""
+    report: str
+    """The report as HTML."""
+
+
+@dataclass(slots=True)
+class ShellResult(Result):
+    """What a script of the shell did."""
+
+    commands: list[Step]
+    """Its lines that were carried out, the last one perhaps without success."""
+    status: dict[str, dict[str, int | float | str]]
+    """The last values of each message that came, by field."""

@@ -1,0 +1,27 @@
+"""The end of a bus on which a controller runs already: any interface of python-can."""
+
+from __future__ import annotations
+
+from ravenchart.failures import Unusable
+from ravenchart.gen.model.system import System
+from ravenchart.hw_can.bench.interfaces import Interface, joined
+from ravenchart.hw_can.bench.peer import BenchError, Peer, Record
+
+from .vocabulary import Vocabulary
+
+
+def interface_of(system: System, name: str, channel: str) -> Interface:
+    """The interface with the bit rates that the model gives its bus; Unusable without a bus."""
+    if not system.buses:
+        raise Unusable(f"{system.name} has no bus, so nothing can be said to it")
+    bus = system.buses[0]
+    data_rate = (bus.data_rate or bus.bit_rate) if bus.takes_fd else None
+    return Interface(name, channel, bus.bit_rate, data_rate, fd=bus.takes_fd)
+
+
+def attached(interface: Interface, vocabulary: Vocabulary, record: Record) -> Peer:
+    """A peer there; Unusable where there is no such bus."""
+    try:
+        return joined(interface, vocabulary.codec, record)
+    except BenchError as fault:
+        raise Unusable(str(fault)) from None

@@ -1,0 +1,344 @@
+"""A running controller as an object, at the other end of any bus: for notebooks, tests and scripts.
+
+    from ravenchart.running.remote import connect
+
+    with connect("model.yaml", interface="socketcan", channel="can0") as robot:
+        robot.send("Move", x=300_000)
+        await robot.state("robot_status.condition", "Ready", timeout=2)
+        robot.status["robot_status"]
+
+All that is known of the controller is what its frames say. Names and values are those of the
+model; numbers count what the CAN database counts.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from types import TracebackType
+from typing import Literal, TypeVar
+
+from ravenchart.building import checking
+from ravenchart.gen.model.system import System
+from ravenchart.hw_can.bench.drives import Bench, Station, press
+from ravenchart.hw_can.bench.interfaces import Interface
+from ravenchart.hw_can.bench.peer import BenchError, MalformedFrameError, Peer, Value, Values
+from ravenchart.hw_can.bench.replay import from_outside, read_log
+from ravenchart.hw_can.bench.scenario import DriveForm
+
+from . import bus_log, scenarios
+from .attaching import attached, interface_of
+from .vocabulary import Vocabulary, WordError, hint_of
+
+PATIENCE = 10.0
+"""How long an answer is waited for unless it is said, in s."""
+
+Outcome = TypeVar("Outcome")
+
+
+class NoAnswerError(TimeoutError):
+    """A field did not get its value in time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sent:
+    """A message that was sent, with all of its fields."""
+
+    message: str
+    values: Mapping[str, Value]
+
+
+@dataclass(slots=True)
+class _Waiting:
+    """Who waits for a value, and since when."""
+
+    message: str
+    name: str
+    value: Value
+    began: float
+    came: Future[float] = field(default_factory=Future)
+
+    def look(self, message: str, values: Mapping[str, Value]) -> bool:
+        """Whether this frame has it; then the one who waits goes on."""
+        found = message == self.message and values.get(self.name) == self.value
+        if found and self.came.set_running_or_notify_cancel():
+            self.came.set_result(time.monotonic() - self.began)
+        return found or self.came.done()
+
+
+class RemoteSystem:
+    """The controllers of a model, as their bus shows them.
+
+    Any thread may call. A thread of its own, the bench, receives and sends; it simulates the
+    drives too, where there are any.
+    """
+
+    def __init__(
+        self,
+        vocabulary: Vocabulary,
+        peer: Peer,
+        drives: Mapping[str, DriveForm] | None = None,
+        resources: ExitStack | None = None,
+    ) -> None:
+        """Be on the bus of ``peer`` until `close`, which closes the ``resources`` too."""
+        self.vocabulary = vocabulary
+        self.malformed = 0
+        """Frames with the identifier of a message, and other data."""
+        self._resources = resources or ExitStack()
+        self._resources.callback(peer.close)
+        self._bench = Bench(peer, drives or {}, tracks=False)
+        self._bench.on_message = self._take
+        self._lock = threading.Lock()
+        self._last: dict[str, tuple[float, Values]] = {}
+        self._sent: dict[str, dict[str, Value]] = {}
+        self._sent_at = 0.0
+        self._waiting: list[_Waiting] = []
+        self._calls: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._fault: BenchError | None = None
+        self._closing = False
+        self._thread = threading.Thread(target=self._run, name="bench", daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> RemoteSystem:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        fault: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    @property
+    def system(self) -> System:
+        """The model."""
+        return self.vocabulary.system
+
+    @property
+    def status(self) -> dict[str, Values]:
+        """The last values of every message that came, by the names of messages and fields."""
+        with self._lock:
+            return {name: dict(values) for name, (_, values) in sorted(self._last.items())}
+
+    def age(self, message: str) -> float:
+        """Time since the last frame of a message in s; infinite before the first one."""
+        with self._lock:
+            at = self._last[message][0] if message in self._last else float("-inf")
+        return time.monotonic() - at
+
+    def send(self, name: str, /, **fields: Value) -> Sent:
+        """Send a message, by its own name or by a command: a literal of one of its fields.
+
+        A field that is not given has the value that was sent last. Raises WordError for a name
+        or value that the bus does not have, BenchError where the frame cannot be sent.
+        """
+        message, values = self.vocabulary.order(name, fields)
+        if not self.vocabulary.messages[message].is_multiplexed():
+            values = self._sent.get(message, {}) | values
+        missing = self.vocabulary.missing(message, values)
+        if missing:
+            signals = self.vocabulary.fields(message)
+            told = (
+                f"{one} is {self.vocabulary.range_of(message, signals[one])}" for one in missing
+            )
+            wanted = ", ".join(f"`{one}`" for one in missing)
+            raise WordError(f"`{name}` needs {wanted}", "; ".join(told))
+
+        def sending() -> Sent:
+            self._bench.peer.send(message, values)
+            self._sent[message] = values
+            self._sent_at = time.monotonic()
+            return Sent(message, values)
+
+        return self._called(sending)
+
+    def wait_for(self, name: str, value: Value, timeout: float = PATIENCE) -> float:
+        """Wait until a field has a value, at most ``timeout`` s; how long it took, in s.
+
+        The field is `message.field`, or its name alone where one message of the controller has
+        it. A frame counts that came after the last message sent here, so no answer is missed.
+        Raises WordError for a field or value that there is not, NoAnswerError after ``timeout``,
+        BenchError where the bus is gone.
+        """
+        waiting = self._awaited(name, value)
+        try:
+            return waiting.came.result(timeout)
+        except TimeoutError:
+            raise self._unanswered(waiting, timeout) from None
+        finally:
+            waiting.came.cancel()
+
+    async def state(self, name: str, value: Value, timeout: float = PATIENCE) -> float:
+        """The same as `wait_for`, for a coroutine: others go on meanwhile."""
+        waiting = self._awaited(name, value)
+        try:
+            return await asyncio.wait_for(asyncio.wrap_future(waiting.came), timeout)
+        except TimeoutError:
+            raise self._unanswered(waiting, timeout) from None
+
+    def replay(self, log: Path) -> int:
+        """Send the frames of a log that come from outside, at their times; how many there are.
+
+        Returns when the last one is sent. Raises BenchError for a file that is no log.
+        """
+        drives = frozenset(one.form.feedback for one in self._bench.stations.values())
+        frames = from_outside(read_log(log), self.vocabulary.codec, drives)
+
+        def planned() -> None:
+            now = self._bench.now
+            self._bench.replayed.extend((now + at, frame) for at, frame in frames)
+
+        self._called(planned)
+        while self._called(lambda: len(self._bench.replayed)):
+            time.sleep(0.01)
+        return len(frames)
+
+    @property
+    def drives(self) -> tuple[str, ...]:
+        """The simulated drives."""
+        return tuple(self._bench.stations)
+
+    def pull(self, drive: str, switch: Literal["low", "high"]) -> None:
+        """Press a limit switch of a simulated drive."""
+        station = self._station(drive)
+        if switch not in ("low", "high"):
+            raise WordError(f"there is no limit switch `{switch}`", "one of low, high")
+        self._called(lambda: press(station, switch))
+
+    def release(self, drive: str) -> None:
+        """Let go of the limit switches of a simulated drive."""
+        station = self._station(drive)
+        self._called(lambda: press(station, "none"))
+
+    def close(self) -> None:
+        """Leave the bus; a second call does nothing."""
+        self._closing = True
+        self._thread.join()
+        self._resources.close()
+
+    def _station(self, drive: str) -> Station:
+        known = self._bench.stations
+        if drive not in known:
+            hint = (
+                hint_of(drive, known) or "simulate some: `--drives FILE`, or `drives` of `connect`"
+            )
+            raise WordError(f"there is no simulated drive `{drive}`", hint)
+        return known[drive]
+
+    # --- in the thread of the one who calls
+
+    def _called(self, call: Callable[[], Outcome]) -> Outcome:
+        """Have the bench do it; what it returns or raises."""
+        future: Future[Outcome] = Future()
+
+        def do() -> None:
+            try:
+                future.set_result(call())
+            except Exception as fault:
+                future.set_exception(fault)
+
+        self._calls.put(do)
+        while True:
+            try:
+                return future.result(0.2)
+            except TimeoutError:
+                self._check_alive()
+
+    def _check_alive(self) -> None:
+        if self._fault is not None:
+            raise BenchError(str(self._fault))
+        if not self._thread.is_alive():
+            raise BenchError("the bus was left")
+
+    def _awaited(self, name: str, value: Value) -> _Waiting:
+        message, signal = self.vocabulary.signal(name)
+        if isinstance(value, bool) and signal.choices is not None:
+            value = str(value)
+        misfit = self.vocabulary.misfit(message, signal, value, by_name=True)
+        if misfit is not None:
+            raise WordError(misfit)
+        waiting = _Waiting(message, signal.name, value, time.monotonic())
+        with self._lock:
+            self._check_alive()
+            at, values = self._last.get(message, (0.0, {}))
+            if not (at > self._sent_at and waiting.look(message, values)):
+                self._waiting.append(waiting)
+        return waiting
+
+    def _unanswered(self, waiting: _Waiting, timeout: float) -> NoAnswerError:
+        name = f"{waiting.message}.{waiting.name}"
+        told = f"{name} was not {waiting.value} within {timeout:g} s"
+        with self._lock:
+            if waiting.message in self._last:
+                at, values = self._last[waiting.message]
+                age = time.monotonic() - at
+                return NoAnswerError(f"{told}: last {values[waiting.name]}, {age:.2f} s ago")
+            heard = ", ".join(sorted(self._last)) or "none"
+        rate = self.vocabulary.bus.bit_rate
+        hint = f"is the controller on this bus, at {rate} bit/s? Messages received: {heard}"
+        return NoAnswerError(f"{told}: no {waiting.message} came\n  hint: {hint}")
+
+    # --- in the thread of the bench
+
+    def _run(self) -> None:
+        while not self._closing:
+            try:
+                while True:
+                    self._calls.get_nowait()()
+            except Empty:
+                pass
+            try:
+                self._bench.tick()
+            except MalformedFrameError:
+                self.malformed += 1
+            except BenchError as fault:
+                self._fault = fault
+                break
+        with self._lock:
+            for waiting in self._waiting:
+                if waiting.came.set_running_or_notify_cancel():
+                    waiting.came.set_exception(self._fault or BenchError("the bus was left"))
+            self._waiting.clear()
+
+    def _take(self, name: str, values: Values) -> None:
+        with self._lock:
+            self._last[name] = (time.monotonic(), values)
+            self._waiting = [one for one in self._waiting if not one.look(name, values)]
+
+
+def connect(
+    model: str | Path,
+    *,
+    interface: str,
+    channel: str,
+    drives: Path | None = None,
+    log: Path | None = None,
+) -> RemoteSystem:
+    """The controllers of a model that run on a bus: any interface of python-can, and its channel.
+
+    ``drives`` is a scenario whose drives are simulated. ``log`` gets the frames, in the format
+    that its suffix names. Raises Refused for a model or scenario with errors, Unusable where
+    there is no such bus.
+    """
+    system = checking.check(Path(model)).system
+    forms = scenarios.checked(drives, system).drives if drives is not None else {}
+    return connected(system, interface_of(system, interface, channel), forms, log)
+
+
+def connected(
+    system: System, end: Interface, drives: Mapping[str, DriveForm], log: Path | None = None
+) -> RemoteSystem:
+    """The same of a model that was read, at an interface; Unusable where there is no such bus."""
+    with ExitStack() as stack:
+        vocabulary = Vocabulary.of(system)
+        record = stack.enter_context(bus_log.recorded(log, vocabulary.bus.name))
+        peer = attached(end, vocabulary, record)
+        return RemoteSystem(vocabulary, peer, drives, stack.pop_all())
