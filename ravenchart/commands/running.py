@@ -98,10 +98,10 @@ def on_bus(
     options: argparse.Namespace, checked: Checked, folder: Path | None, log: Path | None
 ) -> RunRequest:
     """The scenario alone, for a controller that runs already; Unusable without one."""
-    if options.scenario is None:
-        raise Unusable("--interface needs --scenario: what is to be played there")
     if options.target != targets.NATIVE:
         raise Unusable("--interface and --target exclude each other: nothing is built")
+    if options.scenario is None:
+        raise Unusable("--interface needs --scenario: what is to be played there")
     scenarios.checked(options.scenario, checked.system, simulated=False)
     home = programs.build_home(checked, "interface")
     return RunRequest(
