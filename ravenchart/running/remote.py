@@ -18,7 +18,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from contextlib import ExitStack
+from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -35,6 +35,7 @@ from ravenchart.hw_can.bench.scenario import DriveForm
 
 from . import bus_log, scenarios
 from .attaching import attached, interface_of
+from .process import separate_cores
 from .vocabulary import Vocabulary, WordError, hint_of
 
 PATIENCE = 10.0
@@ -289,6 +290,16 @@ class RemoteSystem:
     # --- in the thread of the bench
 
     def _run(self) -> None:
+        with separate_cores() if self.drives else nullcontext():  # drives keep a period
+            self._go_on()
+        with self._lock:
+            for waiting in self._waiting:
+                if waiting.came.set_running_or_notify_cancel():
+                    waiting.came.set_exception(self._fault or BenchError("the bus was left"))
+            self._waiting.clear()
+
+    def _go_on(self) -> None:
+        """Carry out what callers ask for, receive and send, until the end."""
         while not self._closing:
             try:
                 while True:
@@ -301,12 +312,7 @@ class RemoteSystem:
                 self.malformed += 1
             except BenchError as fault:
                 self._fault = fault
-                break
-        with self._lock:
-            for waiting in self._waiting:
-                if waiting.came.set_running_or_notify_cancel():
-                    waiting.came.set_exception(self._fault or BenchError("the bus was left"))
-            self._waiting.clear()
+                return
 
     def _take(self, name: str, values: Values) -> None:
         with self._lock:
