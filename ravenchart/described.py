@@ -19,3 +19,17 @@ class Described:
 @dataclass(slots=True)
 class Result(Described):
     """What a command did or found."""
+
+
+def untitled(node: Any) -> Any:
+    """The schema without the titles and defaults that pydantic adds."""
+    if isinstance(node, list):
+        return [untitled(item) for item in node]
+    if not isinstance(node, dict):
+        return node
+    return {
+        name: untitled(item)
+        for name, item in node.items()
+        if not (name == "title" and isinstance(item, str) and not item.startswith("Ravenchart"))
+        and name != "default"
+    }

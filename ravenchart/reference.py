@@ -1,7 +1,7 @@
 """The pages about the command line that are made of the command line itself.
 
-`python -m ravenchart.reference` writes docs/answer.schema.json, docs/evidence.schema.json and
-docs/ravenchart.1.
+`python -m ravenchart.reference` writes docs/answer.schema.json, docs/evidence.schema.json,
+docs/scenario.schema.json, docs/events.schema.json and docs/ravenchart.1.
 """
 
 from __future__ import annotations
@@ -10,16 +10,20 @@ import json
 from typing import Any
 
 from . import manual
+from .behaviour.interpreter.stimuli_schema import events_schema
 from .command_line import COMMANDS, WITHOUT_JSON, whole_parser
 from .commands.answer import FORMAT, Found
 from .commands.results import RESULTS
+from .described import untitled
 from .evidence.documents import Evidence
 from .failures import MEANINGS
 from .gen.files.reference import write
 from .grammar import grammar
+from .hw_can.bench.schema import scenario_schema
 from .paths import ROOT, version
 
 SCHEMA, MANUAL, EVIDENCE = "answer.schema.json", "ravenchart.1", "evidence.schema.json"
+SCENARIO, EVENTS = "scenario.schema.json", "events.schema.json"
 
 
 def answer_schema() -> dict[str, Any]:
@@ -42,9 +46,9 @@ def answer_schema() -> dict[str, Any]:
         "oneOf": [*variants, _figures()],
         "$defs": shared["$defs"],
     }
-    untitled = _untitled(schema)
-    assert isinstance(untitled, dict)
-    return untitled
+    plain = untitled(schema)
+    assert isinstance(plain, dict)
+    return plain
 
 
 def evidence_schema() -> dict[str, Any]:
@@ -56,9 +60,9 @@ def evidence_schema() -> dict[str, Any]:
         **TypeAdapter(Evidence).json_schema(),
         "title": "Ravenchart: evidence.json",
     }
-    untitled = _untitled(made)
-    assert isinstance(untitled, dict)
-    return untitled
+    plain = untitled(made)
+    assert isinstance(plain, dict)
+    return plain
 
 
 def _variant(command: str | None, result: dict[str, Any]) -> dict[str, Any]:
@@ -99,25 +103,13 @@ def _head(command: str | None) -> dict[str, Any]:
     }
 
 
-def _untitled(node: Any) -> Any:
-    """The schema without the titles and defaults that pydantic adds."""
-    if isinstance(node, list):
-        return [_untitled(item) for item in node]
-    if not isinstance(node, dict):
-        return node
-    return {
-        name: _untitled(item)
-        for name, item in node.items()
-        if not (name == "title" and isinstance(item, str) and not item.startswith("Ravenchart"))
-        and name != "default"
-    }
-
-
 def pages() -> dict[str, str]:
     """File name to text of each page."""
     return {
         SCHEMA: json.dumps(answer_schema(), indent=2) + "\n",
         EVIDENCE: json.dumps(evidence_schema(), indent=2) + "\n",
+        SCENARIO: json.dumps(scenario_schema(), indent=2) + "\n",
+        EVENTS: json.dumps(events_schema(), indent=2) + "\n",
         MANUAL: manual.page(grammar(whole_parser()), version()),
     }
 

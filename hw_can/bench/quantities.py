@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping
 from typing import Annotated
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
 _QUANTITY = re.compile(r"(-?\d+(?:\.\d+)?) ?([a-z/]+)")
 _LENGTHS = {"um": 1e-6, "mm": 1e-3, "m": 1.0}
@@ -34,10 +34,20 @@ def _quantity(value: object, units: Mapping[str, float]) -> float:
     return float(match[1]) * units[match[2]]
 
 
-Length = Annotated[float, BeforeValidator(lambda value: _quantity(value, _LENGTHS))]
-Speed = Annotated[float, BeforeValidator(lambda value: _quantity(value, _SPEEDS))]
-Time = Annotated[float, BeforeValidator(lambda value: _quantity(value, _TIMES)), Field(ge=0)]
+def _written(units: Mapping[str, float]) -> WithJsonSchema:
+    """How a quantity reads, for the JSON Schema."""
+    return WithJsonSchema({"type": "string", "pattern": rf"^-?\d+(\.\d+)? ?({'|'.join(units)})$"})
 
+
+Length = Annotated[
+    float, BeforeValidator(lambda value: _quantity(value, _LENGTHS)), _written(_LENGTHS)
+]
+Speed = Annotated[
+    float, BeforeValidator(lambda value: _quantity(value, _SPEEDS)), _written(_SPEEDS)
+]
+Time = Annotated[
+    float, BeforeValidator(lambda value: _quantity(value, _TIMES)), Field(ge=0), _written(_TIMES)
+]
 
 _FRACTION = re.compile(r"-?\d+\.\d+")
 

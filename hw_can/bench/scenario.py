@@ -44,7 +44,9 @@ Requirement = Annotated[str, Field(pattern=REQUIREMENT, max_length=LONGEST_REQUI
 class _Form(BaseModel):
     """Unknown keys are mistakes."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, populate_by_name=True, use_attribute_docstrings=True
+    )
 
     req: Annotated[tuple[Requirement, ...], Field(min_length=1)] = ()
     """Ids of the requirements that this tests."""
@@ -335,7 +337,7 @@ EXPECTED: Mapping[str, type[Expected]] = {
 """Each expected fault by the key that tells it from the others."""
 
 
-class _File(_Form):
+class WholeForm(_Form):
     """The whole file; what is inside its lists and mappings is read item by item."""
 
     scenario: str
@@ -393,7 +395,7 @@ def parse_scenario(text: str, file: str = "scenario.yaml") -> Scenario:
     if tree is None or found:
         raise ScenarioError(rendered(found, file, text))
     source = Source(file, text, tree)
-    form = source.read(_File, tree, ())
+    form = source.read(WholeForm, tree, ())
     if form is None:
         raise ScenarioError(source.told())
     drives = {name: source.read(DriveForm, v, ("drives", name)) for name, v in form.drives.items()}

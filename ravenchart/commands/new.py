@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import argparse
+import json
 import re
 from importlib import resources
 from pathlib import Path
 
+from ravenchart.behaviour.interpreter.stimuli_schema import events_schema
 from ravenchart.failures import OK, Refused
 from ravenchart.gen.diagnostics import render_all
 from ravenchart.gen.files.reference import json_schema
 from ravenchart.gen.pipeline import load
+from ravenchart.hw_can.bench.schema import scenario_schema
 
 from .results import NewResult
 
@@ -62,6 +65,8 @@ def project(name: str) -> dict[str, str]:
     unit = f"{system.lower()}-plant-activities.adb"
     files[f"user/{unit}"] = _text("activities.adb.txt", system)
     files[".vscode/model.schema.json"] = json_schema()
+    for name, schema in (("scenario", scenario_schema()), ("events", events_schema())):
+        files[f".vscode/{name}.schema.json"] = json.dumps(schema, indent=2) + "\n"
     return files
 
 

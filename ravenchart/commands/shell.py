@@ -56,6 +56,9 @@ def execute(options: argparse.Namespace) -> int:
             robot = connected(system, interface, drives, options.log)
         session = _Session(options, stack.enter_context(robot))
         passed = session.typed() if sys.stdin.isatty() else session.script()
+        if drives and robot.skipped:
+            held = f"the host held the bench up: {robot.skipped} feedback cycles were skipped"
+            say(options.answer, f"note: {held}", severity="note")
     for one in ended:
         for reason in judge.stops(one):
             say(options.answer, f"ravenchart: error: {reason}")

@@ -129,6 +129,11 @@ class RemoteSystem:
         with self._lock:
             return {name: dict(values) for name, (_, values) in sorted(self._last.items())}
 
+    @property
+    def skipped(self) -> int:
+        """Cycles of 5 ms that the host held the bench up: simulated drives sent nothing in them."""
+        return self._bench.skipped
+
     def age(self, message: str) -> float:
         """Time since the last frame of a message in s; infinite before the first one."""
         with self._lock:

@@ -9,6 +9,8 @@ import tty
 from contextlib import suppress
 from pathlib import Path
 
+from ravenchart.running.process import separate_cores
+
 FRAMES = b"tTrRdDbB"
 
 
@@ -21,6 +23,7 @@ class SerialBus:
         self._lines = [os.openpty() for _ in devices]
         for device, (_, slave) in zip(devices, self._lines, strict=True):
             tty.setraw(slave)
+            device.unlink(missing_ok=True)
             device.symlink_to(os.ttyname(slave))
         self._ends, self._end = os.pipe()
         self._thread = threading.Thread(target=self._relay, daemon=True)
@@ -37,6 +40,10 @@ class SerialBus:
                 os.close(descriptor)
 
     def _relay(self) -> None:
+        with separate_cores():  # a bus delays no frame because the host has other work
+            self._pass_on()
+
+    def _pass_on(self) -> None:
         masters = [master for master, _ in self._lines]
         for master in masters:
             os.set_blocking(master, False)

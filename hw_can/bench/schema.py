@@ -1,0 +1,36 @@
+"""The JSON Schema of scenarios, made of the forms that read them: for editors and other tools."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import TypeAdapter
+
+from ravenchart.described import untitled
+
+from .scenario import BUS_EVENTS, EXPECTED, STEPS, DriveForm, TraceCheck, WholeForm
+
+DRAFT = "https://json-schema.org/draft/2020-12/schema"
+TITLE = "Ravenchart: a scenario"
+
+
+def scenario_schema() -> dict[str, Any]:
+    """The schema; names of messages, regions and the like are checked with the model alone."""
+    whole = WholeForm.model_json_schema()
+    kinds = [*STEPS.values(), *BUS_EVENTS.values(), *EXPECTED.values(), TraceCheck, DriveForm]
+    _, shared = TypeAdapter.json_schemas(
+        [(kind.__name__, "validation", TypeAdapter(kind)) for kind in kinds]
+    )
+
+    def items(known: Any) -> dict[str, Any]:
+        return {"anyOf": [{"$ref": f"#/$defs/{kind.__name__}"} for kind in known]}
+
+    properties = whole["properties"]
+    properties["steps"]["items"] = items(STEPS.values())
+    properties["bus"]["items"] = items(BUS_EVENTS.values())
+    properties["expect"]["items"] = items(EXPECTED.values())
+    properties["expect_trace"]["items"] = {"$ref": "#/$defs/TraceCheck"}
+    properties["drives"]["additionalProperties"] = {"$ref": "#/$defs/DriveForm"}
+    made = untitled({"$schema": DRAFT, **whole, "title": TITLE, **shared})
+    assert isinstance(made, dict)
+    return made
