@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
+from ravenchart.building import checking, generation, programs
 from ravenchart.failures import ToolFailed
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
@@ -93,8 +94,11 @@ class Total:
         return self.passed > 0 and self.failed == 0 and not self.lost
 
 
-def steps(python: str, programs: Path) -> tuple[Step, ...]:
-    """What is run in the guest, in this order; ``programs`` is obj/ of the checkout."""
+def steps(python: str, objects: Path, controller: Path) -> tuple[Step, ...]:
+    """What is run in the guest, in this order; ``objects`` is obj/ of the checkout.
+
+    ``controller`` is that of the crossing.
+    """
     loopback = (
         python,
         "-P",
@@ -107,8 +111,9 @@ def steps(python: str, programs: Path) -> tuple[Step, ...]:
     )
     driver = (python, "-P", "-m", "tests.hardware.driver")
     fact = (python, "-P", "-m", "tests.hardware.fact")
+    remote = (python, "-P", "-m", "tests.hardware.remote")
     socketcan, ctucanfd = (
-        programs / f"tests-{MODE}-{name}" / "bin" for name in ("socketcan", "ctucanfd")
+        objects / f"tests-{MODE}-{name}" / "bin" for name in ("socketcan", "ctucanfd")
     )
     shared, own = CARDS.format(SHARED_SLOT), CARDS.format(OWN_SLOT)
     echo = str(socketcan / "can_echo")
@@ -116,6 +121,7 @@ def steps(python: str, programs: Path) -> tuple[Step, ...]:
     return (
         Step("loopback-vcan0", (*loopback, "vcan0", "--fd")),
         Step("driver-vcan0", (*driver, echo, "vcan0")),
+        Step("remote-vcan0", (*remote, str(controller), "vcan0")),
         Step("driver-can0", (*driver, echo, "can0", "--near", "can1", "--emulated")),
         Step(
             "driver-ctucanfd",
@@ -258,6 +264,13 @@ def _tail(path: Path) -> str:
     return "\n".join(text.splitlines()[-TAIL:])
 
 
+def crossing() -> Path:
+    """The controller of the crossing with the driver of SocketCAN, built."""
+    checked = checking.check(ROOT / "examples" / "crossing" / "model.yaml")
+    generation.write_program(checked)
+    return programs.programs_of(checked)[0].build(driver="socketcan")
+
+
 def _build() -> None:
     """The Ada programs with the drivers."""
     for driver, mains in PROGRAMS.items():
@@ -283,7 +296,7 @@ def _told(chosen: Sequence[Step], home: Path) -> Total:
 def guest() -> Total:
     """Build, boot, and print what came of it; ToolMissing or ToolFailed before that."""
     _build()
-    chosen = steps(sys.executable, ROOT / "obj")
+    chosen = steps(sys.executable, ROOT / "obj", crossing())
     (HOME / "results" / "steps").write_text(script(chosen), encoding="utf-8")
     try:
         boot(KERNEL, make_initramfs(KERNEL, HOME), HOME)

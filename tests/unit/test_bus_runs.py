@@ -11,10 +11,11 @@ import pytest
 
 from ravenchart.command_line import main
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
+from ravenchart.hw_can.bench.peer import Values
 from ravenchart.paths import ROOT
 from tests.support.answers import answered
 from tests.support.bus_server import BusServer
-from tests.support.far_end import ROBOT, FarEnd, obedient, robot
+from tests.support.far_end import ROBOT, Answer, FarEnd, obedient, robot
 
 MODEL = ROBOT / "model.yaml"
 PRINTED = pytest.CaptureFixture[str]
@@ -115,12 +116,16 @@ def test_a_step_that_fails_fails_the_run(
 
 
 def test_a_bus_that_goes_away_fails_the_run_and_is_named(
-    tmp_path: Path, server: BusServer, far: FarEnd, capsys: PRINTED
+    tmp_path: Path, server: BusServer, capsys: PRINTED
 ) -> None:
-    threading.Timer(1.0, server.cut).start()
-    text = HOMES.replace("is: Ready", "is: Failed")
-    assert main(words(tmp_path, server, text)) == 1
+    def leave(_name: str, _values: Values) -> list[Answer]:
+        threading.Thread(target=server.cut).start()
+        return []
+
+    far = FarEnd(RavenchartBus(server.channel, fd=True), robot(), leave)
+    assert main(words(tmp_path, server, HOMES)) == 1
     assert f"ravenchart '{server.channel}': the bus server" in capsys.readouterr().out
+    far.close()
 
 
 def test_a_file_of_frames_is_replayed_to_it(

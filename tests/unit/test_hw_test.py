@@ -39,11 +39,12 @@ def test_a_module_is_loaded_behind_what_it_needs() -> None:
 
 
 def test_each_step_leaves_a_result_of_its_own() -> None:
-    chosen = steps("python", Path("/a b"))
+    chosen = steps("python", Path("/a b"), Path("/a b/crossing"))
     lines = script(chosen).splitlines()
     assert [step.name for step in chosen] == [
         "loopback-vcan0",
         "driver-vcan0",
+        "remote-vcan0",
         "driver-can0",
         "driver-ctucanfd",
         "registers-ctucanfd",
@@ -52,9 +53,10 @@ def test_each_step_leaves_a_result_of_its_own() -> None:
     for step, line in zip(chosen, lines, strict=True):
         assert line.endswith(f"--junit {step.name}.xml > {step.name}.txt 2>&1")
     assert "'/a b/tests-checks-socketcan/bin/can_echo' vcan0" in lines[1]
-    assert "'/a b/tests-checks-socketcan/bin/can_echo' can0 --near can1 --emulated" in lines[2]
-    assert "'/a b/tests-checks-ctucanfd/bin/can_echo' /sys/bus/pci/devices" in lines[3]
-    for line in lines[4:]:
+    assert "tests.hardware.remote '/a b/crossing' vcan0" in lines[2]
+    assert "'/a b/tests-checks-socketcan/bin/can_echo' can0 --near can1 --emulated" in lines[3]
+    assert "'/a b/tests-checks-ctucanfd/bin/can_echo' /sys/bus/pci/devices" in lines[4]
+    for line in lines[5:]:
         assert "env RAVENCHART_CTUCANFD=/sys/bus/pci/devices/0000:00:11.0/resource1 " in line
 
 

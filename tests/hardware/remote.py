@@ -1,0 +1,84 @@
+"""The shell and a scenario over SocketCAN, with the crossing's controller in a process beside them.
+
+Run as ``python -P -m tests.hardware.remote [--junit FILE] PROGRAM INTERFACE``; the program is
+built with the driver `socketcan`. The guest is slow; the crossing has periods of 100 ms.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import subprocess
+import sys
+import tempfile
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+
+from ravenchart.command_line import main as command
+from ravenchart.paths import ROOT
+
+from .fact import Fact, junit
+
+MODEL = ROOT / "examples" / "crossing" / "model.yaml"
+SCRIPT = "wait_for walk_lamp.value Dark 60 s\nsend Work\nwait_for walk_lamp.value Wait 60 s\n"
+SCENARIO = """\
+scenario: Out of service
+steps:
+  - {wait_for: walk_lamp.value, is: Wait, within: 60 s}
+  - {send: order, with: {value: Blink}}
+  - {wait_for: walk_lamp.value, is: Dark, within: 60 s}
+expect_trace:
+  - {region: school.Lights, reaches: Blinking}
+"""
+SEEN = "verdict: PASS (timing, expect_trace not judged: only the frames on the bus are seen)"
+
+
+def _called(*words: str) -> tuple[int, str]:
+    """The exit status of a command, and what it prints."""
+    out = io.StringIO()
+    with redirect_stdout(out), redirect_stderr(out):
+        status = command(words)
+    print(out.getvalue(), flush=True)
+    return status, out.getvalue()
+
+
+def facts(interface: str, folder: Path) -> tuple[Fact, ...]:
+    """What holds of the two commands on that interface."""
+    bus = ("--interface", "socketcan", "--channel", interface)
+    sys.stdin = io.StringIO(SCRIPT)
+    status, said = _called("shell", str(MODEL), *bus)
+    led = status == 0 and "walk_lamp.value is Wait after" in said
+    shown = Fact("the shell sends a command, and the controller answers", led)
+    plan = folder / "scenario.yaml"
+    plan.write_text(SCENARIO, encoding="utf-8")
+    report = ("--report", str(folder / "report"))
+    status, said = _called("run", str(MODEL), "--scenario", str(plan), *bus, *report)
+    return shown, Fact("the scenario is played and passes", status == 0 and SEEN in said)
+
+
+def main() -> int:
+    """0 when every fact holds, else 1."""
+    parser = argparse.ArgumentParser(prog="remote")
+    parser.add_argument("--junit", type=Path, metavar="FILE", help="write JUnit XML there")
+    parser.add_argument("program", type=Path, metavar="PROGRAM")
+    parser.add_argument("interface", metavar="INTERFACE")
+    told = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        named = {"RAVENCHART_CAN_INTERFACE": told.interface}
+        with subprocess.Popen(
+            [told.program],
+            env={**os.environ, **named, "RAVENCHART_TRACE": f"{folder}/trace.txt"},
+            stdin=subprocess.DEVNULL,
+        ) as process:
+            try:
+                found = facts(told.interface, Path(folder))
+            finally:
+                process.terminate()
+    if told.junit is not None:
+        told.junit.write_text(junit("remote", found), encoding="utf-8")
+    return 0 if all(fact.holds for fact in found) else 1
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
