@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from io import TextIOWrapper
 from pathlib import Path
 
 from ravenchart import terminal
@@ -99,6 +100,8 @@ class _Session:
 
     def script(self) -> bool:
         """Lines of a pipe or file, up to the first that fails; whether all passed."""
+        if isinstance(sys.stdin, TextIOWrapper):
+            sys.stdin.reconfigure(errors="replace")  # such a word is no name: that is said
         for number, line in enumerate(sys.stdin, 1):
             goes_on, fault = self._done(line)
             if fault:

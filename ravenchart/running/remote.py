@@ -203,8 +203,12 @@ class RemoteSystem:
             self._bench.replayed.extend((now + at, frame) for at, frame in frames)
 
         self._called(planned)
-        while self._called(lambda: len(self._bench.replayed)):
-            time.sleep(0.01)
+        try:
+            while self._called(lambda: len(self._bench.replayed)):
+                time.sleep(0.01)
+        except KeyboardInterrupt:
+            self._called(self._bench.replayed.clear)
+            raise
         return len(frames)
 
     @property

@@ -193,6 +193,16 @@ def test_a_script_ends_at_its_first_mistake(
     )
 
 
+def test_a_script_that_is_no_text_is_said_to_be_none(
+    channel: str, monkeypatch: pytest.MonkeyPatch, capsys: PRINTED
+) -> None:
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"send \xff\n"), "utf-8"))
+    assert main(["shell", str(MODEL), "--interface", "ravenchart", "--channel", channel]) == 1
+    assert capsys.readouterr().err.startswith(
+        "stdin:1: error: there is no command or message `\ufffd`\n  hint: one of Halt, Home, "
+    )
+
+
 def test_a_script_has_an_answer_for_programs(
     channel: str, monkeypatch: pytest.MonkeyPatch, capsys: PRINTED, tmp_path: Path
 ) -> None:
