@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 import can
@@ -11,12 +12,15 @@ import pytest
 from rich.console import Console
 
 from ravenchart.command_line import main
+from ravenchart.commands import running
+from ravenchart.commands import shell as shell_command
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.interfaces import Interface, joined
-from ravenchart.hw_can.bench.peer import BenchError
+from ravenchart.hw_can.bench.peer import BenchError, Peer
+from ravenchart.running.process import Ended, StartError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem
 from ravenchart.running.shell import USAGES, Shell, value_of
-from ravenchart.running.vocabulary import WordError
+from ravenchart.running.vocabulary import Vocabulary, WordError
 from tests.support.answers import answered
 from tests.support.bus_server import BusServer
 from tests.support.far_end import ROBOT, FarEnd, obedient, robot, status
@@ -241,3 +245,46 @@ def test_a_bus_that_there_is_not_is_status_2(
 def test_a_model_without_a_bus_is_status_2(capsys: PRINTED) -> None:
     assert main(["shell", str(ROBOT.parent / "three_components" / "model.yaml")]) == 2
     assert "Three_Components has no bus, so nothing can be said to it" in capsys.readouterr().err
+
+
+def stopped(controller: Ended) -> Callable[..., AbstractContextManager[tuple[Peer, list[Ended]]]]:
+    """In place of what starts the controllers: one that ends like this."""
+
+    @contextmanager
+    def started(
+        _built: object, _analysis: object, words: Vocabulary, *_: object
+    ) -> Iterator[tuple[Peer, list[Ended]]]:
+        if controller.killed:
+            raise StartError("the controller did not open its bus within 10 s")
+        yield joined(Interface("virtual", "own"), words.codec), [controller]
+
+    return started
+
+
+@pytest.mark.parametrize(
+    ("ended", "text"),
+    [
+        (Ended(1, False, True, ("error: no room",)), "the controller stopped itself: no room"),
+        (Ended(-11, False, True, ()), "the controller was ended by SIGSEGV: a stack overflow, or "
+                                      "an access to memory that it does not have"),
+        (Ended(0, True, True, ()), "the controller did not open its bus within 10 s"),
+    ],
+)  # fmt: skip
+def test_a_controller_of_its_own_that_stops_itself_fails_the_shell(
+    ended: Ended, text: str, monkeypatch: pytest.MonkeyPatch, capsys: PRINTED
+) -> None:
+    monkeypatch.setattr(running, "controllers", lambda *_: ())
+    monkeypatch.setattr(shell_command, "started", stopped(ended))
+    told(monkeypatch, "wait 1 ms")
+    assert main(["shell", str(MODEL)]) == 1
+    assert capsys.readouterr().err == f"ravenchart: error: {text}\n"
+
+
+def test_a_controller_of_its_own_that_goes_on_passes(
+    monkeypatch: pytest.MonkeyPatch, capsys: PRINTED
+) -> None:
+    monkeypatch.setattr(running, "controllers", lambda *_: ())
+    monkeypatch.setattr(shell_command, "started", stopped(Ended(0, False, True, ())))
+    told(monkeypatch, "wait 1 ms")
+    assert main(["shell", str(MODEL)]) == 0
+    assert capsys.readouterr().err == ""
