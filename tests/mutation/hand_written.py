@@ -39,7 +39,7 @@ HANGS = 60.0
 """Seconds after which a program of facts is given up, and the mutant noticed."""
 NO_FACTS = ("bench_runtime", "bus_load", "float_lines", "iso_tp_line", "slcan_fuzz")
 """Programs of tests/ada that do not print facts."""
-EXPLAINED = Path(__file__).parent / "explained.toml"
+EXPLAINED = Path(__file__).parent / "explained_runtime.toml"
 
 
 class Checkout:

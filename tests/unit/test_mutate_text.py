@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from ravenchart.paths import ROOT
-from tests.mutation.hand_written import UNITS
+from tests.mutation.hand_written import EXPLAINED, UNITS
+from tests.mutation.report import explanations, reason_of
 from tests.mutation.text_rules import KINDS, mutants_of
 
 UNIT = """\
@@ -85,3 +86,13 @@ def test_every_unit_of_runtime_and_hal_is_among_them() -> None:
         "ravenchart-can-layout_lemmas",
         "ravenchart-clock_ticks",
     }
+
+
+def test_each_explanation_is_of_a_mutant_of_today() -> None:
+    known = explanations(EXPLAINED)
+    assert known
+    texts = {unit.name: (ROOT / unit).read_text() for unit in UNITS}
+    for one in known:
+        text = texts[one.subject]
+        own = mutants_of(one.subject, text)
+        assert any(reason_of([one], one.subject, m, m.diff(text)) for m in own), one.diff
