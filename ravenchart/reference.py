@@ -12,7 +12,7 @@ from typing import Any
 from . import manual
 from .behaviour.interpreter.stimuli_schema import events_schema
 from .command_line import COMMANDS, WITHOUT_JSON, whole_parser
-from .commands.answer import FORMAT, Found
+from .commands.answer import FORMAT
 from .commands.results import RESULTS
 from .described import untitled
 from .evidence.documents import Evidence
@@ -21,6 +21,7 @@ from .gen.files.reference import write
 from .grammar import grammar
 from .hw_can.bench.schema import scenario_schema
 from .paths import ROOT, version
+from .reported import Found
 
 SCHEMA, MANUAL, EVIDENCE = "answer.schema.json", "ravenchart.1", "evidence.schema.json"
 SCENARIO, EVENTS = "scenario.schema.json", "events.schema.json"

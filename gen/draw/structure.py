@@ -272,8 +272,7 @@ def _message_name(message: Message) -> str:
 
 
 def _message(message: Message) -> Html:
-    digits = 8 if message.extended else 3
-    facts = f"0x{message.identifier:0{digits}X}, {shown(message.period)}"
+    facts = f"{message.shown_identifier}, {shown(message.period)}"
     facts += ", FD" if message.fd else ""
     cell = f'<td bgcolor="{PAPER}">{html(message.name)}<br/>{facts}</td>'
     return Html(f'<table border="0" cellborder="1" cellspacing="0"><tr>{cell}</tr></table>')

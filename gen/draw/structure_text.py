@@ -100,4 +100,4 @@ def mermaid(system: System) -> str:
 
 
 def _carried(message: Message) -> str:
-    return f"{message.name} 0x{message.identifier:X}"
+    return f"{message.name} {message.shown_identifier}"

@@ -133,6 +133,11 @@ class Message:
         return f"{self.bus}.{self.name}"
 
     @property
+    def shown_identifier(self) -> str:
+        """The identifier as people read it: ``0x1A0``, ``0x000001A0`` of an extended one."""
+        return f"0x{self.identifier:0{8 if self.extended else 3}X}"
+
+    @property
     def check(self) -> Protection | Authentication | None:
         """What decides whether a frame that is received is used."""
         return self.protection or self.authentication

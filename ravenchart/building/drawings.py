@@ -12,6 +12,8 @@ from ravenchart.gen.draw.picture import Picture, picture
 from ravenchart.gen.draw.plantuml import plantuml
 from ravenchart.gen.draw.structure import structure_dot
 from ravenchart.gen.draw.svg import finished
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 from ravenchart.tools import toolchain
 
@@ -25,6 +27,9 @@ class Format:
     structure: Callable[[System], str]
 
 
+STRUCTURE = "structure"
+"""The name of the drawing of the structure; that of a chart is ``Component.Region``."""
+
 FORMATS: Mapping[str, Format] = {
     "svg": Format(".svg", chart_dot, structure_dot),
     "plantuml": Format(".puml", plantuml, structure_text.plantuml),
@@ -32,12 +37,30 @@ FORMATS: Mapping[str, Format] = {
 }
 
 
+def charts(system: System) -> dict[str, tuple[Component, Region]]:
+    """The charts of a system by the names of their drawings."""
+    return {
+        f"{c.name}.{region.name}": (c, region) for c in system.components for region in c.regions
+    }
+
+
+def names(system: System) -> tuple[str, ...]:
+    """The drawings of a system."""
+    return (STRUCTURE, *charts(system))
+
+
+def text(system: System, name: str, form: str = "svg") -> str | None:
+    """The text of a drawing, of SVG the DOT that it is made of; None of one that is not there."""
+    if name == STRUCTURE:
+        return FORMATS[form].structure(system)
+    found = charts(system).get(name)
+    return None if found is None else FORMATS[form].chart(picture(*found))
+
+
 def texts(system: System, form: str = "svg") -> dict[str, str]:
-    """File name to text of every drawing of a system; for SVG the DOT that it is made of."""
-    chosen = FORMATS[form]
-    charts = (picture(c, region) for c in system.components for region in c.regions)
-    made = {f"{chart.title}{chosen.suffix}": chosen.chart(chart) for chart in charts}
-    return {f"structure{chosen.suffix}": chosen.structure(system), **made}
+    """File name to text of every drawing of a system."""
+    made = ((name, text(system, name, form)) for name in names(system))
+    return {f"{name}{FORMATS[form].suffix}": one for name, one in made if one is not None}
 
 
 def svg(dot: str) -> str:

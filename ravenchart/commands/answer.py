@@ -2,7 +2,8 @@
 
 A command fills in ``result`` and tells its warnings; `command_line` tells how it failed. Here the
 text for people is kept off standard output, and the object printed. Standard error has the same
-text as without `--json`. docs/answer.schema.json is made of the classes here and in `results`.
+text as without `--json`. docs/answer.schema.json is made of `Answer`, and of the
+classes in `reported` and `results`.
 """
 
 from __future__ import annotations
@@ -14,13 +15,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import asdict, dataclass, field
 from os import devnull
-from typing import Any, Literal
+from typing import Any
 
 from ravenchart.described import Described, Result
 from ravenchart.failures import INTERNAL, INTERNAL_TEXT
 from ravenchart.gen.diagnostics import Diagnostic
-from ravenchart.gen.origins import Origin
 from ravenchart.paths import version
+from ravenchart.reported import SEVERITIES, Found, Note, Severity, found_of
 
 FORMAT = 1
 """The version of the object: raised when a key goes or changes its meaning."""
@@ -36,45 +37,6 @@ NAMED = re.compile(r"(?:(?P<file>[^\n]+?): )?(?P<severity>error|warning|note): (
 EXCERPT = re.compile(r" *\d* \| .*")
 """A line of the file that a message is about."""
 HINT = re.compile(r"\s*hint: (?P<message>.*)")
-Severity = Literal["error", "warning", "note"]
-SEVERITIES: Mapping[str, Severity] = {"warning": "warning", "note": "note", "info": "note"}
-"""Of a word before a message; every other one is an error."""
-
-
-@dataclass(slots=True)
-class Note(Described):
-    """Another place that a diagnostic speaks of."""
-
-    message: str
-    """What is to be seen there."""
-    file: str | None = None
-    """The file, as it was given."""
-    line: int | None = None
-    """The line, from 1."""
-    column: int | None = None
-    """The column, from 1."""
-
-
-@dataclass(slots=True)
-class Found(Described):
-    """An error, a warning or a note."""
-
-    severity: Severity
-    """`error`, `warning` or `note`."""
-    message: str
-    """What is wrong."""
-    code: str | None = None
-    """The code, for `ravenchart explain`; null where the message has none."""
-    file: str | None = None
-    """The file, as it was given; null where the message is about none."""
-    line: int | None = None
-    """The line, from 1."""
-    column: int | None = None
-    """The column, from 1."""
-    hint: str | None = None
-    """What to do."""
-    notes: list[Note] = field(default_factory=list)
-    """Other places."""
 
 
 @dataclass(slots=True)
@@ -89,7 +51,7 @@ class Answer:
 
     def add(self, diagnostics: Iterable[object]) -> None:
         """Diagnostics of a model."""
-        self.found += [_of(one) for one in diagnostics if isinstance(one, Diagnostic)]
+        self.found += [found_of(one) for one in diagnostics if isinstance(one, Diagnostic)]
 
     def tell(self, text: str, severity: Severity = "error") -> None:
         """What is said in a text for people, which an outside program may have printed."""
@@ -145,16 +107,6 @@ def _alone() -> Iterator[Callable[[str], int]]:
     out = sys.stdout
     with open(devnull, "w", encoding="utf-8") as nowhere, redirect_stdout(nowhere):
         yield out.write
-
-
-def _of(one: Diagnostic) -> Found:
-    notes = [Note(text, *_place(origin)) for origin, text in one.notes]
-    severity = SEVERITIES.get(one.severity.value, "error")
-    return Found(severity, one.message, one.code, *_place(one.origin), one.hint, notes)
-
-
-def _place(origin: Origin) -> tuple[str, int, int]:
-    return origin.file, origin.line, origin.column
 
 
 def found_in(text: str, severity: Severity = "error") -> list[Found]:

@@ -8,10 +8,9 @@ from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
-from ravenchart.building.drawings import svg
+from ravenchart.building import drawings
 from ravenchart.gen.draw.svg import mark
 
-from . import pictures
 from .aside import Aside
 from .changes import RefusedError
 from .evaluation import Evaluation
@@ -195,12 +194,12 @@ class Hub:
 
     def _dot(self, name: str) -> tuple[str, list[dict[str, Any]]] | None:
         analysis = self.session.good.analysis
-        dot = None if analysis is None else pictures.dot(analysis.system, name)
+        dot = None if analysis is None else drawings.text(analysis.system, name)
         return None if dot is None else (dot, located(self.session, name))
 
     def _svg(self, dot: str) -> str:
         """What Graphviz makes of it; the last hundred drawings are kept."""
-        found = self._drawn.pop(dot, None) or svg(dot)
+        found = self._drawn.pop(dot, None) or drawings.svg(dot)
         self._drawn[dot] = found
         if len(self._drawn) > 100:
             del self._drawn[next(iter(self._drawn))]

@@ -1,4 +1,4 @@
-"""The drawings of a model for the page, and where what they show stands in its files.
+"""Where what the drawings of a model show stands in its files.
 
 Graphviz names each group of an SVG drawing in its ``title``: by that name, or by the name and a
 text inside the group, the page finds the location of what is clicked.
@@ -8,46 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.draw.chart import chart_dot
-from ravenchart.gen.draw.picture import label, picture
-from ravenchart.gen.draw.structure import structure_dot
+from ravenchart.building import drawings
+from ravenchart.gen.draw.picture import label
 from ravenchart.gen.draw.wrapping import wrapped
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region, TransitionKind
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
-STRUCTURE = "structure"
-"""The name of the drawing of the structure; a chart is called ``Component.Region``."""
-
 Located = tuple[str, str, Origin]
 """The title of a group, a text in it ("" for the group itself), and where that stands."""
 
 
-def names(system: System) -> tuple[str, ...]:
-    """The drawings of a model."""
-    return (STRUCTURE, *_charts(system))
-
-
-def dot(system: System, name: str) -> str | None:
-    """The DOT text of a drawing, as `ravenchart draw` makes it; None of one that is not there."""
-    if name == STRUCTURE:
-        return structure_dot(system)
-    found = _charts(system).get(name)
-    return None if found is None else chart_dot(picture(*found))
-
-
-def _charts(system: System) -> dict[str, tuple[Component, Region]]:
-    return {
-        f"{c.name}.{region.name}": (c, region) for c in system.components for region in c.regions
-    }
-
-
 def locations(system: System, name: str) -> tuple[Located, ...]:
     """Where the elements of a drawing stand; none of a drawing that is not there."""
-    if name == STRUCTURE:
+    if name == drawings.STRUCTURE:
         return tuple(_of_structure(system))
-    found = _charts(system).get(name)
+    found = drawings.charts(system).get(name)
     return () if found is None else tuple(_of_chart(*found))
 
 

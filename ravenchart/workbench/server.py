@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator
+from dataclasses import asdict
 from importlib import resources
 
 from starlette.applications import Starlette
@@ -12,13 +13,14 @@ from starlette.routing import Route
 from starlette.types import ASGIApp
 
 from ravenchart.failures import Failure
+from ravenchart.reported import found_of
 
 from . import requests
 from .changes import RefusedError
 from .guard import LARGEST, Guard
 from .hub import Hub, OldError
 from .session import InvalidError
-from .view import finding, source
+from .view import source
 
 TYPES = {"html": "text/html", "js": "text/javascript", "css": "text/css", "svg": "image/svg+xml"}
 PAGE = "page.html"
@@ -134,7 +136,7 @@ class _Application:
         except OldError as problem:
             return _error(409, str(problem))
         except InvalidError as problem:
-            found = [finding(one) for one in problem.found]
+            found = [asdict(found_of(one)) for one in problem.found]
             return _error(422, str(problem), findings=found, late=problem.late)
         except RefusedError as problem:
             return _error(422, str(problem))

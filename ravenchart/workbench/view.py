@@ -7,6 +7,7 @@ there also while the model has errors. All that is reckoned is then that of the 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
 from ravenchart.analysis.present.bars import row_of
@@ -14,11 +15,12 @@ from ravenchart.analysis.present.words import overload_lines, verdict_line
 from ravenchart.analysis.system.latencies import Latency
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import microseconds, percent
-from ravenchart.gen.diagnostics import Diagnostic
+from ravenchart.building import drawings
 from ravenchart.gen.files.spans import Scalar
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.system import Chain
 from ravenchart.gen.origins import Origin
+from ravenchart.reported import found_of
 
 from . import pictures
 from .evaluation import Evaluation, document
@@ -48,25 +50,13 @@ def view(session: Session) -> Json:
         "verdict": verdict_line(good) if now.analysis is not None else "The model has errors.",
         "saved_verdict": verdict_line(saved),
         "overloads": list(overload_lines(good.loads)),
-        "findings": [finding(one) for one in now.found],
+        "findings": [asdict(found_of(one)) for one in now.found],
         "loads": _loads(good, saved),
         "components": list(_components(where)),
         "processors": list(_processors(where, good, saved)),
         "messages": list(_messages(good, saved)),
         "chains": list(_chains(good, saved)),
-        "drawings": list(pictures.names(good.system)),
-    }
-
-
-def finding(one: Diagnostic) -> Json:
-    """A diagnostic, as `--json` has it."""
-    return {
-        "severity": one.severity.value,
-        "code": one.code,
-        "message": one.message,
-        **_place(one.origin),
-        "hint": one.hint,
-        "notes": [{"message": text, **_place(origin)} for origin, text in one.notes],
+        "drawings": list(drawings.names(good.system)),
     }
 
 
@@ -232,11 +222,10 @@ def _messages(good: Analysis, saved: Analysis) -> Iterator[Json]:
     for bus in good.system.buses:
         for response in good.frames(bus):
             message = good.messages[response.frame.name]
-            digits = 8 if message.extended else 3
             yield {
                 "name": message.name,
                 "bus": bus.name,
-                "identifier": f"0x{message.identifier:0{digits}X}",
+                "identifier": message.shown_identifier,
                 "period": shown(message.period),
                 **_place(message.origin),
                 **_response(good, saved, response.frame.name),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -45,3 +46,14 @@ def test_the_command_writes_one_file_for_each_chart_and_one_for_the_structure(
     assert sorted(path.name for path in tmp_path.iterdir()) == names
     assert main(["draw", model, "--out", str(tmp_path), "--format", "mermaid"]) == 0
     assert (tmp_path / "Unit.Subject.mmd").read_text().startswith("---\ntitle: Unit.Subject\n")
+
+
+def test_identifiers_are_the_same_text_in_every_format() -> None:
+    system = checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml").system
+    texts = [drawings.text(system, drawings.STRUCTURE, form) or "" for form in drawings.FORMATS]
+    extended = ROOT / "examples" / "j1939_node" / "model.yaml"
+    texts += drawings.texts(checking.check(extended).system, "mermaid").values()
+    found = [re.findall(r"0x[0-9A-F]+", text) for text in texts]
+    robot = {message.shown_identifier for message in system.messages}
+    assert all(set(one) == robot for one in found[:3])
+    assert all(len(one) == len("0x18FEF100") for one in found[3]), found[3]

@@ -11,10 +11,11 @@ from pathlib import Path
 import pytest
 
 from ravenchart.command_line import COMMANDS, WITHOUT_JSON, main
-from ravenchart.commands.answer import Found, Note, found_in
+from ravenchart.commands.answer import found_in
 from ravenchart.commands.results import RESULTS
 from ravenchart.gen.explanations import explanations
 from ravenchart.paths import ROOT
+from ravenchart.reported import Found, Note
 from tests.support.answers import answered, valid
 
 PUMP = ROOT / "examples" / "pump"
