@@ -13,7 +13,7 @@ from ravenchart.gen.derive.completion import completed
 from ravenchart.gen.diagnostics import Diagnostic, Sources, in_order
 from ravenchart.gen.files.load import Reader, read_file, read_model
 from ravenchart.gen.files.schema import ModelFile
-from ravenchart.gen.language.names import Findings
+from ravenchart.gen.language.names import Findings, Unknown, Use
 from ravenchart.gen.model.system import System
 from ravenchart.gen.resolve.system import resolve
 from ravenchart.gen.rules.buses import names_in_databases
@@ -28,6 +28,10 @@ class Loaded:
     system: System | None
     diagnostics: tuple[Diagnostic, ...]
     sources: Sources
+    uses: tuple[Use, ...] = ()
+    """The names that were looked up, and where each is declared."""
+    unknown: tuple[Unknown, ...] = ()
+    """The names that are not declared."""
 
 
 def load(path: Path, read: Reader = read_file) -> Loaded:
@@ -36,7 +40,8 @@ def load(path: Path, read: Reader = read_file) -> Loaded:
     findings = Findings(list(content.found))
     system = _valid(content.forms, content.whole, content.digest, findings)
     diagnostics = in_order(findings.items, content.sources)
-    return Loaded(system, diagnostics, content.sources)
+    names = tuple(findings.uses), tuple(findings.unknown)
+    return Loaded(system, diagnostics, content.sources, *names)
 
 
 def _valid(

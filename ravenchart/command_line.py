@@ -28,6 +28,10 @@ COMMANDS = {
         "allocate the periodic rows of a model to processors anew, and check",
     ),
     "workbench": ("workbench", "change and analyse the model in a local web page"),
+    "language-server": (
+        "language_server",
+        "answer an editor that speaks the Language Server Protocol",
+    ),
     "check-certificate": (
         "check_certificate",
         "compare the generated program with the model, by independent code",
@@ -63,8 +67,8 @@ ALIASES = {"import": ("import-dbc",)}
 
 JSON = "--json"
 
-WITHOUT_JSON = ("bus", "completion", "workbench")
-"""Commands without an answer: two go on until they are stopped, and one prints a script."""
+WITHOUT_JSON = ("bus", "completion", "language-server", "workbench")
+"""Commands without an answer: three go on until they are stopped, and one prints a script."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

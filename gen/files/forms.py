@@ -6,6 +6,7 @@ was taken out leaves its name behind, so that its uses are not reported too.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import Any
 
@@ -210,6 +211,48 @@ class Place:
         listed = f"the keys here: {', '.join(allowed)}"
         hint = f"{near} {listed}" if near and near.startswith("did") else listed
         return error("RV-0201", origin, f"the key `{name}` is unknown here", hint=hint)
+
+
+def keys_beside(tree: Map, key: str) -> dict[str, str]:
+    """The keys that could stand where an unknown one does, each with what it means."""
+    try:
+        ModelFile.model_validate(tree)
+    except ValidationError as problem:
+        errors = problem.errors(include_url=False)
+    else:
+        return {}
+    found: dict[str, str] = {}
+    for item in errors:
+        if item["type"] == "extra_forbidden" and item["loc"][-1] == key:
+            found |= _meanings(item["loc"][:-1])
+        elif item["type"] == "choice":
+            value = Place(tree, item["loc"]).value
+            if isinstance(value, Map) and key in value:
+                found |= dict.fromkeys(re.findall(r"`(\w+)`", item["msg"]), "")
+    return found
+
+
+def words_for(tree: Map, value: str) -> tuple[str, ...]:
+    """The words of which one could stand where an unknown one does."""
+    try:
+        ModelFile.model_validate(tree)
+    except ValidationError as problem:
+        errors = problem.errors(include_url=False)
+        return tuple(
+            word
+            for item in errors
+            if item["type"] == "literal_error" and item["input"] == value
+            for word in re.findall(r"'(\w+)'", item["ctx"]["expected"])
+        )
+    return ()
+
+
+def _meanings(loc: Iterable[str | int]) -> dict[str, str]:
+    """The keys of the form to which pydantic's ``loc`` leads, each with what it means."""
+    form = _form_at(ModelFile, list(loc))
+    if form is None:
+        return {}
+    return {f.alias or name: f.description or "" for name, f in form.model_fields.items()}
 
 
 SHAPES = ("range", "values", "fields", "set", "send", "call", "raise", "if", "in", "out")

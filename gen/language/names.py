@@ -143,9 +143,34 @@ def meant(name: str, known: Iterable[str]) -> str | None:
     return f"one of: {', '.join(names)}" if 0 < len(names) <= 12 else None
 
 
+@dataclass(frozen=True, slots=True)
+class Use:
+    """A name that is used: what it names, and where that is declared.
+
+    ``origin`` is where the text begins that holds it, as in ``instance.port``: of two uses there
+    the earlier stands first. ``declared`` is None of what no file declares; with ``within`` it
+    is where the type begins that lists the name.
+    """
+
+    name: str
+    origin: Origin
+    kind: str
+    declared: Origin | None
+    within: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """A name that is not declared, and the names that could stand there."""
+
+    name: str
+    kind: str
+    known: tuple[str, ...]
+
+
 @dataclass(slots=True)
 class Findings:
-    """The diagnostics of one model, as they are found.
+    """The diagnostics of one model, as they are found, and the names that were looked up.
 
     ``losses`` counts what was left out without a word, since it refers to what
     was reported already.
@@ -153,6 +178,8 @@ class Findings:
 
     items: list[Diagnostic] = field(default_factory=list)
     losses: int = 0
+    uses: list[Use] = field(default_factory=list)
+    unknown: list[Unknown] = field(default_factory=list)
 
     def error(
         self,
@@ -225,8 +252,17 @@ class Scope(Generic[T]):
         """Whether the name is declared, soundly or not."""
         return self.open or name.lower() in self.items
 
+    def used(self, name: str, origin: Origin, findings: Findings) -> None:
+        """Note that the name is used there, for those who follow names."""
+        known = self.items.get(name.lower())
+        if known is None:
+            findings.unknown.append(Unknown(name, self.kind, tuple(self.names())))
+        else:
+            findings.uses.append(Use(known[0], origin, self.kind, known[1]))
+
     def look_up(self, name: str, origin: Origin, findings: Findings) -> T | None:
         """The item of that name; reported when the name is not declared."""
+        self.used(name, origin, findings)
         if not self.knows(name):
             message = f"there is no {self.kind} named `{name}`"
             findings.error("RV-0305", origin, message, hint=meant(name, self.names()))

@@ -13,7 +13,7 @@ from ravenchart.gen.files.schema import (
 )
 from ravenchart.gen.files.schema_deployment import ProbeForm
 from ravenchart.gen.files.schema_frames import WatchForm
-from ravenchart.gen.language.names import Findings, Scope, meant
+from ravenchart.gen.language.names import Findings, Scope, Unknown, meant
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Flow, Ns, Type
 from ravenchart.gen.model.commands import Command, Need
@@ -309,12 +309,15 @@ def _declared(
     """The name as declared in one of these scopes; None when unknown or unsound."""
     for scope in scopes:
         if name.lower() in scope.items:
+            scope.used(name, origin, findings)
             declared, _, item = scope.items[name.lower()]
             if item is None:
                 findings.lose()
             return None if item is None else declared
+    names = tuple(known for scope in scopes for known in scope.names())
+    findings.unknown.append(Unknown(name, kind, names))
     if not any(scope.open for scope in scopes):
-        near = meant(name, (known for scope in scopes for known in scope.names()))
+        near = meant(name, names)
         findings.error("RV-0305", origin, f"there is no {kind} named `{name}`", hint=near)
     findings.lose()
     return None

@@ -360,6 +360,7 @@ def _bus_slot(
     text: str, name: str, owner: str, origin: Origin, form: ProcessorForm, site: Site
 ) -> Slot | None:
     """The row ``bus.receive``, the driver's time for one frame, or ``bus.watch``."""
+    site.buses.used(owner, origin, site.findings)
     bus = site.buses.find(owner)
     if name.lower() not in ("receive", "watch"):
         message = f"`{text}` is no row: a bus has the rows `{owner}.receive` and `{owner}.watch`"

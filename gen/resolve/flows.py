@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from ravenchart.gen.files.located import Place
 from ravenchart.gen.files.schema import CallForm, IfForm, RaiseForm, SendForm, SetForm
 from ravenchart.gen.language.names import Findings, Scope, meant
+from ravenchart.gen.language.names import Use as NameUse
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     Action,
@@ -83,6 +84,7 @@ def _set(form: SetForm, words: Vocabulary, targets: Targets, findings: Findings)
     item, _, member = form.set.partition(".")
     origin = form.at("set")
     hint: str | None
+    targets.data.used(item, origin, findings)
     if not targets.data.knows(item):
         if words.readable.knows(item) or targets.outputs.knows(item):
             message = f"`{item}` is not a data item; only a data item can be set"
@@ -110,7 +112,9 @@ def _set(form: SetForm, words: Vocabulary, targets: Targets, findings: Findings)
                 message = f"`{name}` is a record: set its fields one by one"
                 findings.error("RV-0415", origin, message, hint=f"`set: {name}.<field>`")
             return None
-        target, member = fields[member.lower()].type, fields[member.lower()].name
+        chosen = fields[member.lower()]
+        findings.uses.append(NameUse(chosen.name, origin, "field", chosen.origin))
+        target, member = chosen.type, chosen.name
     elif member:
         findings.error("RV-0403", origin, f"`{name}` is a scalar and has no field `{member}`")
         return None
@@ -127,6 +131,7 @@ def _set(form: SetForm, words: Vocabulary, targets: Targets, findings: Findings)
 
 def _send(form: SendForm, words: Vocabulary, targets: Targets, findings: Findings) -> Action | None:
     origin = form.at("send")
+    targets.outputs.used(form.send, origin, findings)
     if not targets.outputs.knows(form.send):
         kind = "an input port" if words.inputs.knows(form.send) else "no output port"
         message = f"`{form.send}` is {kind}; `send` needs an output port"
@@ -258,6 +263,8 @@ def _fields(
                 message = f"`with` gives no value for the field `{one.name}` of {type_.name}"
                 findings.error("RV-0415", form.at_key("with"), message)
             continue
+        at = form.entry_at("with", key)
+        findings.uses.append(NameUse(one.name, at, "field", one.origin))
         place = form.place("with", key)
         value = fitting(given[key], place, f"{carrier}.{one.name}", one.type, words, findings)
         if value is not None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from ravenchart.gen.files.located import Place
 from ravenchart.gen.files.schema_frames import MessageForm, SignalForm
-from ravenchart.gen.language.names import Findings, alike_in_databases, meant
-from ravenchart.gen.language.terms import EnumerationType, IntegerType, ScalarType, Type
+from ravenchart.gen.language.names import Findings, Use, alike_in_databases, meant
+from ravenchart.gen.language.terms import EnumerationType, IntegerType, RecordType, ScalarType, Type
 from ravenchart.gen.model.authentication import FRESHNESS, MAC, REST
 from ravenchart.gen.model.protection import PROFILES
 from ravenchart.gen.model.signals import (
@@ -57,6 +58,15 @@ def layout_of(
             at = form.entry_at("signals", entry)
             findings.error(LAYOUT, at, message, hint=meant(entry, names))
             sound = False
+    named = {} if not isinstance(type_, RecordType) else {f.name.lower(): f for f in type_.fields}
+    for lowered, entry in given.items():
+        if lowered in named:
+            one = named[lowered]
+            at = form.entry_at("signals", entry)
+            findings.uses.append(Use(one.name, at, "field", one.origin))
+    if form.multiplexor is not None and form.multiplexor.lower() in named:
+        one = named[form.multiplexor.lower()]
+        findings.uses.append(Use(one.name, form.at("multiplexor"), "field", one.origin))
     maker = _Maker(name, form, findings)
     selector = maker.selector(known)
     signals: list[Signal] = []
@@ -272,7 +282,13 @@ class _Maker:
             return ()
         given = form.when if isinstance(form.when, list) else [form.when]
         place = form.place("when")
-        found = [constant(one, place, selector.name, selector.type, self.findings) for one in given]
+        places = [place]
+        if isinstance(form.when, list):
+            places = [Place(form.item_at("when", index)) for index in range(len(given))]
+        found = [
+            constant(one, at, selector.name, selector.type, self.findings)
+            for one, at in zip(given, places, strict=True)
+        ]
         if selector.other is not None and selector.other in found:
             message = f"`{selector.other}` stands for many raw values of `{selector.name}`"
             self.wrong(key, "when", message, "name values that have one raw value each")

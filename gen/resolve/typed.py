@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from ravenchart.gen.files.located import Place
 from ravenchart.gen.language import folding, intervals
 from ravenchart.gen.language.expressions import Malformed, Term, parse
-from ravenchart.gen.language.names import Findings, meant
+from ravenchart.gen.language.names import Findings, Unknown, Use, meant
 from ravenchart.gen.language.narrowing import COMPARISONS, Known, narrowed
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -26,7 +26,7 @@ from ravenchart.gen.language.terms import (
 )
 from ravenchart.gen.origins import Origin
 
-from .vocabulary import EVENT, Checked, Vocabulary, described, range_of
+from .vocabulary import EVENT, Checked, Vocabulary, described, literal_use, range_of
 
 FUNCTIONS: Mapping[str, int] = {
     "abs": 1,
@@ -98,6 +98,7 @@ class Checker:
         kind, name, type_ = found
         if term.kind == "name" and type_ is not expected and _is_literal_of(term.word, expected):
             return self.literal(term, expected)
+        readable.used(term.word, self.at(term), self.findings)
         if term.kind == "name":
             return self.reading(Name(kind, name, None, type_), type_)
         if not isinstance(type_, RecordType):
@@ -105,6 +106,7 @@ class Checker:
             return None
         for item in type_.fields:
             if item.name.lower() == term.member.lower():
+                self.findings.uses.append(Use(item.name, self.at(term), "field", item.origin))
                 return self.reading(Name(kind, name, item.name, item.type), item.type)
         hint = meant(term.member, (item.name for item in type_.fields))
         message = f"`{name}` is of type {type_.name}, which has no field `{term.member}`"
@@ -123,6 +125,10 @@ class Checker:
         if term.kind == "name" and term.word.lower() in ("true", "false"):
             return Checked(Literal(term.word.capitalize(), BOOLEAN), BOOLEAN)
         known = self.vocabulary.readable.names()
+        fitting = () if expected is None else expected.literals
+        if term.word.lower() not in map(str.lower, fitting):
+            kind = "name or literal"
+            self.findings.unknown.append(Unknown(term.word, kind, (*fitting, *known)))
         if term.word.lower() == EVENT and not _is_literal_of(term.word, expected):
             message = f"`{EVENT}` has no value: {self.vocabulary.no_event}"
             told = "guard and effect of an `on` can read it, where the event has a type"
@@ -139,6 +145,7 @@ class Checker:
         else:
             for literal in expected.literals:
                 if literal.lower() == term.word.lower():
+                    self.findings.uses.append(literal_use(literal, expected, self.at(term)))
                     return Checked(Literal(literal, expected), expected)
             near = meant(term.word, (*expected.literals, *known))
             hint = near if near and near.startswith("did") else meant(term.word, expected.literals)

@@ -8,7 +8,15 @@ from ravenchart.gen.files.located import Place
 from ravenchart.gen.files.schema import FieldsType, ParameterForm, RangeType, ValuesType
 from ravenchart.gen.files.schema_base import Element
 from ravenchart.gen.files.schema_devices import DeviceParameterForm
-from ravenchart.gen.language.names import CHILDREN, HIDING, PREDEFINED_TYPES, Findings, Scope, meant
+from ravenchart.gen.language.names import (
+    CHILDREN,
+    HIDING,
+    PREDEFINED_TYPES,
+    Findings,
+    Scope,
+    Use,
+    meant,
+)
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     EnumerationType,
@@ -22,7 +30,7 @@ from ravenchart.gen.language.terms import (
 )
 from ravenchart.gen.origins import Origin
 
-from .vocabulary import range_of
+from .vocabulary import literal_use, range_of
 
 FIRST, LAST = -(2**62), 2**62 - 1
 """Bounds of every integer type."""
@@ -142,6 +150,7 @@ def constant(
         return value
     for literal in type_.literals:
         if literal.lower() == str(value).lower():
+            findings.uses.append(literal_use(literal, type_, place.origin))
             return literal
     message = f"`{what}` must be of type {type_.name}, which has no literal `{value}`"
     hint = meant(str(value), type_.literals)
@@ -193,6 +202,8 @@ def initial_value(
     for one in type_.fields:
         entry = entries.pop(one.name.lower(), None)
         if entry is not None:
+            at = form.entry_at("initial", entry)
+            findings.uses.append(Use(one.name, at, "field", one.origin))
             place = form.place("initial", entry)
             value = constant(given[entry], place, f"{name}.{one.name}", one.type, findings)
             if value is not None:

@@ -5,8 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ravenchart.gen.language.intervals import Interval
-from ravenchart.gen.language.names import Scope
-from ravenchart.gen.language.terms import EnumerationType, Expression, Reading, RecordType, Type
+from ravenchart.gen.language.names import Scope, Use
+from ravenchart.gen.language.terms import (
+    BOOLEAN,
+    EnumerationType,
+    Expression,
+    Reading,
+    RecordType,
+    Type,
+)
+from ravenchart.gen.origins import Origin
 
 EVENT = "event"
 """What expressions call the value of the triggering event."""
@@ -52,6 +60,12 @@ class Checked:
     bounds: Interval = (0, 0)
     unit: str | None = None
     bare: bool = False
+
+
+def literal_use(literal: str, of_type: EnumerationType, origin: Origin) -> Use:
+    """A literal that is used."""
+    kind = f"literal of {of_type.name}"
+    return Use(literal, origin, kind, None if of_type is BOOLEAN else of_type.origin, within=True)
 
 
 def described(checked: Checked) -> str:

@@ -17,7 +17,7 @@ from dataclasses import asdict, dataclass, field
 from os import devnull
 from typing import Any
 
-from ravenchart.described import Described, Result
+from ravenchart.described import Result
 from ravenchart.failures import INTERNAL, INTERNAL_TEXT
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.paths import version

@@ -70,13 +70,13 @@ def content(document: Document, before: bytes) -> bytes:
 
 
 @without_collector()
-def evaluate(path: Path, texts: Texts) -> Evaluation:
-    """Load and analyse the model at ``path``, its files as in ``texts``; others are read.
+def evaluate(path: Path, texts: Texts, other: Reader = read_file) -> Evaluation:
+    """Load and analyse the model at ``path``, its files as in ``texts``; ``other`` reads others.
 
     The files of the result are those that were read.
     """
     seen: dict[str, bytes] = {}
-    inner = over(texts)
+    inner = over(texts, other)
 
     def read(file: Path, limit: int) -> bytes:
         seen[str(file)] = inner(file, limit)

@@ -1,0 +1,23 @@
+"""`ravenchart language-server`: diagnostics, completion and rename for editors, over stdio."""
+
+from __future__ import annotations
+
+import argparse
+
+from ravenchart.failures import OK
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what the command is told."""
+    sub.add_argument(
+        "--stdio", action="store_true",
+        help="talk over standard input and output: the only way, which some editors ask for",
+    )  # fmt: skip
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Serve until the editor ends it; the exit status."""
+    from ravenchart.language_server.server import server
+
+    server().start_io()
+    return OK

@@ -1,0 +1,55 @@
+"""What the language server knows of names: every use, and another name for each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from ravenchart.language_server.model import model
+from ravenchart.language_server.renaming import NotRenamedError, renamed
+from ravenchart.language_server.symbols import Symbol
+from ravenchart.paths import ROOT
+
+TWO_NODES = ROOT / "examples" / "two_nodes" / "model.yaml"
+KINDS = ROOT / "tests" / "feature" / "kinds" / "model.yaml"
+LAYOUTS = ROOT / "tests" / "feature" / "flexible" / "model.yaml"
+
+
+def _symbols(path: Path) -> list[Symbol]:
+    return [one for one in model(path, {}).symbols.all() if one.declared is not None]
+
+
+@pytest.mark.parametrize("path", [TWO_NODES, LAYOUTS])
+def test_every_name_that_is_declared_can_be_changed(path: Path) -> None:
+    now = model(path, {})
+    symbols = _symbols(path)
+    assert len(symbols) > 30
+    for symbol in symbols:
+        places = renamed(now, symbol, "Another_Name", {})
+        assert sum(map(len, places.values())) == len(symbol.tokens)
+
+
+def test_a_name_of_which_others_are_made_is_not_changed() -> None:
+    now = model(KINDS, {})
+    made = {}
+    for symbol in _symbols(KINDS):
+        try:
+            renamed(now, symbol, "Another_Name", {})
+        except NotRenamedError as problem:
+            made[symbol.name] = str(problem)
+    assert set(made) == {"Home", "Get_Limit", "Move_By"}, made
+    assert "`Home_Reply`" in made["Home"]
+
+
+def test_a_name_that_would_take_over_the_uses_of_another_is_refused(tmp_path: Path) -> None:
+    text = TWO_NODES.read_text()
+    path = tmp_path / "model.yaml"
+    path.write_text(text)
+    now = model(path, {})
+    for symbol in now.symbols.all():
+        other = next((s for s in _symbols(path) if s.kind == symbol.kind and s is not symbol), None)
+        if symbol.declared is None or other is None or other.name == symbol.name:
+            continue
+        with pytest.raises(NotRenamedError):
+            renamed(now, symbol, other.name, {})
