@@ -30,9 +30,10 @@ class Editor:
         self.texts: dict[str, str] = {}
         self.told: asyncio.Queue[lsp.PublishDiagnosticsParams] = asyncio.Queue()
 
-        @client.feature(lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
         def tell(told: lsp.PublishDiagnosticsParams) -> None:
             self.told.put_nowait(told)
+
+        client.feature(lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)(tell)
 
     def uri(self, name: str) -> str:
         """Of a file in the folder."""

@@ -34,3 +34,20 @@ def test_files_modules_and_links_of_a_page_exist(page: Path) -> None:
         if not place.is_dir() and not place.with_suffix(".py").exists():
             lost.append(name)
     assert lost == []
+
+
+PARTS = "Problem Forces Dynamic_form Liability Static_form Proof Code Test".split()
+
+
+def test_every_pattern_is_told_in_full() -> None:
+    text = (ROOT / "docs" / "patterns.md").read_text(encoding="utf-8")
+    sections = re.split(r"^## (?=\d)", text, flags=re.M)[1:]
+    assert [one.partition(".")[0] for one in sections] == [str(n) for n in range(1, 19)]
+    for section in sections:
+        rows = re.findall(r"^\| ([A-Z][a-z ]+) \| (.+) \|$", section, re.M)
+        assert [name.replace(" ", "_") for name, _ in rows] == PARTS, section
+        told = dict(rows)
+        assert all(LINK.search(told[part]) for part in ("Code", "Test")), section
+    steps = text.partition("## The sequence")[2].partition("## 1.")[0]
+    led = re.findall(r"\(#(\d+)-", steps)
+    assert sorted(map(int, led)) == list(range(1, 19))
