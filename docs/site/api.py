@@ -20,6 +20,9 @@ ADA = {
     "spark_runtime/devices": "For programs whose devices can fail at their start.",
     "spark_runtime/simulated": "In place of tasks and clock where a program runs in virtual time.",
     "hw_can/hal": "Frames, codecs, protection, and what a CAN driver offers.",
+    "hw_can/simulator": "A CAN bus bit by bit: frames, arbitration, fault confinement.",
+    "hw_can/server": "Nodes with buffers on a simulated bus, and its server.",
+    "hw_can/protocol": "Records between the nodes and the server of a simulated bus.",
     "analysis/kernel": "The kernel of the timing analysis.",
 }
 """Folders of package specifications, and what is in them."""

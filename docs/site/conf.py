@@ -31,7 +31,7 @@ extensions = ["myst_parser", "sphinx.ext.autodoc"]
 root_doc = "docs/index"
 include_patterns = [
     "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs/*.md",
-    "proofs/*.md", "examples/*/README.md", "build/api/**.md",
+    "proofs/*.md", "examples/README.md", "examples/*/README.md", "build/api/**.md",
 ]  # fmt: skip
 nitpicky = False
 myst_heading_anchors = 4

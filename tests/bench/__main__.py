@@ -25,6 +25,7 @@ from . import charts as bench_charts
 from . import codecs as bench_codecs
 from . import commands as bench_commands
 from . import timing as bench_timing
+from . import waiting as bench_waiting
 from .large_models import large_model
 
 ROUNDS = 5
@@ -84,6 +85,7 @@ def large_models() -> None:
 
 def main() -> None:
     """All figures."""
+    bench_waiting.main()
     runtime_operations()
     bench_commands.main()
     bench_codecs.main()

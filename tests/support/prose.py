@@ -19,6 +19,7 @@ PAGES = (
     *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md")),
     *(path for path in sorted((ROOT / "docs").glob("*.md")) if path.name not in GENERATED),
     ROOT / "proofs/assumptions.md",
+    ROOT / "examples" / "README.md",
     *sorted((ROOT / "examples").glob("*/README.md")),
 )
 SPOKEN = (

@@ -36,7 +36,7 @@ def test_files_modules_and_links_of_a_page_exist(page: Path) -> None:
     assert lost == []
 
 
-PARTS = "Problem Forces Dynamic_form Liability Static_form Proof Code Test".split()
+PARTS = ["Problem", "Forces", "Dynamic_form", "Liability", "Static_form", "Proof", "Code", "Test"]
 
 
 def test_every_pattern_is_told_in_full() -> None:
@@ -51,3 +51,22 @@ def test_every_pattern_is_told_in_full() -> None:
     steps = text.partition("## The sequence")[2].partition("## 1.")[0]
     led = re.findall(r"\(#(\d+)-", steps)
     assert sorted(map(int, led)) == list(range(1, 19))
+
+
+def test_the_door_is_a_picture_two_commands_and_five_links() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(re.findall(r"^!\[", text, re.M)) == 1
+    (commands,) = re.findall(r"^```\n(.*?)^```$", text, re.M | re.S)
+    assert commands.split("\n") == ["make demo", "make test", ""]
+    assert len(re.findall(r"(?<!!)\[[^]]+\]\(", text)) == 5
+    assert len(text.split()) < 300
+
+
+def test_every_page_is_in_the_list_of_pages() -> None:
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    linked = set(LINK.findall(index))
+    pages = {page.name for page in (ROOT / "docs").glob("*.md")} - {"index.md"}
+    assert pages - linked == set()
+    examples = (ROOT / "examples" / "README.md").read_text(encoding="utf-8")
+    folders = {page.parent.name for page in (ROOT / "examples").glob("*/README.md")}
+    assert {link.partition("/")[0] for link in LINK.findall(examples)} == folders
