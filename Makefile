@@ -8,13 +8,15 @@ export RAVENCHART_WARNINGS := errors
 RESULTS    := build/tests.xml
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
-.PHONY: help setup demo test test-all test-long hw-test board-test check prove generate bench bench-proof mutate mutate-runtime docs site
+.PHONY: help setup demo test test-all test-long coverage hw-test board-test check prove generate bench bench-proof
+.PHONY: mutate mutate-runtime docs site
 .PHONY: lock clean
 
 help:
 	@echo 'make demo      check, generate, build and run the Cartesian robot; a report'
 	@echo 'make test      the tests of a change: minutes; the slow ones are named and left out'
 	@echo 'make test-all  every test, as .ci/run does'
+	@echo 'make coverage  the same tests as make test; which statements and branches of the Python they execute'
 	@echo 'make test-long  the same with 2,000 random charts, millions of frames and lines: hours'
 	@echo 'make hw-test   drivers on SocketCAN and CTU CAN FD in a guest of QEMU, tests on other machines: minutes'
 	@echo 'make board-test  controllers and runtime on an emulated board; what cannot run is skipped'
@@ -39,6 +41,9 @@ test: setup
 
 test-all: setup
 	@RAVENCHART_ALL_TESTS=1 $(PYTHON) -P -m pytest -q -n auto --durations=25 --junit-xml=$(RESULTS)
+
+coverage: setup
+	@$(PYTHON) -P -m pytest -q -n auto --cov --cov-report=term:skip-covered --cov-report=html:build/coverage
 
 test-long: setup
 	@RAVENCHART_ALL_TESTS=1 RAVENCHART_LONG_TESTS=1 $(PYTHON) -P -m pytest -q -n auto

@@ -13,7 +13,7 @@ from ravenchart.gen.derive.completion import completed
 from ravenchart.gen.diagnostics import Diagnostic, Sources, in_order
 from ravenchart.gen.files.load import Reader, read_file, read_model
 from ravenchart.gen.files.schema import ModelFile
-from ravenchart.gen.language.names import Findings, Unknown, Use
+from ravenchart.gen.language.names import Findings, NameUse, Unknown
 from ravenchart.gen.model.system import System
 from ravenchart.gen.resolve.system import resolve
 from ravenchart.gen.rules.buses import names_in_databases
@@ -28,7 +28,7 @@ class Loaded:
     system: System | None
     diagnostics: tuple[Diagnostic, ...]
     sources: Sources
-    uses: tuple[Use, ...] = ()
+    uses: tuple[NameUse, ...] = ()
     """The names that were looked up, and where each is declared."""
     unknown: tuple[Unknown, ...] = ()
     """The names that are not declared."""

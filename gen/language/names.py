@@ -144,7 +144,7 @@ def meant(name: str, known: Iterable[str]) -> str | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Use:
+class NameUse:
     """A name that is used: what it names, and where that is declared.
 
     ``origin`` is where the text begins that holds it, as in ``instance.port``: of two uses there
@@ -178,7 +178,7 @@ class Findings:
 
     items: list[Diagnostic] = field(default_factory=list)
     losses: int = 0
-    uses: list[Use] = field(default_factory=list)
+    uses: list[NameUse] = field(default_factory=list)
     unknown: list[Unknown] = field(default_factory=list)
 
     def error(
@@ -258,7 +258,7 @@ class Scope(Generic[T]):
         if known is None:
             findings.unknown.append(Unknown(name, self.kind, tuple(self.names())))
         else:
-            findings.uses.append(Use(known[0], origin, self.kind, known[1]))
+            findings.uses.append(NameUse(known[0], origin, self.kind, known[1]))
 
     def look_up(self, name: str, origin: Origin, findings: Findings) -> T | None:
         """The item of that name; reported when the name is not declared."""

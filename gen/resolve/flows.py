@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 from ravenchart.gen.files.located import Place
 from ravenchart.gen.files.schema import CallForm, IfForm, RaiseForm, SendForm, SetForm
-from ravenchart.gen.language.names import Findings, Scope, meant
-from ravenchart.gen.language.names import Use as NameUse
+from ravenchart.gen.language.names import Findings, NameUse, Scope, meant
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     Action,

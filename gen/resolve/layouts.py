@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from ravenchart.gen.files.located import Place
 from ravenchart.gen.files.schema_frames import MessageForm, SignalForm
-from ravenchart.gen.language.names import Findings, Use, alike_in_databases, meant
+from ravenchart.gen.language.names import Findings, NameUse, alike_in_databases, meant
 from ravenchart.gen.language.terms import EnumerationType, IntegerType, RecordType, ScalarType, Type
 from ravenchart.gen.model.authentication import FRESHNESS, MAC, REST
 from ravenchart.gen.model.protection import PROFILES
@@ -63,10 +63,10 @@ def layout_of(
         if lowered in named:
             one = named[lowered]
             at = form.entry_at("signals", entry)
-            findings.uses.append(Use(one.name, at, "field", one.origin))
+            findings.uses.append(NameUse(one.name, at, "field", one.origin))
     if form.multiplexor is not None and form.multiplexor.lower() in named:
         one = named[form.multiplexor.lower()]
-        findings.uses.append(Use(one.name, form.at("multiplexor"), "field", one.origin))
+        findings.uses.append(NameUse(one.name, form.at("multiplexor"), "field", one.origin))
     maker = _Maker(name, form, findings)
     selector = maker.selector(known)
     signals: list[Signal] = []

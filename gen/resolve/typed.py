@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from ravenchart.gen.files.located import Place
 from ravenchart.gen.language import folding, intervals
 from ravenchart.gen.language.expressions import Malformed, Term, parse
-from ravenchart.gen.language.names import Findings, Unknown, Use, meant
+from ravenchart.gen.language.names import Findings, NameUse, Unknown, meant
 from ravenchart.gen.language.narrowing import COMPARISONS, Known, narrowed
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -106,7 +106,7 @@ class Checker:
             return None
         for item in type_.fields:
             if item.name.lower() == term.member.lower():
-                self.findings.uses.append(Use(item.name, self.at(term), "field", item.origin))
+                self.findings.uses.append(NameUse(item.name, self.at(term), "field", item.origin))
                 return self.reading(Name(kind, name, item.name, item.type), item.type)
         hint = meant(term.member, (item.name for item in type_.fields))
         message = f"`{name}` is of type {type_.name}, which has no field `{term.member}`"

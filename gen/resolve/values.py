@@ -13,8 +13,8 @@ from ravenchart.gen.language.names import (
     HIDING,
     PREDEFINED_TYPES,
     Findings,
+    NameUse,
     Scope,
-    Use,
     meant,
 )
 from ravenchart.gen.language.terms import (
@@ -203,7 +203,7 @@ def initial_value(
         entry = entries.pop(one.name.lower(), None)
         if entry is not None:
             at = form.entry_at("initial", entry)
-            findings.uses.append(Use(one.name, at, "field", one.origin))
+            findings.uses.append(NameUse(one.name, at, "field", one.origin))
             place = form.place("initial", entry)
             value = constant(given[entry], place, f"{name}.{one.name}", one.type, findings)
             if value is not None:

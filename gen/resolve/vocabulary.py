@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ravenchart.gen.language.intervals import Interval
-from ravenchart.gen.language.names import Scope, Use
+from ravenchart.gen.language.names import NameUse, Scope
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     EnumerationType,
@@ -62,10 +62,12 @@ class Checked:
     bare: bool = False
 
 
-def literal_use(literal: str, of_type: EnumerationType, origin: Origin) -> Use:
+def literal_use(literal: str, of_type: EnumerationType, origin: Origin) -> NameUse:
     """A literal that is used."""
     kind = f"literal of {of_type.name}"
-    return Use(literal, origin, kind, None if of_type is BOOLEAN else of_type.origin, within=True)
+    return NameUse(
+        literal, origin, kind, None if of_type is BOOLEAN else of_type.origin, within=True
+    )
 
 
 def described(checked: Checked) -> str:

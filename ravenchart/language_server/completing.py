@@ -16,7 +16,7 @@ from ravenchart.gen.files.located import Map, grow
 from ravenchart.gen.files.spans import Mapping
 
 from .model import Open, model
-from .texts import Text, path_to
+from .texts import FileText, path_to
 
 WORD = "Zz_Any_Word_Zz"
 _BEFORE = re.compile(r"\w*\Z")
@@ -43,7 +43,7 @@ def proposals(path: Path, file: str, offset: int, documents: Open) -> list[Propo
 
 def key_meaning(text: str, offset: int) -> str | None:
     """What the key at a character means; None of anything else, and of names."""
-    whole = Text(text)
+    whole = FileText(text)
     scalar = whole.scalar_at(offset)
     if scalar is None:
         return None
@@ -82,7 +82,7 @@ def _keys_in(text: str) -> dict[str, str]:
 
 def _siblings(text: str, offset: int) -> set[str]:
     """The keys of the mapping in which the one at a character stands."""
-    root = Text(text).root
+    root = FileText(text).root
     path = path_to(root, offset) if isinstance(root, Mapping) else []
     return {key.value for key, _ in path[-1][0].entries} if path else set()
 

@@ -9,13 +9,13 @@ from ravenchart.analysis.units import microseconds
 from ravenchart.workbench.evaluation import Evaluation
 
 from .model import Model
-from .symbols import Symbol
+from .symbols import ModelSymbol
 
 MOST_LINES = 8
 """Lines of a declaration that are shown."""
 
 
-def described(symbol: Symbol, now: Model, evaluation: Evaluation) -> str:
+def described(symbol: ModelSymbol, now: Model, evaluation: Evaluation) -> str:
     """The text for people, in Markdown."""
     parts = [f"**{symbol.kind}** `{symbol.name}`"]
     if symbol.declared is not None:

@@ -16,7 +16,7 @@ from ravenchart.gen.pipeline import Loaded, load
 from ravenchart.workbench.evaluation import MARK, Evaluation, evaluate
 
 from .symbols import Symbols
-from .texts import Text
+from .texts import FileText
 
 Open = Mapping[str, str]
 """The texts that are open in the editor, by the absolute names of their files."""
@@ -43,7 +43,7 @@ class Model:
 
     path: Path
     loaded: Loaded
-    texts: Mapping[str, Text]
+    texts: Mapping[str, FileText]
     """Its files, by the names that its messages use, main file first."""
 
     @cached_property
@@ -58,13 +58,13 @@ class Model:
 
 def model(path: Path, documents: Open) -> Model:
     """The model whose main file is at ``path``."""
-    seen: dict[str, Text] = {}
+    seen: dict[str, FileText] = {}
     return Model(path, load(path, _noting(reader(documents), seen)), seen)
 
 
 def evaluated(path: Path, documents: Open) -> tuple[Model, Evaluation]:
     """The same, with its timing where it has no errors."""
-    seen: dict[str, Text] = {}
+    seen: dict[str, FileText] = {}
     found = evaluate(path, {}, _noting(reader(documents), seen))
     return Model(path, found.loaded, seen), found
 
@@ -98,7 +98,7 @@ def main_file(name: str, documents: Open, known: Callable[[str], str | None]) ->
     return name
 
 
-def _is_main(text: Text | None) -> bool:
+def _is_main(text: FileText | None) -> bool:
     if text is None or "system" not in text.text:
         return False
     if text.root is None:  # it is being written
@@ -106,20 +106,20 @@ def _is_main(text: Text | None) -> bool:
     return text.root.get("system") is not None
 
 
-def _text(name: str, documents: Open) -> Text | None:
+def _text(name: str, documents: Open) -> FileText | None:
     try:
         content = reader(documents)(Path(name), 2**22)
-        return Text(content.decode("utf-8").removeprefix(MARK))
+        return FileText(content.decode("utf-8").removeprefix(MARK))
     except (OSError, ValueError):
         return None
 
 
-def _noting(read: Reader, seen: dict[str, Text]) -> Reader:
+def _noting(read: Reader, seen: dict[str, FileText]) -> Reader:
     """A reader that keeps what it reads."""
 
     def noting(path: Path, limit: int) -> bytes:
         content = read(path, limit)
-        seen[str(path)] = Text(content.decode("utf-8", "replace").removeprefix(MARK))
+        seen[str(path)] = FileText(content.decode("utf-8", "replace").removeprefix(MARK))
         return content
 
     return noting

@@ -13,7 +13,7 @@ from ravenchart.gen.language.names import problem_of
 from ravenchart.gen.pipeline import Loaded
 
 from .model import Model, Open, model, real
-from .symbols import Symbol, Token
+from .symbols import ModelSymbol, Token
 from .texts import Span
 
 
@@ -21,7 +21,7 @@ class NotRenamedError(Exception):
     """A name cannot be changed; the message says why."""
 
 
-def renamed(now: Model, symbol: Symbol, new: str, documents: Open) -> Mapping[str, list[Span]]:
+def renamed(now: Model, symbol: ModelSymbol, new: str, documents: Open) -> Mapping[str, list[Span]]:
     """Where the new name goes in each file, by its absolute name."""
     if symbol.declared is None:
         raise NotRenamedError(f"no file of the model declares `{symbol.name}`")

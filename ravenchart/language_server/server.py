@@ -27,8 +27,8 @@ from .completing import key_meaning, proposals
 from .hovering import described
 from .model import Model, real
 from .renaming import NotRenamedError, place_of, renamed
-from .symbols import Symbol, Token
-from .texts import Text
+from .symbols import ModelSymbol, Token
+from .texts import FileText
 
 PAUSE = 0.2
 """Seconds without a change before a model is looked at."""
@@ -104,11 +104,11 @@ class Server(LanguageServer):
 
     async def symbol(
         self, uri: str, position: lsp.Position
-    ) -> tuple[Model, Symbol, Token, models.Open] | None:
+    ) -> tuple[Model, ModelSymbol, Token, models.Open] | None:
         """The name at a position, in the model that it belongs to."""
         documents, name = self.documents(), _name(uri)
 
-        def found() -> tuple[Model, Symbol, Token, models.Open] | None:
+        def found() -> tuple[Model, ModelSymbol, Token, models.Open] | None:
             now = models.model(Path(self.main_file(name, documents)), documents)
             file = now.file(name)
             if file is None:
@@ -184,7 +184,7 @@ def server() -> Server:
 
         def found() -> list[lsp.CompletionItem]:
             main = Path(ls.main_file(name, documents))
-            offset = Text(documents[name]).offset_of(given.position)
+            offset = FileText(documents[name]).offset_of(given.position)
             return [
                 lsp.CompletionItem(
                     one.word,

@@ -1,6 +1,6 @@
 """The names of a model: where each is declared and used.
 
-The resolver notes every name that it looks up, with the place of its declaration (`Use`). Here
+The resolver notes every name that it looks up, with the place of its declaration (`NameUse`). Here
 these become characters of the files. A declaration that itself uses a name, as a required command
 does with that of the dictionary, is the same symbol.
 """
@@ -11,16 +11,16 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from ravenchart.gen.files import spans
-from ravenchart.gen.language.names import Use
+from ravenchart.gen.language.names import NameUse
 
-from .texts import Span, Text
+from .texts import FileText, Span
 
 Token = tuple[str, int, int]
 """A file, the first character of a name in it, and the one behind its last."""
 
 
 @dataclass(slots=True, eq=False)
-class Symbol:
+class ModelSymbol:
     """A name with all its places."""
 
     name: str
@@ -33,20 +33,20 @@ class Symbol:
 class Symbols:
     """The names of a model that something uses."""
 
-    def __init__(self, uses: Iterable[Use], texts: Mapping[str, Text]) -> None:
+    def __init__(self, uses: Iterable[NameUse], texts: Mapping[str, FileText]) -> None:
         """Those of ``uses``, in the files by their names."""
         self._texts = texts
-        self._of: dict[Token, Symbol] = {}
+        self._of: dict[Token, ModelSymbol] = {}
         self._ends: dict[object, int] = {}
         """Behind the last name that was found from a place on."""
         for use in uses:
             self._add(use)
 
-    def all(self) -> list[Symbol]:
+    def all(self) -> list[ModelSymbol]:
         """Each once, in the order of their first place."""
         return list(dict.fromkeys(self._of[one] for one in sorted(self._of)))
 
-    def at(self, file: str, offset: int) -> tuple[Symbol, Token] | None:
+    def at(self, file: str, offset: int) -> tuple[ModelSymbol, Token] | None:
         """The symbol at a character, or just before it, and its place there."""
         for token, symbol in self._of.items():
             if token[0] == file and token[1] <= offset <= token[2]:
@@ -62,12 +62,12 @@ class Symbols:
         ordered = sorted(self._of)
         return tuple(numbers.setdefault(id(self._of[one]), len(numbers)) for one in ordered)
 
-    def _add(self, use: Use) -> None:
+    def _add(self, use: NameUse) -> None:
         place = self._place(use)
         declared = self._declaration(use)
         known = {id(s): s for t in (place, declared) if t and (s := self._of.get(t))}
         symbols = list(known.values())
-        symbol = symbols[0] if symbols else Symbol(use.name, use.kind, declared)
+        symbol = symbols[0] if symbols else ModelSymbol(use.name, use.kind, declared)
         for other in symbols[1:]:
             symbol.tokens |= other.tokens
             for token in other.tokens:
@@ -79,7 +79,7 @@ class Symbols:
                 symbol.tokens.add(own)
                 self._of[own] = symbol
 
-    def _place(self, use: Use) -> Token | None:
+    def _place(self, use: NameUse) -> Token | None:
         """Where the name stands: behind those that were looked up there before it."""
         file, text = use.origin.file, self._texts.get(use.origin.file)
         if text is None:
@@ -97,7 +97,7 @@ class Symbols:
         self._ends[file, start] = self._ends[file, start, use.name.lower()] = found[1]
         return file, *found
 
-    def _declaration(self, use: Use) -> Token | None:
+    def _declaration(self, use: NameUse) -> Token | None:
         at = use.declared
         text = None if at is None else self._texts.get(at.file)
         if at is None or text is None:
@@ -112,7 +112,7 @@ class Symbols:
         return None if found is None else (at.file, *found)
 
 
-def _literal(text: Text, start: int, name: str) -> spans.Scalar | None:
+def _literal(text: FileText, start: int, name: str) -> spans.Scalar | None:
     """The literal of that name in the type whose key begins there."""
     types = None if text.root is None else text.root.mapping("types")
     for key, form in () if types is None else types.mappings():

@@ -25,7 +25,7 @@ Span = tuple[int, int]
 """The first character, and the one behind the last."""
 
 
-class Text:
+class FileText:
     """The text of one file."""
 
     def __init__(self, text: str) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from ravenchart.language_server.model import model
 from ravenchart.language_server.renaming import NotRenamedError, renamed
-from ravenchart.language_server.symbols import Symbol
+from ravenchart.language_server.symbols import ModelSymbol
 from ravenchart.paths import ROOT
 
 TWO_NODES = ROOT / "examples" / "two_nodes" / "model.yaml"
@@ -16,7 +16,7 @@ KINDS = ROOT / "tests" / "feature" / "kinds" / "model.yaml"
 LAYOUTS = ROOT / "tests" / "feature" / "flexible" / "model.yaml"
 
 
-def _symbols(path: Path) -> list[Symbol]:
+def _symbols(path: Path) -> list[ModelSymbol]:
     return [one for one in model(path, {}).symbols.all() if one.declared is not None]
 
 

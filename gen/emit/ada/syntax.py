@@ -23,6 +23,14 @@ class Ref:
 
 
 @frozen
+class Old:
+    """What a name stood for before the call, ``name'Old``; ``part`` selects from it."""
+
+    name: str
+    part: str = ""
+
+
+@frozen
 class Chain:
     """Operands joined by one operator; operands that are chains get parentheses."""
 
@@ -99,7 +107,7 @@ class ForSome:
     condition: Expr
 
 
-Expr = Ref | Chain | Prefix | Call | Aggregate | IfExpr | CaseExpr | ForAll | ForSome
+Expr = Ref | Old | Chain | Prefix | Call | Aggregate | IfExpr | CaseExpr | ForAll | ForSome
 
 # --- Statements --------------------------------------------------------------
 
@@ -407,6 +415,9 @@ def names_in(construct: object) -> Iterator[str]:
     """The text of each name and literal in it."""
     if isinstance(construct, Ref):
         yield construct.text
+        return
+    if isinstance(construct, Old):
+        yield construct.name
         return
     slots = getattr(construct, "__slots__", ())
     parts = construct if isinstance(construct, tuple) else [getattr(construct, s) for s in slots]

@@ -32,6 +32,7 @@ from .syntax import (
     Instance,
     Loop,
     Object,
+    Old,
     Package,
     Param,
     PlainType,
@@ -145,6 +146,8 @@ def expression(expr: Expr) -> Doc:
     match expr:
         case Ref(text):
             return _choices(text) if " | " in text else text
+        case Old(name, part):
+            return f"{name}'Old{part}"
         case Chain(operator, operands):
             #  GNAT wants to see what a sign before a product is of
             begin = _signed if operator in ("*", "/") else _operand

@@ -23,6 +23,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Expr,
     ForAll,
     IfExpr,
+    Old,
     Param,
     Prefix,
     RecordType,
@@ -75,9 +76,9 @@ def freed_after_exit(shape: RegionShape, state: str | None) -> Expr:
     """The claim that the exit of a state freed what it defers; None: nothing has been freed."""
     events = shape.region.state(state).defers if state is not None else ()
     if not events:
-        return equal(Ref(FREED), Ref(f"{FREED}'Old"))
+        return equal(Ref(FREED), Old(FREED))
     rows = tuple(
-        Arg(ada_case(e), COUNT if e in events else Ref(f"{FREED}'Old.{ada_case(e)}"))
+        Arg(ada_case(e), COUNT if e in events else Old(FREED, f".{ada_case(e)}"))
         for e in kept_events(shape)
     )
     return equal(Ref(FREED), Aggregate(rows))
@@ -85,8 +86,8 @@ def freed_after_exit(shape: RegionShape, state: str | None) -> Expr:
 
 def freed_after(shape: RegionShape, domain: Expr, count: Expr) -> Expr:
     """The claim that all was freed that states in a domain defer."""
-    held = Ref(f"Self.{shape.place}'Old")
-    return equal(Ref(FREED), call("Freed_After", domain, held, count, Ref(f"{FREED}'Old")))
+    held = Old(f"Self.{shape.place}")
+    return equal(Ref(FREED), call("Freed_After", domain, held, count, Old(FREED)))
 
 
 def declared_deferrals(shape: RegionShape) -> list[Decl]:

@@ -23,6 +23,7 @@ from ravenchart.gen.emit.ada.syntax import (
     If,
     IfExpr,
     Object,
+    Old,
     Package,
     Param,
     PlainType,
@@ -138,7 +139,7 @@ class Moves:
             if named != facts:
                 params = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
                 fired = in_one_word("Is_Fired", params, named)
-                known = call("Is_Fired", Ref("Self'Old"), Ref("Chosen"))
+                known = call("Is_Fired", Old("Self"), Ref("Chosen"))
             agreeing = Ref(agrees.name)
             claims = (
                 Aspect("Pre", both(Ref("Self.Started"), sources, *later, *before, agreeing)),

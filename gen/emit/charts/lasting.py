@@ -10,7 +10,6 @@ and the contracts here say it of every exit, entry and firing.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from ravenchart.gen.emit.ada.naming import ada_case
@@ -27,6 +26,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Expr,
     ForAll,
     IfExpr,
+    Old,
     Param,
     Pragma,
     Prefix,
@@ -65,8 +65,8 @@ def in_one_word(name: str, params: tuple[Param, ...], fact: Expr) -> list[Decl]:
 def of_before(fact: Expr) -> Expr:
     """A fact over ``Self.X'Old``, over ``Before.X`` instead."""
     match fact:
-        case Ref(text):
-            return Ref(re.sub(r"\bSelf\.([\w.]+)'Old", r"Before.\1", text))
+        case Old(name, part):
+            return Ref(f"Before.{name.removeprefix('Self.')}{part}")
         case Chain(operator, operands):
             return Chain(operator, tuple(map(of_before, operands)))
         case Prefix(operator, operand):
@@ -321,7 +321,7 @@ class Lasting:
         if len(facts) < FEW:
             return facts
         self._frames.add(name)
-        return [call(name, Ref("Self'Old"))]
+        return [call(name, Old("Self"))]
 
     def frames(self) -> list[Decl]:
         """The functions that exits and entries use, which provers see as what they stand for."""
@@ -340,7 +340,7 @@ class Lasting:
         for i, timed in enumerate(self.shape.timers, 1):
             if place in self.shape.compounds.places(timed.source):
                 was = ((self.shape.in_state(held, timed.source), Ref(_STOPPED)),)
-                values.append((i, IfExpr(was, Ref(f"Self.Timers'Old ({i})"))))
+                values.append((i, IfExpr(was, Old("Self.Timers", f" ({i})"))))
         facts = self._times(values)
         if self.shape.memories:
             facts.append(self._recalled(_inside(place)))
@@ -376,18 +376,18 @@ class Lasting:
         held = f"Self.{self.shape.place}"
         domain = call("Domain_Of", Ref(chosen))
         if self.shape.timers:
-            places = (Ref(f"{held}'Old"), Ref(held))
+            places = (Old(held), Ref(held))
             if at_once:
-                facts.append(call("Is_Timed", domain, places[0], Ref("Self.Timers'Old")))
+                facts.append(call("Is_Timed", domain, places[0], Old("Self.Timers")))
             for i in () if at_once else range(1, len(self.shape.timers) + 1):
-                before = Ref(f"Self.Timers'Old ({i})")
+                before = Old("Self.Timers", f" ({i})")
                 after = call("Timer_After", number(i), domain, *places, before)
                 facts.append(equal(Ref(f"Self.Timers ({i})"), after))
         if self.shape.memories:
-            recalled = call("Remembered", domain, Ref(f"{held}'Old"), Ref("Self.Past'Old"))
+            recalled = call("Remembered", domain, Old(held), Old("Self.Past"))
             known = equal(Ref("Self.Past"), recalled)
-            kept = equal(Ref("Self.Past"), Ref("Self.Past'Old"))
-            started = Ref("Self.Started'Old")
+            kept = equal(Ref("Self.Past"), Old("Self.Past"))
+            started = Old("Self.Started")
             starts = Prefix("not", started)
             #  no `if`: GNAT 14 has an internal error where 'Old stands behind a condition on 'Old
             if any(terminates(self.shape, f) for f in self.shape.firings):
@@ -399,7 +399,7 @@ class Lasting:
                 same = Chain("and", (started, known)), Chain("and", (starts, kept))
                 facts.append(Chain("or", same))
         if self.shape.deferring:
-            count = call("Deferrals.Count", Ref("Self.Deferred'Old"))
+            count = call("Deferrals.Count", Old("Self.Deferred"))
             freed = freed_after(self.shape, domain, count)
             ends = any(terminates(self.shape, f) for f in self.shape.firings)
             goes_on = Chain("/=", (domain, Ref("Ending")))
@@ -414,9 +414,9 @@ class Lasting:
         deferrals = [f for f in shape.firings if f.kind is Kind.DEFERRAL]
         if not deferrals:
             return []
-        kept, before = Ref("Self.Deferred"), Ref("Self.Deferred'Old")
+        kept, before = Ref("Self.Deferred"), Old("Self.Deferred")
         full = equal(call("Deferrals.Count", before), number(self.region.deferral_depth))
-        lost = equal(Ref("Self.Lost"), Chain("or", (Ref("Self.Lost'Old"), full)))
+        lost = equal(Ref("Self.Lost"), Chain("or", (Old("Self.Lost"), full)))
         names: dict[Ref, list[str]] = {}
         for firing in deferrals:
             names.setdefault(shape.deferred_item(firing), []).append(firing.literal)
@@ -427,7 +427,7 @@ class Lasting:
             )
             for item, of in names.items()
         )
-        same = both(equal(kept, before), equal(Ref("Self.Lost"), Ref("Self.Lost'Old")))
+        same = both(equal(kept, before), equal(Ref("Self.Lost"), Old("Self.Lost")))
         return [IfExpr(added, same)]
 
     def _freed(self, left: str | None = None) -> list[Expr]:
@@ -439,12 +439,12 @@ class Lasting:
         if not self.shape.timers:
             return []
         if not values:
-            return [equal(Ref("Self.Timers"), Ref("Self.Timers'Old"))]
+            return [equal(Ref("Self.Timers"), Old("Self.Timers"))]
         facts: list[Expr] = [equal(Ref(f"Self.Timers ({i})"), value) for i, value in values]
         if len(values) < len(self.shape.timers):
             numbers = " | ".join(str(i) for i, _ in values)
             others = Chain("not in" if len(values) > 1 else "/=", (Ref("I"), Ref(numbers)))
-            same = equal(Ref("Self.Timers (I)"), Ref("Self.Timers'Old (I)"))
+            same = equal(Ref("Self.Timers (I)"), Old("Self.Timers", " (I)"))
             facts.append(ForAll("I", "Self.Timers'Range", IfExpr(((others, same),), None)))
         return facts
 
@@ -452,7 +452,7 @@ class Lasting:
         if not self.shape.memories:
             return []
         if not changed:
-            return [equal(Ref("Self.Past"), Ref("Self.Past'Old"))]
+            return [equal(Ref("Self.Past"), Old("Self.Past"))]
         rows: list[Arg] = []
         for memory, goes_on in changed:
             if goes_on:
@@ -462,18 +462,17 @@ class Lasting:
         return [equal(Ref("Self.Past"), Aggregate(tuple(rows), base=base))]
 
     def _recalled(self, domain: str) -> Expr:
-        held = f"Self.{self.shape.place}'Old"
-        return equal(
-            Ref("Self.Past"), call("Remembered", Ref(domain), Ref(held), Ref("Self.Past'Old"))
-        )
+        held = Old(f"Self.{self.shape.place}")
+        return equal(Ref("Self.Past"), call("Remembered", Ref(domain), held, Old("Self.Past")))
 
     def _kept(self) -> list[Expr]:
         """Exits and entries do not start the region, and defer nothing."""
-        started = equal(Ref("Self.Started"), Ref("Self.Started'Old"))
+        started = equal(Ref("Self.Started"), Old("Self.Started"))
         if not self.shape.deferring:
             return [started]
         #  by way of one constant: for a prover the equality of lists is no simple thing
-        was, remains = (equal(Ref(f"Self.Deferred{n}"), Ref("Kept")) for n in ("'Old", ""))
-        lost = equal(Ref("Self.Lost"), Ref("Self.Lost'Old"))
-        length = equal(COUNT, call("Deferrals.Count", Ref("Self.Deferred'Old")))
+        deferred = "Self.Deferred"
+        was, remains = (equal(one, Ref("Kept")) for one in (Old(deferred), Ref(deferred)))
+        lost = equal(Ref("Self.Lost"), Old("Self.Lost"))
+        length = equal(COUNT, call("Deferrals.Count", Old("Self.Deferred")))
         return [started, IfExpr(((was, remains),), None), length, lost]

@@ -17,6 +17,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Do,
     Expr,
     If,
+    Old,
     Ref,
     Stmt,
     Subprogram,
@@ -126,7 +127,7 @@ class Moving:
         return (*data, *exits, *leavings, *entries)
 
     def _kept(self) -> Expr:
-        return equal(Ref(self.held), Ref(f"{self.held}'Old"))
+        return equal(Ref(self.held), Old(f"{self.held}"))
 
     def _exit(self, state: str) -> Subprogram:
         after = self.nodes.after_exit(state)

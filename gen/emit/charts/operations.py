@@ -18,6 +18,7 @@ from ravenchart.gen.emit.ada.syntax import (
     ForAll,
     ForSome,
     IfExpr,
+    Old,
     Param,
     Prefix,
     Ref,
@@ -43,13 +44,13 @@ def operations(shape: RegionShape) -> list[Decl]:
     held = f"Self.{shape.place}"
     safety = Safety(shape)
     same = both(
-        equal(Ref(held), Ref(f"{held}'Old")),
-        equal(Ref("Self.Started"), Ref("Self.Started'Old")),
+        equal(Ref(held), Old(held)),
+        equal(Ref("Self.Started"), Old("Self.Started")),
         *safety.unchanged(),
     )
     items: list[Decl] = []
     if shape.timers:
-        ticked = call("Ravenchart.Timers.Ticked", Ref("Self.Timers'Old (I)"))
+        ticked = call("Ravenchart.Timers.Ticked", Old("Self.Timers", " (I)"))
         nearer = ForAll("I", "Self.Timers'Range", equal(Ref("Self.Timers (I)"), ticked))
         items += [
             Subprogram("Tick", (self_out,), aspects=(Aspect("Post", both(same, nearer)),)),
@@ -111,14 +112,14 @@ def _next(shape: RegionShape) -> list[Expr]:
     now = Ref("Now")
     rows: list[tuple[Expr, Expr]] = [
         (
-            Ref(f"Self.{shape.completed(s)}'Old"),
+            Old(f"Self.{shape.completed(s)}"),
             equal(now, Ref(f"Completion_Of_{ada_case(s)}")),
         )
         for s in shape.completing
     ]
     if shape.timers:
         names = [f"Expiry_Of_{ada_case(t.name)}" for t in shape.timers]
-        due = ForSome("I", "Self.Timers'Range", call(_IS_DUE, Ref("Self.Timers'Old (I)")))
+        due = ForSome("I", "Self.Timers'Range", call(_IS_DUE, Old("Self.Timers", " (I)")))
         rows.append((due, member(now, " .. ".join(dict.fromkeys((names[0], names[-1]))))))
     if shape.deferring:
         rows.append(_released(shape))
@@ -133,8 +134,8 @@ _IS_DUE = "Ravenchart.Timers.Is_Due"
 def _released(shape: RegionShape) -> tuple[Expr, Expr]:
     """When an event is released from deferral, it comes next."""
     each = f"1 .. {shape.region.deferral_depth}"
-    kept = Ref("Self.Deferred'Old")
-    freed = Ref(f"{FREED}'Old")
+    kept = Old("Self.Deferred")
+    freed = Old(FREED)
     released = call("Is_Released", kept, Ref(f"Self.{shape.place}"), freed, Ref("I"))
     item = call("Deferrals.Element", kept, Ref("I"))
     comes = [equal(Ref("Now"), call("To_Occurrence", item))]
@@ -150,9 +151,9 @@ def _taken(shape: RegionShape) -> list[Expr]:
     for state in shape.completing:
         flag = f"Self.{shape.completed(state)}"
         other = Chain("/=", (Ref("Now"), Ref(f"Completion_Of_{ada_case(state)}")))
-        facts.append(equal(Ref(flag), both(Ref(f"{flag}'Old"), other)))
+        facts.append(equal(Ref(flag), both(Old(flag), other)))
     if shape.timers:
-        times = Ref("Self.Timers'Old"), Ref("Self.Timers")
+        times = Old("Self.Timers"), Ref("Self.Timers")
         rows = [
             (
                 f"Expiry_Of_{ada_case(t.name)}",
@@ -167,7 +168,7 @@ def _taken(shape: RegionShape) -> list[Expr]:
 def _stepped(shape: RegionShape) -> list[Expr]:
     """What a step achieves, in terms of the chart as declared."""
     held = f"Self.{shape.place}"
-    kept = equal(Ref(held), Ref(f"{held}'Old"))
+    kept = equal(Ref(held), Old(held))
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     first = "Fired.Items (1)" if shape.listed else "Fired"
     chosen = Call("Is_Selection", (Arg(None, Ref(first)), *shape.choice_args(old=True)))
@@ -178,7 +179,7 @@ def _stepped(shape: RegionShape) -> list[Expr]:
         return [IfExpr(((begun, started),), chosen), IfExpr(((none, kept),), moved)]
     facts: list[Expr] = [IfExpr(((equal(Ref("Fired.Count"), number(0)), kept),), None)]
     if shape.passes:
-        rests = equal(call("Segments_Left", Ref(f"{held}'Old")), number(0))
+        rests = equal(call("Segments_Left", Old(held)), number(0))
         still = equal(call("Segments_Left", Ref(held)), number(0))
         facts.append(IfExpr(((rests, still),), None))
     if not shape.single:

@@ -23,6 +23,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Expr,
     IfExpr,
     Object,
+    Old,
     Param,
     PlainType,
     Pragma,
@@ -258,7 +259,7 @@ class Safety:
         """That data are as before: what no behaviour does to them."""
         if self.safe is None or not self.has_data:
             return []
-        return [equal(Ref("Self.Data"), Ref("Self.Data'Old"))]
+        return [equal(Ref("Self.Data"), Old("Self.Data"))]
 
     # --- the contracts of exits and entries
 
@@ -288,7 +289,7 @@ class Safety:
     def _done(self, procedure: str, changes: bool) -> list[Expr]:
         if self.safe is None or not self.has_data or not changes:
             return self.unchanged()
-        return [equal(Ref("Self.Data"), call(f"Data_After_{procedure}", Ref("Self.Data'Old")))]
+        return [equal(Ref("Self.Data"), call(f"Data_After_{procedure}", Old("Self.Data")))]
 
     def _exit(self, state: str) -> Expr | None:
         return self._data(self.region.state(state).exit)

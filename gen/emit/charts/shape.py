@@ -11,6 +11,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Do,
     Expr,
+    Old,
     Param,
     Ref,
     Stmt,
@@ -442,9 +443,9 @@ class RegionShape(Places):
             params.append(Param("Past", "in", "Memory"))
         return tuple(params)
 
-    def target(self, chosen: str, mark: str = "'Old") -> Expr:
-        """A call of Target over the region's state, by default before a call."""
-        own = (Ref(f"Self.{p.name}{mark}") for p in self.target_params())
+    def target(self, chosen: str) -> Expr:
+        """A call of Target over the region's state before a call."""
+        own = (Old(f"Self.{p.name}") for p in self.target_params())
         return call("Target", Ref(chosen), *own)
 
     def step_params(self) -> tuple[Param, ...]:
