@@ -25,37 +25,42 @@ EVENTS = ("cut", "mend", "hold_dominant", "hold_recessive", "let_go", "babble", 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
-    sub.add_argument("--port", type=_number(0, 65535), default=29536, help="0: a free one")
-    sub.add_argument("--name", type=_name, default="can0", help="of the bus (default can0)")
+    sub.add_argument(
+        "--port",
+        type=_number(0, 65535),
+        default=29536,
+        help="TCP port (default 29536); 0: a free one",
+    )
+    sub.add_argument("--name", type=_name, default="can0", help="name of the bus (default can0)")
     sub.add_argument(
         "--bitrate", type=_rate(1, 1_000_000), default=500_000, metavar="BIT/S",
-        help="default 500000",
+        help="bit rate (default 500000)",
     )  # fmt: skip
     sub.add_argument(
         "--data-bitrate", type=_rate(0, 20_000_000), default=2_000_000, metavar="BIT/S",
-        help="of the data phase; 0: no CAN FD (default 2000000)",
+        help="bit rate of the data phase; 0: no CAN FD (default 2000000)",
     )  # fmt: skip
     for name, bit in (("--sample-point", "nominal"), ("--data-sample-point", "data")):
         sub.add_argument(
             name, type=_percent, default=80.0, metavar="PERCENT",
-            help=f"of a {bit} bit: where an FD frame switches its rate (default 80)",
+            help=f"sample point of a {bit} bit: there an FD frame switches its rate (default 80)",
         )  # fmt: skip
     sub.add_argument(
         "--restart-ms", type=_number(0, RESTART_LAST), default=0, metavar="MS",
-        help="from bus-off to the request for recovery, for nodes that do not say; 0 (default): "
+        help="time from bus-off to the request for recovery, of nodes that give none; 0 (default): "
         "a node requests it itself",
     )  # fmt: skip
     sub.add_argument(
         "--virtual", action="store_true",
-        help="time goes on with what happens on the bus, not with the clock",
+        help="run in virtual time, which advances with the events on the bus, not with the clock",
     )  # fmt: skip
     sub.add_argument(
         "--buffers", choices=("fifo", "priority"), default="fifo",
-        help="which of its frames a node offers: the oldest (default), or the most urgent",
+        help="the frame that a node offers: its oldest (default), or its most urgent",
     )  # fmt: skip
     sub.add_argument(
         "--disturb", type=_words(2), metavar="SEED:NS",
-        help="bits are disturbed by chance, at least so many ns apart",
+        help="disturb random bits, at least NS ns apart, with the random numbers of SEED",
     )  # fmt: skip
     sub.add_argument(
         "--fault", type=_words(5, FAULTS), action="append", default=[],

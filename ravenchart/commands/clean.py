@@ -15,11 +15,15 @@ from .results import CleanResult
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     sub.add_argument(
-        "model", type=Path, nargs="?", metavar="MODEL", help="only what was built of this model"
+        "model",
+        type=Path,
+        nargs="?",
+        metavar="MODEL",
+        help="delete only the build results of this model",
     )
     sub.add_argument(
         "--results", action="store_true",
-        help="also what is kept of earlier checks and proofs, of all models",
+        help="also delete the kept results of checks and proofs, of all models",
     )  # fmt: skip
 
 

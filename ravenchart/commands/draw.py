@@ -47,10 +47,17 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--from-ada",
         type=Path,
         metavar="FILE",
-        help="draw what the generated spec of a region says",
+        help="draw the chart that the generated spec of a region declares",
     )
-    sub.add_argument("--out", type=Path, metavar="DIR", help="where to (default: drawings/ beside)")
-    sub.add_argument("--format", choices=FORMATS, default="svg", help="default: svg")
+    sub.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="folder for the drawings (default: drawings/ beside)",
+    )
+    sub.add_argument(
+        "--format", choices=FORMATS, default="svg", help="format of the drawings (default: svg)"
+    )
 
 
 def execute(options: argparse.Namespace) -> int:

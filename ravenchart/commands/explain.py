@@ -15,7 +15,9 @@ from .results import ExplainResult
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
-    sub.add_argument("code", metavar="CODE", help="as it stands in a message: RV-0305")
+    sub.add_argument(
+        "code", metavar="CODE", help="the code of an error or warning, for example RV-0305"
+    )
     shown = sub.add_mutually_exclusive_group()
     shown.add_argument("--wrong", action="store_true", help="print the wrong model alone")
     shown.add_argument("--corrected", action="store_true", help="print the corrected model alone")

@@ -18,7 +18,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "database", type=Path, metavar="FILE", help="the database: DBC, KCD, SYM or ARXML"
     )
     seen = sub.add_mutually_exclusive_group(required=True)
-    seen.add_argument("--node", help="the node of the database that the model is of")
+    seen.add_argument("--node", help="the node of the database that the model describes")
     seen.add_argument("--all", action="store_true", help="a node that receives every message")
     sub.add_argument("--bus", help="import only the messages of this bus of the database")
     sub.add_argument(

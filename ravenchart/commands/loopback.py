@@ -30,17 +30,22 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     )
     sub.add_argument("--channel", required=True, help="name of the channel of that interface")
     sub.add_argument(
-        "--receive-interface", metavar="NAME", help="that of the other end (default: the same)"
+        "--receive-interface", metavar="NAME", help="interface of the other end (default: the same)"
     )
     sub.add_argument(
-        "--receive-channel", metavar="CHANNEL", help="that of the other end (default: the same)"
+        "--receive-channel", metavar="CHANNEL", help="channel of the other end (default: the same)"
     )
     sub.add_argument(
         "--echo",
         action="store_true",
         help="one bus object that receives its own frames is both ends: for a single adapter",
     )
-    sub.add_argument("--bitrate", type=_bitrate, metavar="BIT/S", help="default: the interface's")
+    sub.add_argument(
+        "--bitrate",
+        type=_bitrate,
+        metavar="BIT/S",
+        help="bit rate (default: that of the interface)",
+    )
     sub.add_argument("--fd", action="store_true", help="test CAN FD frames too")
     sub.add_argument("--junit", type=Path, metavar="FILE", help="write JUnit XML there")
     sub.add_argument("--html", type=Path, metavar="FILE", help="write a report there")

@@ -29,7 +29,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     common.add_interface(sub, "play the scenario to a controller that runs already,")
     common.add_log(sub)
-    sub.add_argument("--report", type=Path, metavar="DIR", help="where the report goes")
+    sub.add_argument("--report", type=Path, metavar="DIR", help="folder for the report")
 
 
 def execute(options: argparse.Namespace) -> int:

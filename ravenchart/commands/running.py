@@ -34,7 +34,10 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     common.add_target(sub)
     sub.add_argument("--scenario", type=Path, help="play this scenario on its CAN bus")
     sub.add_argument(
-        "--seconds", type=float, default=10.0, help="how long without a scenario (default 10)"
+        "--seconds",
+        type=float,
+        default=10.0,
+        help="duration of a run without a scenario (default 10)",
     )
 
 

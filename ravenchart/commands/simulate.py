@@ -200,9 +200,17 @@ def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: boo
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
-    sub.add_argument("--events", type=Path, metavar="FILE", required=True, help="the stimuli")
     sub.add_argument(
-        "--interpreter", action="store_true", help="by the interpreter, not the generated program"
+        "--events",
+        type=Path,
+        metavar="FILE",
+        required=True,
+        help="the event file: stimuli with their times",
+    )
+    sub.add_argument(
+        "--interpreter",
+        action="store_true",
+        help="execute the model by the interpreter, instead of the generated program",
     )
     sub.add_argument("--json", action="store_true", help="one JSON object for each step")
 

@@ -39,7 +39,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     common.add_model(sub)
     sub.add_argument(
         "--folder", type=Path, metavar="DIR",
-        help="where the event files go (default: cases/ beside the model)",
+        help="folder for the event files (default: cases/ beside the model)",
     )  # fmt: skip
     sub.add_argument(
         "--effort", type=_positive, default=EFFORT, metavar="N",
