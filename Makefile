@@ -86,6 +86,7 @@ docs: setup
 	@$(PYTHON) -P -m ravenchart.gen.files.reference
 	@$(PYTHON) -P -m ravenchart.reference
 	@$(PYTHON) -P -m tests.support.faults
+	@$(PYTHON) -P -m tests.support.rooms
 	@for e in $(EXAMPLES); do \
 	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done
 
