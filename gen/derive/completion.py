@@ -25,12 +25,6 @@ from .senders import sender_of, sending_rows
 from .sharing import objects_on_node
 from .ways import routed
 
-FRAME_DISTANCE_BITS = 47
-"""Bit times between the beginnings of two frames, at least: a CAN 2.0A data frame with an
-11-bit identifier and no data has 44 bits (without stuff bits, the shortest case), followed by
-3 bits of interframe space."""
-
-
 # --- Tables ------------------------------------------------------------------------
 
 
@@ -78,11 +72,6 @@ def prioritised(processors: Sequence[Processor]) -> tuple[Processor, ...]:
 
 
 # --- Tasks -------------------------------------------------------------------------
-
-
-def frame_distance(bus: Bus) -> Ns:
-    """The least time between two frames on a bus, rounded down."""
-    return Ns(FRAME_DISTANCE_BITS * 10**9 // bus.bit_rate)
 
 
 def tasks_of(system: System) -> tuple[Task, ...]:

@@ -19,7 +19,6 @@ from ravenchart.gen.model.commands import (
     DriverCommand,
     InterfaceEvent,
     Provided,
-    Published,
     Server,
 )
 from ravenchart.gen.model.instances import Instance
@@ -342,13 +341,6 @@ def has_tasks(provider: Provider) -> bool:
     """Whether a task provides something of it."""
     members = provider.members if isinstance(provider, Facade) else ()
     return isinstance(provider, Server) or any(has_tasks(one) for one in members)
-
-
-def is_queued(provider: Device | Server | None, command: str) -> bool:
-    """Whether a call waits for the provider's processor."""
-    return isinstance(provider, Server) and not any(
-        isinstance(one, Published) and one.name == command for one in provider.interface.published
-    )
 
 
 def is_read(command: Command) -> bool:

@@ -153,15 +153,6 @@ class RegionShape(Places):
             found.append(self.region.lane(found[-1].owner))
         return found
 
-    def common_owner(self, one: Lane, other: Lane) -> str | None:
-        """The orthogonal state in whose different regions two lanes stand; None: one is inside."""
-        mine = [n for n in self.lanes_around(one) if n.owner is not None]
-        theirs = [n for n in self.lanes_around(other) if n.owner is not None]
-        for lane in mine:
-            if lane not in theirs and any(n.owner == lane.owner for n in theirs):
-                return lane.owner
-        return None
-
     @cached_property
     def left_states(self) -> tuple[str, ...]:
         """The orthogonal states that some transition leaves from inside."""

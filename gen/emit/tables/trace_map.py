@@ -85,14 +85,6 @@ def _controllers(system: System, last: int) -> tuple[Element, ...]:
     )
 
 
-def number_of(system: System, element: str, kind: str) -> int:
-    """The number of one element; KeyError where it is not traced."""
-    for item in elements(system):
-        if item.element == element and item.kind == kind:
-            return item.number
-    raise KeyError(f"{kind} {element}")
-
-
 def trace_json(system: System) -> str:
     """The map from numbers to names and model lines, and the digest of the model."""
     rows = []
