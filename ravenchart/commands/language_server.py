@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import os
+import sys
 
 from ravenchart.failures import OK
 
@@ -19,5 +21,6 @@ def execute(options: argparse.Namespace) -> int:
     """Serve until the editor ends it; the exit status."""
     from ravenchart.language_server.server import server
 
-    server().start_io()
+    with open(os.dup(sys.stdout.fileno()), "wb") as out:  # the server closes it at its end
+        server().start_io(stdout=out)
     return OK

@@ -24,6 +24,7 @@ from . import buses as bench_buses
 from . import charts as bench_charts
 from . import codecs as bench_codecs
 from . import commands as bench_commands
+from . import generated as bench_generated
 from . import timing as bench_timing
 from . import waiting as bench_waiting
 from .large_models import large_model
@@ -86,6 +87,7 @@ def large_models() -> None:
 def main() -> None:
     """All figures."""
     bench_waiting.main()
+    bench_generated.main()
     runtime_operations()
     bench_commands.main()
     bench_codecs.main()

@@ -172,3 +172,23 @@ def test_an_installation_explains_codes_with_their_models(away: Path) -> None:
     wrong = _called(away, "explain", "RV-0305", "--wrong")
     (away / "work" / "wrong.yaml").write_text(wrong, encoding="utf-8")
     assert "[RV-0305]" in _called(away, "check", "wrong.yaml", status=1)
+
+
+def test_an_installation_answers_an_editor(away: Path) -> None:
+    asked: list[dict[str, object]] = [
+        {"id": 1, "method": "initialize", "params": {"capabilities": {}}},
+        {"id": 2, "method": "shutdown"},
+        {"method": "exit"},
+    ]
+    bodies = [json.dumps({"jsonrpc": "2.0", **one}) for one in asked]
+    done = subprocess.run(
+        [away / "env" / "bin" / "ravenchart", "language-server"],
+        input="".join(f"Content-Length: {len(body)}\r\n\r\n{body}" for body in bodies),
+        env={**os.environ, "PYTHONPATH": ""},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert '"renameProvider"' in done.stdout and '"name": "ravenchart"' in done.stdout
