@@ -11,7 +11,7 @@ from ravenchart.gen.derive.calls import device_types
 from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.emit.ada.naming import ada_case, root_package
 from ravenchart.gen.emit.ada.readings import Reading, readings
-from ravenchart.gen.emit.ada.syntax import Package, Unit
+from ravenchart.gen.emit.ada.syntax import Package, Unit, units_named_in
 from ravenchart.gen.emit.ada.text import print_item, print_unit
 from ravenchart.gen.emit.buses.authentication import (
     authenticated,
@@ -125,7 +125,8 @@ class _Maker:
             found = [quiet(unit, computed=self.computed) for unit in found]
         texts = [print_item(unit) for unit in found]
         read = readings(found, texts, root_package(self.system))
-        return [Made(_context(u), t, r) for u, t, r in zip(found, texts, read, strict=True)]
+        context = [_context(_pruned(unit, root_package(self.system))) for unit in found]
+        return [Made(u, t, r) for u, t, r in zip(context, texts, read, strict=True)]
 
 
 def program(system: System, claims: Claims, whole: System) -> tuple[Made, ...]:
@@ -175,7 +176,7 @@ def simulation(system: System) -> dict[str, str]:
         return maker.made(found)
 
     logic, besides = maker.logic(others)
-    files = _printed([*logic, *besides], root_package(system))
+    files = _printed([*logic, *besides])
     name = ada_case(system.name).lower()
     files[f"{name}_simulation.gpr"] = simulation_project(system)
     return files
@@ -193,22 +194,11 @@ def _seeing_runtime(unit: Unit) -> Unit:
     return unit if sees else replace(unit, withs=("Ravenchart", *unit.withs))
 
 
-def _pruned(unit: Unit, root: str, text: str) -> Unit:
-    """The unit without the context that its text does not name."""
-    kept = (n for n in unit.withs if _names(text, n) or _names(text, n.removeprefix(f"{root}.")))
+def _pruned(unit: Unit, root: str) -> Unit:
+    """The unit without the context that nothing in it names."""
+    named = units_named_in(unit.item)
+    kept = (n for n in unit.withs if n in named or n.removeprefix(f"{root}.") in named)
     return replace(unit, withs=tuple(kept))
-
-
-def _names(text: str, name: str) -> bool:
-    """Does ``name`` stand in the text, neither qualified nor as a part of another name?"""
-    at = text.find(name)
-    while at >= 0:
-        end = at + len(name)
-        before, behind = text[at - 1 : at], text[end : end + 1]
-        if not (before.isalnum() or before in ("_", ".") or behind.isalnum() or behind == "_"):
-            return True
-        at = text.find(name, at + 1)
-    return False
 
 
 def _without_repeats(found: list[Unit]) -> list[Unit]:
@@ -225,8 +215,8 @@ def _without_repeats(found: list[Unit]) -> list[Unit]:
     return out
 
 
-def _printed(found: Sequence[Made], root: str) -> dict[str, str]:
-    pruned = _without_repeats([_pruned(made.unit, root, made.text) for made in found])
+def _printed(found: Sequence[Made]) -> dict[str, str]:
+    pruned = _without_repeats([made.unit for made in found])
     pairs = zip(pruned, found, strict=True)
     return {unit.file_name: print_unit(unit, made.text) for unit, made in pairs}
 
@@ -253,11 +243,11 @@ def folder_of(part: System, whole: System) -> str:
 
 def _program_files(part: System, claims: Claims, whole: System) -> dict[str, str]:
     root = ada_case(part.name)
-    files = _printed(program(part, claims, whole), root)
+    files = _printed(program(part, claims, whole))
     up = "../" * (1 + folder_of(part, whole).count("/"))
     maker = _Maker(part)
     bodies = maker.made([*hardware_bodies(part, maker.header)])
-    for name, text in _printed(bodies, root).items():
+    for name, text in _printed(bodies).items():
         files[f"{HARDWARE}/{name}"] = text
     folders = source_folders(part), simulation_folders(part)
     files[f"{root.lower()}.gpr"] = project_text(part, *folders, up)

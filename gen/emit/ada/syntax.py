@@ -5,6 +5,7 @@ An emitter builds a `Unit` from these nodes; `ada_text.print_unit` lays it out.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Hashable, Iterable, Iterator, Sequence
 from typing import NamedTuple, TypeVar
 
@@ -409,6 +410,35 @@ def _together(rows: Iterable[tuple[str, Result]]) -> tuple[tuple[str, Result], .
     for choice, result in rows:
         found.setdefault(result, []).append(choice)
     return tuple((" | ".join(names), result) for result, names in found.items())
+
+
+_NAME = re.compile(r"[A-Za-z]\w*(?:\.\w+)*")
+
+
+def units_named_in(construct: object) -> set[str]:
+    """The names in it with what stands before their dots: each unit that it names is among them.
+
+    What comments say is not among them.
+    """
+    found: set[str] = set()
+    for text in set(_texts(construct)):
+        for name in _NAME.findall(text):
+            while name and name not in found:
+                found.add(name)
+                name = name.rpartition(".")[0]
+    return found
+
+
+def _texts(construct: object) -> Iterator[str]:
+    if isinstance(construct, str):
+        yield construct
+    elif not isinstance(construct, Comment):
+        slots = getattr(construct, "__slots__", ())
+        parts = (
+            construct if isinstance(construct, tuple) else [getattr(construct, s) for s in slots]
+        )
+        for part in parts:
+            yield from _texts(part)
 
 
 def names_in(construct: object) -> Iterator[str]:
