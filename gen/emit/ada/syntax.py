@@ -433,12 +433,14 @@ def _texts(construct: object) -> Iterator[str]:
     if isinstance(construct, str):
         yield construct
     elif not isinstance(construct, Comment):
-        slots = getattr(construct, "__slots__", ())
-        parts = (
-            construct if isinstance(construct, tuple) else [getattr(construct, s) for s in slots]
-        )
-        for part in parts:
+        for part in _parts(construct):
             yield from _texts(part)
+
+
+def _parts(construct: object) -> Sequence[object]:
+    if isinstance(construct, tuple):
+        return construct
+    return [getattr(construct, name) for name in getattr(construct, "__slots__", ())]
 
 
 def names_in(construct: object) -> Iterator[str]:
@@ -449,9 +451,7 @@ def names_in(construct: object) -> Iterator[str]:
     if isinstance(construct, Old):
         yield construct.name
         return
-    slots = getattr(construct, "__slots__", ())
-    parts = construct if isinstance(construct, tuple) else [getattr(construct, s) for s in slots]
-    for part in parts:
+    for part in _parts(construct):
         yield from names_in(part)
 
 
