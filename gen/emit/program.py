@@ -124,7 +124,7 @@ class _Maker:
         if self.decided:
             found = [quiet(unit, computed=self.computed) for unit in found]
         texts = [print_item(unit) for unit in found]
-        read = readings(found, texts, root_package(self.system))
+        read = readings(found, root_package(self.system))
         context = [_context(_pruned(unit, root_package(self.system))) for unit in found]
         return [Made(u, t, r) for u, t, r in zip(context, texts, read, strict=True)]
 

@@ -5,14 +5,12 @@ Units are read in their order: a child after its parent, a body after its spec.
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from . import syntax as ada
-from .text import print_unit
 
 
 class _Name(NamedTuple):
@@ -160,11 +158,11 @@ class Reading:
     """Names that it could not have beside others."""
 
 
-def readings(units: Sequence[ada.Unit], texts: Sequence[str], root: str) -> list[Reading]:
+def readings(units: Sequence[ada.Unit], root: str) -> list[Reading]:
     """One for each unit; the parents of all but the children of ``root`` are among them."""
     specs: dict[str, list[_Name]] = {}
     made = []
-    for unit, text in zip(units, texts, strict=True):
+    for unit in units:
         name = unit.item.name
         is_body = isinstance(unit.item, ada.Package) and unit.item.is_body
         parent = name.rpartition(".")[0]
@@ -177,18 +175,18 @@ def readings(units: Sequence[ada.Unit], texts: Sequence[str], root: str) -> list
         if not is_body:
             specs[name] = own
         declared = [*reading.deep, *spec, *(_Name(part) for part in name.split(".")[2:])]
-        barred = (*reading.found, *_hidden(unit, declared, root, text))
+        barred = (*reading.found, *_hidden(unit, declared, root))
         made.append(Reading(name, is_body, frozenset(n.key for n in own), barred))
     return made
 
 
-def _hidden(unit: ada.Unit, declared: Sequence[_Name], root: str, text: str) -> Iterator[str]:
+def _hidden(unit: ada.Unit, declared: Sequence[_Name], root: str) -> Iterator[str]:
     """Names of other units that are used where something else is declared by that name."""
     others = {w.removeprefix(f"{root}.").split(".")[0].lower() for w in unit.withs}
     above = unit.item.name.split(".")[:2]  # a region's or activity's package never names itself
     others |= {part.lower() for part in above}
     taken = {n.text for n in declared if n.key in others}
-    whole = re.sub(r"--.*", "", print_unit(unit, text)) if taken else ""
-    for hidden in sorted(taken):
-        if re.search(rf"(?<![\w.]){hidden}\.", whole, re.IGNORECASE):
-            yield hidden
+    if taken:
+        names = (*unit.withs, *ada.units_named_in(unit.item))
+        owners = {name.partition(".")[0].lower() for name in names if "." in name}
+        yield from sorted(hidden for hidden in taken if hidden.lower() in owners)
