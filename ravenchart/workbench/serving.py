@@ -16,7 +16,6 @@ from pathlib import Path
 import uvicorn
 
 from ravenchart import terminal
-
 from ravenchart.failures import Unusable
 
 from .guard import LARGEST, token
