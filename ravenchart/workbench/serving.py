@@ -25,7 +25,7 @@ from .session import Session
 
 ADDRESS = "127.0.0.1"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-PATIENCE = 2
+PATIENCE = 5
 """Seconds that answers under way may take at the end."""
 
 

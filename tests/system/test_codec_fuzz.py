@@ -25,6 +25,7 @@ MODELS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS, ids=lambda p: p.parent.name)
 def test_what_is_accepted_packs_into_the_same_bits(model: Path, tmp_path: Path) -> None:
     checked = checking.check(model)

@@ -132,5 +132,7 @@ def test_a_crossing_that_forgets_a_condition_is_refused_with_the_way_to_it() -> 
 
 @pytest.mark.slow
 def test_a_pump_without_else_gets_stuck_and_check_says_so() -> None:
-    found = _found("pump", "          not_yet: {from: May_Go_On, to: Alarm, guard: else}\n", "")
+    found = _found(
+        "pump", "          not_yet: {from: May_Go_On, to: Alarm, guard: else, req: [R-7]}\n", ""
+    )
     assert any(one.startswith("Infusion may get stuck in May_Go_On") for one in found)

@@ -53,6 +53,7 @@ def _run(folder: Path, expected: dict[str, Any]) -> tuple[checking.Checked, Obse
     return checked, read_trace(trace.read_text().splitlines(), names)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", CASES, indirect=True)
 def test_it_runs_to_its_trace(folder: Path) -> None:
     expected = _expected(folder)

@@ -76,6 +76,7 @@ def _hit(mode: str, place: int, folder: Path, after: float = 0.5) -> Hit:
     return Hit(process.returncode, reasons, trace.read_text() if trace.exists() else "")
 
 
+@pytest.mark.slow
 @shows(
     "an exception in the task of the probe, the supervisor, a driver or a processor",
     found_by="the fallback handler of task termination",

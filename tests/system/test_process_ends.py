@@ -46,6 +46,7 @@ def started(*words: str | Path) -> Iterator[Marked]:
         one.process.communicate()
 
 
+@pytest.mark.slow
 @shows(
     "`run` is ended by TERM or KILL",
     found_by="a guard process",

@@ -105,6 +105,7 @@ def test_a_script_leads_the_controller_that_the_shell_starts(robot: Robot, tmp_p
         assert {0x080, 0x120, 0x180} <= {frame.arbitration_id for frame in frames}
 
 
+@pytest.mark.slow
 def test_the_shell_joins_a_controller_on_a_bus_server(on_bus: Path, tmp_path: Path) -> None:
     def play() -> str:
         with bus_of(on_bus, tmp_path) as channel:
@@ -151,6 +152,7 @@ def scenario(tmp_path: Path, interface: str, channel: object) -> str:
     return called("run", MODEL, "--scenario", SCENARIO, *bus)
 
 
+@pytest.mark.slow
 def test_a_scenario_is_played_on_a_bus_server(on_bus: Path, tmp_path: Path) -> None:
     def play() -> str:
         with bus_of(on_bus, tmp_path) as channel:
@@ -159,6 +161,7 @@ def test_a_scenario_is_played_on_a_bus_server(on_bus: Path, tmp_path: Path) -> N
     assert played(play)[-1] == SEEN
 
 
+@pytest.mark.slow
 def test_a_scenario_is_played_by_slcan_over_tcp(robot: Robot, tmp_path: Path) -> None:
     def play() -> str:
         with controller(robot[1], tmp_path) as process:
@@ -167,6 +170,7 @@ def test_a_scenario_is_played_by_slcan_over_tcp(robot: Robot, tmp_path: Path) ->
     assert played(play)[-1] == SEEN
 
 
+@pytest.mark.slow
 def test_a_scenario_is_played_by_slcan_over_a_serial_line(robot: Robot, tmp_path: Path) -> None:
     """Two adapters on one bus: the controller has one, and the bench the other."""
 

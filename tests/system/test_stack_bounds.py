@@ -167,6 +167,7 @@ def test_a_stack_of_half_its_bound_fails_the_build(tmp_path: Path) -> None:
         _program(home).build()
 
 
+@pytest.mark.slow
 def test_the_robot_with_half_a_stack_fails_too(tmp_path: Path) -> None:
     home = tmp_path / "robot"
     shutil.copytree(ROOT / "examples" / "cartesian_robot", home)
@@ -215,6 +216,7 @@ def test_what_has_no_bound_is_refused_where_it_stands(
     assert said.count("error:") == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", ["checks", "release"])
 @pytest.mark.parametrize("driver", ["loopback", "slcan", "bus", "socketcan", "ctucanfd"])
 def test_with_each_driver_every_stack_has_a_bound(driver: str, mode: str) -> None:

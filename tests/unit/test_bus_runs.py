@@ -75,6 +75,7 @@ def test_a_scenario_is_played_and_nothing_is_started(
         assert {frame.arbitration_id for frame in frames} == {0x080, 0x180}
 
 
+@pytest.mark.slow
 def test_what_cannot_be_seen_is_named_and_not_judged(
     tmp_path: Path, server: BusServer, far: FarEnd, capsys: PRINTED
 ) -> None:
