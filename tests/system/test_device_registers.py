@@ -157,6 +157,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.slow
 @shows(
     "a task dies, hangs or overflows its stack while its devices are driven",
     found_by="the fallback handler of task termination; liveness supervision",

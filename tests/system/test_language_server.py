@@ -181,6 +181,7 @@ def test_another_name_goes_to_every_file_and_the_model_stays_right(robot: Path) 
     assert "order: " not in (robot / "joint.yaml").read_text().replace("goal_order: ", "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("new", "reason"),
     [

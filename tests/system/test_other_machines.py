@@ -61,6 +61,7 @@ def programs(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     return Programs(machine, folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("driver", "main"), [(driver, main) for driver, mains in MAINS.items() for main in mains]
 )

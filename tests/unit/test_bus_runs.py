@@ -96,6 +96,7 @@ def test_what_cannot_be_seen_is_named_and_not_judged(
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_bus_without_the_controller_fails_even_where_no_step_does(
     tmp_path: Path, server: BusServer, capsys: PRINTED
 ) -> None:
@@ -107,6 +108,7 @@ def test_a_bus_without_the_controller_fails_even_where_no_step_does(
     )
 
 
+@pytest.mark.slow
 def test_a_step_that_fails_fails_the_run(
     tmp_path: Path, server: BusServer, far: FarEnd, capsys: PRINTED
 ) -> None:
@@ -116,6 +118,7 @@ def test_a_step_that_fails_fails_the_run(
     assert last.startswith("verdict: FAIL: wait for robot_status.condition = Failed: not within ")
 
 
+@pytest.mark.slow
 def test_a_bus_that_goes_away_fails_the_run_and_is_named(
     tmp_path: Path, server: BusServer, capsys: PRINTED
 ) -> None:
@@ -129,6 +132,7 @@ def test_a_bus_that_goes_away_fails_the_run_and_is_named(
     far.close()
 
 
+@pytest.mark.slow
 def test_a_file_of_frames_is_replayed_to_it(
     tmp_path: Path, server: BusServer, far: FarEnd, capsys: PRINTED
 ) -> None:

@@ -326,6 +326,7 @@ def test_a_port_in_use_is_told_with_the_way_out(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["wrong.yaml", "missing.yaml"])
 def test_a_model_that_check_refuses_is_refused_in_the_same_words(name: str, tmp_path: Path) -> None:
     (tmp_path / "wrong.yaml").write_text("system: X\nnodes: {a: {core: 1}}\n")
