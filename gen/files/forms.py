@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.names import meant
@@ -60,18 +61,25 @@ def check(tree: Map) -> tuple[ModelFile | None, list[Diagnostic]]:
     found: list[Diagnostic] = []
     removed: set[int] = set()
     while True:
-        try:
-            return ModelFile.model_validate(tree), found
-        except ValidationError as problem:
-            errors = problem.errors(include_url=False)
+        read = _read(tree)
+        if isinstance(read, ModelFile):
+            return read, found
         paths: set[Path] = set()
-        for item in errors:
+        for item in read:
             place = Place(tree, item["loc"])
             if not place.follows_from(removed, item["type"]):
                 found.append(place.diagnostic(item))
             paths.add(place.path)
         if () in paths or not _remove(tree, paths, removed):
             return None, found
+
+
+def _read(tree: Map) -> ModelFile | list[ErrorDetails]:
+    """The file's form, or all in which the tree is none."""
+    try:
+        return ModelFile.model_validate(tree)
+    except ValidationError as problem:
+        return problem.errors(include_url=False)
 
 
 def _holds(value: object, step: str | int) -> bool:
@@ -215,14 +223,9 @@ class Place:
 
 def keys_beside(tree: Map, key: str) -> dict[str, str]:
     """The keys that could stand where an unknown one does, each with what it means."""
-    try:
-        ModelFile.model_validate(tree)
-    except ValidationError as problem:
-        errors = problem.errors(include_url=False)
-    else:
-        return {}
+    read = _read(tree)
     found: dict[str, str] = {}
-    for item in errors:
+    for item in () if isinstance(read, ModelFile) else read:
         if item["type"] == "extra_forbidden" and item["loc"][-1] == key:
             found |= _meanings(item["loc"][:-1])
         elif item["type"] == "choice":
@@ -234,17 +237,13 @@ def keys_beside(tree: Map, key: str) -> dict[str, str]:
 
 def words_for(tree: Map, value: str) -> tuple[str, ...]:
     """The words of which one could stand where an unknown one does."""
-    try:
-        ModelFile.model_validate(tree)
-    except ValidationError as problem:
-        errors = problem.errors(include_url=False)
-        return tuple(
-            word
-            for item in errors
-            if item["type"] == "literal_error" and item["input"] == value
-            for word in re.findall(r"'(\w+)'", item["ctx"]["expected"])
-        )
-    return ()
+    read = _read(tree)
+    return tuple(
+        word
+        for item in (() if isinstance(read, ModelFile) else read)
+        if item["type"] == "literal_error" and item["input"] == value
+        for word in re.findall(r"'(\w+)'", item["ctx"]["expected"])
+    )
 
 
 def _meanings(loc: Iterable[str | int]) -> dict[str, str]:
