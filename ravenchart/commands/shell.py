@@ -14,10 +14,11 @@ from pathlib import Path
 from ravenchart import terminal
 from ravenchart.building import programs
 from ravenchart.building.checking import Checked
-from ravenchart.failures import OK, WRONG, Refused, Unusable
+from ravenchart.failures import OK, WRONG, Refused
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.bench.scenario import DriveForm
 from ravenchart.running import judge, scenarios
+from ravenchart.running.attaching import bus_of
 from ravenchart.running.process import Ended, StartError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem, connected
 from ravenchart.running.shell import Shell
@@ -45,8 +46,7 @@ def execute(options: argparse.Namespace) -> int:
     """Carry out the lines of standard input; the exit status."""
     checked = common.checked(options)
     system = checked.system
-    if not system.buses:
-        raise Unusable(f"{system.name} has no bus, so nothing can be said to it")
+    bus_of(system)
     interface = common.interface(options, system)
     drives = scenarios.checked(options.drives, system).drives if options.drives else {}
     ended: Sequence[Ended] = ()

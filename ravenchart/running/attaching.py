@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ravenchart.failures import Unusable
+from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.interfaces import Interface, joined
 from ravenchart.hw_can.bench.peer import BenchError, Peer, Record
@@ -10,11 +11,16 @@ from ravenchart.hw_can.bench.peer import BenchError, Peer, Record
 from .vocabulary import Vocabulary
 
 
-def interface_of(system: System, name: str, channel: str) -> Interface:
-    """The interface with the bit rates that the model gives its bus; Unusable without a bus."""
+def bus_of(system: System) -> Bus:
+    """The bus on which a controller is spoken to; Unusable without one."""
     if not system.buses:
         raise Unusable(f"{system.name} has no bus, so nothing can be said to it")
-    bus = system.buses[0]
+    return system.buses[0]
+
+
+def interface_of(system: System, name: str, channel: str) -> Interface:
+    """The interface with the bit rates that the model gives its bus; Unusable without a bus."""
+    bus = bus_of(system)
     data_rate = (bus.data_rate or bus.bit_rate) if bus.takes_fd else None
     return Interface(name, channel, bus.bit_rate, data_rate, fd=bus.takes_fd)
 
