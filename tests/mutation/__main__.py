@@ -18,7 +18,7 @@ from ravenchart.tools.toolchain import ToolMissing
 from .catalogue import KINDS, mutants_of
 from .mutants import Mutant, sampled
 from .observing import Observer, Played, PlayedTogether, Simulated
-from .report import Explained, Outcome, as_json, explanations, reason_of, survivors, table
+from .report import Explained, Outcome, explanations, reason_of, told
 from .workbench import PATIENCE, Verdict, Workbench
 
 
@@ -107,15 +107,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ToolFailed as failed:
         print(f"the unbroken program is not clean:\n{str(failed).rstrip()}", file=sys.stderr)
         return 2
-    folder = ROOT / "build" / "mutate"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "score.json").write_text(as_json(outcomes), encoding="utf-8")
-    (folder / "score.txt").write_text(table(outcomes) + "\n", encoding="utf-8")
-    print(table(outcomes))
-    left = survivors(outcomes)
-    if left:
-        print(f"\nsurvived:\n{left}")
-    return 1 if left else 0
+    return told(outcomes, "score", KINDS)
 
 
 def _parser() -> argparse.ArgumentParser:

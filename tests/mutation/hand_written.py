@@ -22,7 +22,7 @@ from ravenchart.tools.toolchain import ToolMissing
 
 from . import text_rules
 from .mutants import Mutant, sampled
-from .report import Explained, Outcome, as_json, explanations, reason_of, survivors, table
+from .report import Explained, Outcome, explanations, reason_of, told
 from .workbench import Verdict
 
 UNITS = [
@@ -149,14 +149,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ToolFailed as failed:
         print(f"what is not broken is not clean:\n{str(failed).rstrip()}", file=sys.stderr)
         return 2
-    folder = ROOT / "build" / "mutate"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "runtime.json").write_text(as_json(outcomes), encoding="utf-8")
-    print(table(outcomes, text_rules.KINDS))
-    left = survivors(outcomes)
-    if left:
-        print(f"\nsurvived:\n{left}")
-    return 1 if left else 0
+    return told(outcomes, "runtime", text_rules.KINDS)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ravenchart.paths import ROOT
+
 from .catalogue import KINDS
 from .mutants import Mutant
 from .workbench import Verdict
@@ -63,6 +65,19 @@ def reason_of(known: Sequence[Explained], subject: str, mutant: Mutant, diff: st
 def _trimmed(diff: str) -> str:
     """Without space at the ends of lines."""
     return "\n".join(line.rstrip() for line in diff.splitlines()).strip("\n")
+
+
+def told(outcomes: Sequence[Outcome], name: str, kinds: Sequence[str]) -> int:
+    """Print the score, and write it below build/mutate/; 1 when a mutant survived."""
+    folder = ROOT / "build" / "mutate"
+    folder.mkdir(parents=True, exist_ok=True)
+    score, left = table(outcomes, kinds), survivors(outcomes)
+    (folder / f"{name}.json").write_text(as_json(outcomes), encoding="utf-8")
+    (folder / f"{name}.txt").write_text(score + "\n", encoding="utf-8")
+    print(score)
+    if left:
+        print(f"\nsurvived:\n{left}")
+    return 1 if left else 0
 
 
 def table(outcomes: Sequence[Outcome], kinds: Sequence[str] = KINDS) -> str:
