@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from ravenchart.analysis.present import report
 from ravenchart.evidence import records
 from tests.support import evidence
+from tests.support.bus_server import BusServer
 
 
 @pytest.fixture(scope="module")
@@ -17,6 +19,14 @@ def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
     home = tmp_path_factory.mktemp("evidence") / "base"
     evidence.write(home)
     return home
+
+
+@pytest.fixture
+def server() -> Iterator[BusServer]:
+    """A stand-in for the bus server."""
+    one = BusServer()
+    yield one
+    one.close()
 
 
 @pytest.fixture

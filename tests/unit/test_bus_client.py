@@ -21,13 +21,6 @@ ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture
-def server() -> Iterator[BusServer]:
-    one = BusServer()
-    yield one
-    one.close()
-
-
-@pytest.fixture
 def pair(server: BusServer) -> Iterator[tuple[RavenchartBus, RavenchartBus]]:
     with RavenchartBus(server.channel, fd=True) as a, RavenchartBus(server.channel, fd=True) as b:
         yield a, b

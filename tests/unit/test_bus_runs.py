@@ -35,13 +35,6 @@ expect:
 
 
 @pytest.fixture
-def server() -> Iterator[BusServer]:
-    one = BusServer()
-    yield one
-    one.close()
-
-
-@pytest.fixture
 def far(server: BusServer) -> Iterator[FarEnd]:
     """A robot on that bus that obeys."""
     one = FarEnd(RavenchartBus(server.channel, fd=True), robot(), obedient)

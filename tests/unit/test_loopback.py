@@ -22,13 +22,6 @@ from tests.support.bus_server import BusServer
 from tests.support.slcan_relay import SlcanRelay
 
 
-@pytest.fixture
-def server() -> Iterator[BusServer]:
-    one = BusServer()
-    yield one
-    one.close()
-
-
 def on(server: BusServer) -> Ends:
     """Both ends on the stand-in, with little patience."""
     setup = Setup("ravenchart", server.channel, "ravenchart", server.channel, fd=True)
