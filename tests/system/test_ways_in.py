@@ -34,8 +34,9 @@ def console_script(folder: Path) -> Path:
     module, _, function = scripts["ravenchart"].partition(":")
     script = folder / "bin" / "ravenchart"
     script.parent.mkdir()
+    start = f"""#!/bin/sh\n'''exec' "{PYTHON}" "$0" "$@"\n' '''\n"""  # as pip, for any path
     script.write_text(
-        f"#!{PYTHON}\nimport sys\nfrom {module} import {function}\nsys.exit({function}())\n"
+        f"{start}import sys\nfrom {module} import {function}\nsys.exit({function}())\n"
     )
     script.chmod(0o755)
     return script
