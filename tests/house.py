@@ -28,8 +28,8 @@ RECORDS = ROOT / "proofs" / "records"
 """A folder for each age of gnatprove."""
 OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
 """What may be outside SPARK in each target of ``make prove``, with the entry of the ledger."""
-PATIENCE = 300.0
-"""Seconds of processor time for the rules of behaviour: here they shall come to their end."""
+EFFORT = 150_000_000
+"""Work for the rules of behaviour, in units of z3: here they shall come to their end."""
 
 EXAMPLES = (
     "canopen_device",
@@ -137,7 +137,7 @@ def _copied(name: str) -> Path:
 
 def _written(folder: Path) -> checking.Checked:
     """The model in a folder, checked, and its program written."""
-    checked = checking.check(folder / "model.yaml", patience=PATIENCE)
+    checked = checking.check(folder / "model.yaml", effort=EFFORT)
     generation.write_program(checked)
     return checked
 
@@ -245,7 +245,7 @@ def check(_names: Sequence[str]) -> bool:
     compiler.use()  # `make test` builds the same programs
     fresh = True
     for example in EXAMPLES:
-        checked = checking.check(ROOT / "examples" / example / "model.yaml", patience=PATIENCE)
+        checked = checking.check(ROOT / "examples" / example / "model.yaml", effort=EFFORT)
         if checked.warnings:
             print(checked.warnings, file=sys.stderr)
             fresh = False

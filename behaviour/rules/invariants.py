@@ -18,7 +18,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
 from . import logic
-from .clock import OutOfTime
+from .budget import Exhausted
 from .logic import Term, Variable
 from .parts import determines
 from .reach import Reach
@@ -50,7 +50,7 @@ def invariants_hold(reach: Reach, system: System) -> Iterator[Diagnostic]:
         ]
         try:
             violation = next((v for v in map(Search.violation, searches) if v), None)
-        except OutOfTime:
+        except Exhausted:
             yield _not_inductive(invariant, broken, sum(search.looked for search in searches))
             raise
         if violation is None:
@@ -144,7 +144,7 @@ def _breaking_step(reach: Reach, system: System, bad: Term) -> Broken | None:
         old = [*reach.constants_over(reach.symbol), *reach.of_others(thread)]
         given = [*before, *others, *(_substituted(term, stale) for term in old)]
         for edge in _distinct(thread):
-            reach.clock.count()
+            reach.budget.count()
             after = _substituted(bad, _after(reach, thread, edge, stale))
             condition = _substituted(_lasting(reach, thread, edge.outcome.condition), stale)
             here = _states(reach, thread, edge.outcome.before)

@@ -59,7 +59,7 @@ def _endless(
     for nodes in sorted(cycles, key=lambda c: (len(c), [rank[node] for node in c])):
         ways = product(*(steps[pair] for pair in pairwise([*nodes, nodes[0]])))
         for cycle in islice(ways, MOST_CYCLES):
-            reach.clock.count()
+            reach.budget.count()
             terms = _goes_on(reach, thread, cycle)
             solver = logic.solver()
             solver.add(*reach.constants_over(reach.symbol), *reach.of_others(thread), *terms)

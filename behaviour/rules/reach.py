@@ -26,8 +26,8 @@ from ravenchart.gen.model.statechart import DONE, After, Every, When
 from ravenchart.gen.model.system import System
 
 from . import logic
+from .budget import Budget
 from .cells import actions, expressions, partition
-from .clock import Clock
 from .logic import Term, Variable
 from .outcomes import Outcome, outcomes
 from .outside import as_region, done_of, external_events, parameters_of
@@ -43,9 +43,9 @@ Task = tuple[Node, Configuration, Occurrence | None]
 class Reach:
     """The reachable nodes of every thread of a component."""
 
-    def __init__(self, component: Component, system: System, clock: Clock) -> None:
+    def __init__(self, component: Component, system: System, budget: Budget) -> None:
         self.component = component
-        self.clock = clock
+        self.budget = budget
         self.types = logic.readable(component)
         self.symbols: dict[Variable, Term] = {}
         self.constants = parameters_of(component, system)
@@ -205,7 +205,7 @@ class Reach:
         waiting: deque[Task] = deque([(start, start.configuration, None)])
         while waiting:
             node, at, only = waiting.popleft()
-            self.clock.count()
+            self.budget.count()
             for occurrence in self.occurrences(thread, at) if only is None else (only,):
                 for outcome in self._outcomes(thread, at, occurrence):
                     thread.remember(outcome)

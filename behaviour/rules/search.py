@@ -121,7 +121,7 @@ class Search:
                 if key in seen:
                     continue
                 self.looked += 1
-                self.reach.clock.count()
+                self.reach.budget.count()
                 if self.looked > MOST_SITUATIONS:
                     return None
                 way = point.way.extended(point, move)

@@ -1,7 +1,7 @@
 """What the rules of behaviour found earlier, kept by the content of the model (`kept`).
 
 A key covers every file of the model, the sources of the tool, and the versions of Python and z3.
-A result that is not finished is kept with the seconds that it had.
+A result that is not finished is kept with the work that it might take.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ravenchart.paths import PACKAGE
 from ravenchart.tools import kept
 
 KIND = "checks"
-FORMAT = 2
+FORMAT = 3
 """Part of each key: raised when what an entry holds changes."""
 SOURCES = ("analysis", "behaviour", "gen")
 
@@ -42,28 +42,28 @@ def key(sources: Mapping[str, Sequence[str]]) -> str:
     return kept.digest([_tool(), sorted((name, list(text)) for name, text in sources.items())])
 
 
-def load(key: str, seconds: float, *, finished: bool) -> Behaviour | None:
+def load(key: str, effort: int, *, finished: bool) -> Behaviour | None:
     """What was found; None when nothing is kept.
 
-    One that was not finished counts when it had ``seconds``, unless it must be ``finished``.
+    One that was not finished counts when it might take ``effort``, unless it must be ``finished``.
     """
     entry: Any = kept.load(KIND, key)
     try:
         found = tuple(_diagnostic(one) for one in entry["found"])
         is_open = any(one.code == UNFINISHED for one in found)
         safe = tuple(_safe(one) for one in entry["safe"])
-        if is_open and (finished or entry["seconds"] < seconds):
+        if is_open and (finished or entry["effort"] < effort):
             return None
         return Behaviour(found, safe)
     except (KeyError, TypeError, ValueError):
         return None
 
 
-def store(key: str, seconds: float, behaviour: Behaviour) -> None:
-    """Keep what was found within so many seconds."""
+def store(key: str, effort: int, behaviour: Behaviour) -> None:
+    """Keep what was found with so much work."""
     found = [_entry(one) for one in behaviour.found]
     safe = [asdict(one) for one in behaviour.safe]
-    kept.store(KIND, key, {"seconds": seconds, "found": found, "safe": safe})
+    kept.store(KIND, key, {"effort": effort, "found": found, "safe": safe})
 
 
 def _safe(entry: Any) -> SafeRegion:

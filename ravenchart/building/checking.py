@@ -11,7 +11,7 @@ from pathlib import Path
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.system.identifiers import order_of
 from ravenchart.analysis.system.timing import Analysis, analyse
-from ravenchart.behaviour.limits import SECONDS, Behaviour
+from ravenchart.behaviour.limits import EFFORT, Behaviour
 from ravenchart.failures import Refused
 from ravenchart.gen.derive.identifiers import with_order
 from ravenchart.gen.diagnostics import Diagnostic, Sources, render_all
@@ -78,15 +78,15 @@ def check(
     path: Path,
     *,
     deadlines: bool = True,
-    patience: float = SECONDS,
+    effort: int = EFFORT,
     finish: bool = False,
     read: Reader = read_file,
 ) -> Checked:
     """Load, check and analyse a model; Refused with every diagnostic when it is wrong.
 
-    ``patience`` is how many seconds the rules of behaviour may take. What they found in the
-    same content before is taken again; with ``finish``, unless it was not finished. ``read`` is
-    how files are read.
+    ``effort`` is how much work the rules of behaviour may take, in units of z3. What they
+    found in the same content before is taken again; with ``finish``, unless it was not
+    finished. ``read`` is how files are read.
     """
     loaded = load(path, read)
     system = loaded.system
@@ -95,7 +95,7 @@ def check(
     system, unordered = identified(system)
     analysis = analyse(system)
     late = (unordered or findings(analysis)) if deadlines else ()
-    behaviour = _behaviour(loaded, system, patience, finish)
+    behaviour = _behaviour(loaded, system, effort, finish)
     system = replace(system, safe_regions=behaviour.safe)
     everything = (*loaded.diagnostics, *behaviour.found, *late)
     if any(d.is_error for d in everything):
@@ -104,15 +104,15 @@ def check(
     return Checked(path, system, analysis, warnings, loaded.sources, everything)
 
 
-def _behaviour(loaded: Loaded, system: System, patience: float, finish: bool) -> Behaviour:
+def _behaviour(loaded: Loaded, system: System, effort: int, finish: bool) -> Behaviour:
     """What the rules of behaviour find, or have found before in the same content."""
     key = check_cache.key(loaded.sources)
-    found = check_cache.load(key, patience, finished=finish)
+    found = check_cache.load(key, effort, finished=finish)
     if found is None:
         from ravenchart.behaviour import rules  # imports a solver
 
-        found = rules.behaviour(system, patience)
-        check_cache.store(key, patience, found)
+        found = rules.behaviour(system, effort)
+        check_cache.store(key, effort, found)
     return found
 
 

@@ -28,8 +28,8 @@ from . import records
 from .records import Record
 from .results import Test, junit
 
-PATIENCE = 300.0
-"""Seconds of processor time for the rules of behaviour."""
+EFFORT = 150_000_000
+"""Work for the rules of behaviour, in units of z3."""
 FIRST_DRIVER = "loopback"
 """With it all of the runtime is proved; with another only what differs."""
 OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
@@ -81,7 +81,7 @@ def gather(
     driver: str | None = None,
     given: Sequence[Path] = (),
     tests: Path | None = None,
-    patience: float = PATIENCE,
+    effort: int = EFFORT,
     memory: Sequence[Path] = (),
 ) -> Facts:
     """What is at hand of a model; Refused where it has errors other than missed deadlines."""
@@ -91,7 +91,7 @@ def gather(
         return read_file(folder / path, limit)
 
     main = Path(model.name)
-    found = checking.check(main, deadlines=False, patience=patience, finish=True, read=read)
+    found = checking.check(main, deadlines=False, effort=effort, finish=True, read=read)
     checked = replace(found, path=model)
     chosen = driver or programs.default_driver(checked)
     programs.check_driver(checked, chosen)

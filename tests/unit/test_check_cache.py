@@ -73,12 +73,12 @@ def test_unfinished_check_is_kept_and_finished_by_check_alone(
     looked: list[str], path: Path
 ) -> None:
     for _ in range(2):
-        assert "RV-1110" in checking.check(path, patience=0.0).warnings
+        assert "RV-1110" in checking.check(path, effort=0).warnings
     assert len(looked) == 1
-    assert "RV-1110" in checking.check(path, patience=0.0, finish=True).warnings
+    assert "RV-1110" in checking.check(path, effort=0, finish=True).warnings
     assert len(looked) == 2
     assert "RV-1110" not in checking.check(path).warnings
-    assert "RV-1110" not in checking.check(path, patience=0.0).warnings
+    assert "RV-1110" not in checking.check(path, effort=0).warnings
     assert len(looked) == 3
 
 
