@@ -71,9 +71,8 @@ def of_model(analysis: Analysis) -> Advice | None:
     system, network = analysis.system, analysis.network
     costs: dict[str, list[Part]] = {}
     for task in system.tasks:
-        if task.released_by is not None:
-            bus = task.element.partition(".")[0]
-            costs.setdefault(f"driver_wcet of {bus}", []).append((task.element, ""))
+        if task.driver_of is not None:
+            costs.setdefault(f"driver_wcet of {task.driver_of}", []).append((task.element, ""))
         elif not task.slots:
             costs[task.element] = [(task.element, "")]
         costs |= {slot.element: [(task.element, slot.element)] for slot in task.slots}

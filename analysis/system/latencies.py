@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import zip_longest
 
 from ravenchart.analysis.core import can
 from ravenchart.analysis.core.bus import Bus, Frame
@@ -30,7 +29,7 @@ from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Processor, System
+from ravenchart.gen.model.system import Carried, Processor, Stop, System
 
 from .transport import Transfer, transfers
 
@@ -141,14 +140,15 @@ class Latencies:
         view_of = replace(found, responses=responses, best=best)
         return cls(system, view, view_of, places, travels)
 
-    def along(self, name: str, way: Sequence[str], reaction: int = 0, age: int = 0) -> Latency:
+    def along(self, name: str, way: Sequence[Stop], reaction: int = 0, age: int = 0) -> Latency:
         """The latency of a way, which lists messages, ports, rows and data."""
         steps: list[Step] = []
         released = dict(self.network.released_by)
         kept = ""  # why a job may leave what comes next as it was
-        for place, following in zip_longest(way, way[1:], fillvalue=""):
-            if place.startswith("message "):
-                found = named(self.system.messages, place.removeprefix("message "))
+        following: Stop | None
+        for place, following in zip(way, (*way[1:], None), strict=True):
+            if isinstance(place, Carried):
+                found = named(self.system.messages, place.message)
                 received = self.system.reception(found, following)
                 steps += _of_message(found, received, steps, released)
                 steps[-1] = self._whole(steps[-1], received)
@@ -182,12 +182,12 @@ class Latencies:
                 return port
         return None
 
-    def _kept(self, row: str, following: str) -> str:
+    def _kept(self, row: str, following: Stop | None) -> str:
         """Why jobs of a row may leave what it leads to as it was; "" where none does."""
         owner, _, name = row.partition(".")
         component = self.system.instance(owner).component
         item = named(component.runnables(), name)
-        if not following or component.renews(item, following.rpartition(".")[2]):
+        if following is None or component.renews(item, str(following).rpartition(".")[2]):
             return ""
         return f"{row} gives {following} a new value in some of its jobs only"
 

@@ -15,7 +15,7 @@ from ravenchart.analysis.core.responses import Level, Response, RowResponse
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling
 from ravenchart.analysis.core.tasks import plain
 from ravenchart.gen.model.buses import Bus, Message
-from ravenchart.gen.model.system import Chain, System
+from ravenchart.gen.model.system import Chain, Stop, System
 from ravenchart.gen.model.system import Task as ModelTask
 from ravenchart.gen.origins import Origin
 
@@ -191,9 +191,9 @@ class Analysis:
     def _latencies(self) -> Latencies:
         return Latencies.of(self.system, self.network, self.found, self.deliveries)
 
-    def latency(self, way: Sequence[str]) -> latencies.Latency:
+    def latency(self, way: Sequence[Stop]) -> latencies.Latency:
         """The latency of a way, which lists messages, ports, rows and data."""
-        return self._latencies.along(f"{way[0]} to {way[-1]}".replace("message ", ""), way)
+        return self._latencies.along(f"{way[0]} to {way[-1]}", way)
 
     @cached_property
     def limited(self) -> tuple[tuple[Chain, latencies.Latency], ...]:

@@ -37,9 +37,10 @@ from ravenchart.gen.emit.components.packages import (
 )
 from ravenchart.gen.emit.instances.glue import emit_instances
 from ravenchart.gen.emit.language.quiet import (
-    has_computed_conditions,
-    has_decided_conditions,
+    OfComponent,
     quiet,
+    words_of_system,
+    words_of_types,
 )
 from ravenchart.gen.emit.language.types import emit_root
 from ravenchart.gen.emit.nodes.deployment import emit_deployment, emit_without_tasks
@@ -93,8 +94,8 @@ class _Maker:
         #  without such a type the root has no need of the runtime, and its children
         #  cannot see it through the root
         self.blind = not any(isinstance(t, IntegerType) for t in system.types)
-        self.decided = has_decided_conditions(system)
-        self.computed = has_computed_conditions(system)
+        self.words = words_of_system(system)
+        self.words_of_types = words_of_types(system)
         used = {i.component.name for i in system.instances}
         self.components = [c for c in system.components if c.name in used]
 
@@ -111,18 +112,22 @@ class _Maker:
 
     def _of_component(self, component: Component) -> list[Made]:
         system, header = self.system, self.header
+        words = OfComponent(component, self.words_of_types)
         found = [emit_component(system, component, header)]
         for region in component.regions:
-            found += emit_region(system, component, region, header, noted=self.noted)
-        found += emit_activities(system, component, header)
-        return self.made(found)
+            own = emit_region(system, component, region, header, noted=self.noted)
+            found += [quiet(unit, words.region(region)) for unit in own]
+        own = emit_activities(system, component, header)
+        found += [quiet(unit, words.activities()) for unit in own]
+        return self._read(found)
 
     def made(self, found: Sequence[Unit]) -> list[Made]:
-        """Units with their texts and readings."""
+        """Units that belong to no component, with their texts and readings."""
+        return self._read([quiet(unit, self.words) for unit in found])
+
+    def _read(self, found: Sequence[Unit]) -> list[Made]:
         if self.blind:
             found = [_seeing_runtime(unit) for unit in found]
-        if self.decided:
-            found = [quiet(unit, computed=self.computed) for unit in found]
         texts = [print_item(unit) for unit in found]
         read = readings(found, root_package(self.system))
         context = [_context(_pruned(unit, root_package(self.system))) for unit in found]

@@ -23,9 +23,9 @@ def looked(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
     names: list[str] = []
     findings = rules.findings
 
-    def counted(system: System, seconds: float) -> tuple[Diagnostic, ...]:
+    def counted(system: System, effort: int) -> tuple[Diagnostic, ...]:
         names.append(system.name)
-        return findings(system, seconds)
+        return findings(system, effort)
 
     monkeypatch.setattr("ravenchart.behaviour.rules.findings", counted)
     return names

@@ -21,8 +21,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    --  [device.nmt_in]
    package Nmt_In_Mailbox is new Ravenchart.Queues

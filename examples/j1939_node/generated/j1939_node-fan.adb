@@ -21,8 +21,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    --  [fan.rival]
    package Rival_Mailbox is new Ravenchart.Queues

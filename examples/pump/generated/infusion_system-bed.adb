@@ -20,8 +20,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    --  [bed.line]
    package Line_Mailbox is new Ravenchart.Queues

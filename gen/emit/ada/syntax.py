@@ -204,10 +204,11 @@ class Param(NamedTuple):
 
 @frozen
 class EnumType:
-    """An enumeration type."""
+    """An enumeration type; ``notes`` are comments on its literals, empty for one without."""
 
     name: str
     literals: tuple[str, ...]
+    notes: tuple[Comment, ...] = ()
 
 
 @frozen
@@ -412,6 +413,8 @@ def _together(rows: Iterable[tuple[str, Result]]) -> tuple[tuple[str, Result], .
     return tuple((" | ".join(names), result) for result, names in found.items())
 
 
+COMPARISONS = frozenset(("=", "/=", "<", "<=", ">", ">=", "in", "not in"))
+
 _NAME = re.compile(r"[A-Za-z]\w*(?:\.\w+)*")
 
 
@@ -441,6 +444,13 @@ def _parts(construct: object) -> Sequence[object]:
     if isinstance(construct, tuple):
         return construct
     return [getattr(construct, name) for name in getattr(construct, "__slots__", ())]
+
+
+def compares(construct: object) -> bool:
+    """Is there a comparison or a membership test in it?"""
+    if isinstance(construct, Chain) and construct.operator in COMPARISONS:
+        return True
+    return any(compares(part) for part in _parts(construct))
 
 
 def names_in(construct: object) -> Iterator[str]:

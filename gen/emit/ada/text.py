@@ -6,7 +6,7 @@ expressions break one item a line (`layout` decides).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 from .layout import SOFT, Doc, cat, group, laid_out, nest, upright
@@ -304,9 +304,8 @@ def _subprogram(sub: Subprogram) -> Doc:
 
 def _declaration(decl: Decl) -> Doc:
     match decl:
-        case EnumType(name, literals):
-            items = nest(_filled(literals), by=1)
-            return group(f"type {name} is", nest(SOFT, group("(", items, ");"), by=2))
+        case EnumType():
+            return _enumeration(decl)
         case PlainType(name, definition, subtype):
             parts = f"{definition};".replace(" range ", "\n range ").replace(" .. ", "\n.. ")
             whole, *bounds = [part.strip() for part in parts.split("\n")]
@@ -342,6 +341,29 @@ def _declaration(decl: Decl) -> Doc:
             return _pragma(name, args)
         case Comment(text):
             return _comment(text)
+
+
+def _enumeration(decl: EnumType) -> Doc:
+    if not decl.notes:
+        items = nest(_filled(decl.literals), by=1)
+        return group(f"type {decl.name} is", nest(SOFT, group("(", items, ");"), by=2))
+    noted = _annotated(decl.literals, decl.notes)
+    rows = nest(*_join(list(noted)), by=1)
+    end = cat(SOFT, ");") if decl.notes[-1].text else ");"
+    return upright(f"type {decl.name} is", nest(SOFT, "(", rows, end, by=2))
+
+
+def _annotated(literals: Sequence[str], notes: Sequence[Comment]) -> Iterator[Doc]:
+    """A line for each literal, its note behind it; before it where that is too long."""
+    width = max(map(len, literals)) + 1
+    for index, (literal, note) in enumerate(zip(literals, notes, strict=True)):
+        row = literal if index == len(literals) - 1 else f"{literal},"
+        if not note.text:
+            yield row
+        elif width + len(note.text) < WIDTH - 20:
+            yield f"{row:<{width}}  --  {note.text}"
+        else:
+            yield cat(_comment(note.text), SOFT, row)
 
 
 def _component(head: str, initial: Expr | None) -> Doc:

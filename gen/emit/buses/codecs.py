@@ -79,8 +79,14 @@ def codec_name(message: Message) -> str:
     A layout is the type's where none is given. No codec of a type is called like one of a
     message, whatever the model calls them.
     """
-    plain = message.signals == signals_of(message.type)
-    return f"Type_{ada_case(message.type.name)}" if plain else f"Message_{ada_case(message.name)}"
+    if _is_plain(message):
+        return f"Type_{ada_case(message.type.name)}"
+    return f"Message_{ada_case(message.name)}"
+
+
+def _is_plain(message: Message) -> bool:
+    """Has it the layout of its type?"""
+    return message.signals == signals_of(message.type)
 
 
 def words_of(message: Message) -> int:
@@ -129,7 +135,7 @@ class _Codec:
         self.words = words_of(message)
         self.frame = "Word" if self.words == 1 else "Words"
         self.frame_type = WORD if self.words == 1 else WORDS
-        self.label = message.type.name if self.name.startswith("Type_") else message.name
+        self.label = message.type.name if _is_plain(message) else message.name
         self.table = LayoutTable(system, self.signals)
         self.selector = next((s for s in self.signals if s.selects), None)
 

@@ -113,7 +113,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     sent, received = _sent(system, bus), _received(system, bus)
     transmit = system.object(f"{bus.name}.transmit").ceiling
     receive = system.object(f"{bus.name}.receive").ceiling
-    drivers = [t for t in system.tasks if t.element.startswith(f"{bus.name}.driver")]
+    drivers = [t for t in system.tasks if t.driver_of == bus.name]
     driver = max(drivers, key=lambda t: t.priority)
     standard = [fact(m.element, "Id").text for m in received if not m.extended]
     extended = [fact(m.element, "Id").text for m in received if m.extended]

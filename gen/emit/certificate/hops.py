@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.component import Activity, PortKind
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Chain, Processor, Slot, System
+from ravenchart.gen.model.system import Carried, Chain, Processor, Slot, Stop, System
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +44,9 @@ def hops_of(system: System, chain: Chain) -> tuple[Hop, ...]:
     hops: list[Hop] = []
     sure = True  # whether the row before renews what stands between it and the next
     for number, place in enumerate(chain.way):
-        if place.startswith("message "):
-            following = next(iter(chain.way[number + 1 :]), "")
-            hops += _message(system, place.removeprefix("message "), following)
+        following = next(iter(chain.way[number + 1 :]), None)
+        if isinstance(place, Carried):
+            hops += _message(system, place.message, following)
             continue
         owner, _, name = place.partition(".")
         component = system.instance(owner).component
@@ -62,8 +62,8 @@ def hops_of(system: System, chain: Chain) -> tuple[Hop, ...]:
         else:
             row = rows[name]
             hops.append(_row(system, place, row, hops))
-            if number + 1 < len(chain.way):
-                sure = component.renews(row, chain.way[number + 1].rpartition(".")[2])
+            if following is not None:
+                sure = component.renews(row, str(following).rpartition(".")[2])
     return tuple(_irregular(system, chain, hops))
 
 
@@ -73,14 +73,13 @@ def _irregular(system: System, chain: Chain, hops: list[Hop]) -> list[Hop]:
     What it releases runs as seldom as it comes; what samples it may find the same value
     any number of times.
     """
-    begins = chain.way[0].removeprefix("message ") if chain.way else ""
-    rare = any(message.sporadic and message.name == begins for message in system.messages)
+    rare = any(m.sporadic and chain.way[:1] == (Carried(m.name),) for m in system.messages)
     if rare and any(hop.how != "released" for hop in hops[1:]):
         return [replace(hops[0], sure=False), *hops[1:]]
     return hops
 
 
-def _message(system: System, name: str, following: str) -> Iterator[Hop]:
+def _message(system: System, name: str, following: Stop | None) -> Iterator[Hop]:
     """The driver's work and the frame, then its reception for the port that follows."""
     message = named(system.messages, name)
     mode = message.transmission

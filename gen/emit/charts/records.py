@@ -10,6 +10,7 @@ from ravenchart.gen.emit.ada.naming import (
     default_value,
     type_name,
     value,
+    where,
 )
 from ravenchart.gen.emit.ada.syntax import (
     FALSE,
@@ -49,7 +50,7 @@ def region_types(shape: RegionShape) -> list[Decl]:
         Comment(f"[{path}] what a step can be made for"),
         EnumType("Occurrence", shape.occurrences()),
         Comment(f"[{path}.transitions] in order of precedence, innermost source first"),
-        EnumType("Selection", (START, *names, "None")),
+        EnumType("Selection", (START, *names, "None"), _places(shape)),
         PlainType(
             "Firing", f"Selection range {START} .. {names[-1] if names else 'None'}", subtype=True
         ),
@@ -58,6 +59,12 @@ def region_types(shape: RegionShape) -> list[Decl]:
     if not shape.single:
         items += _lane_types(shape)
     return items + _records(shape)
+
+
+def _places(shape: RegionShape) -> tuple[Comment, ...]:
+    """The transition that each line of the chart is, and where it stands in the model."""
+    model = shape.system.origin
+    return (Comment(""), *(where(f.name, f.origins, model) for f in shape.firings), Comment(""))
 
 
 def _selection_of(names: Sequence[str]) -> str:

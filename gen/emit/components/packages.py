@@ -95,7 +95,7 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
     items += request_types(system, component)
     for region in component.regions:
         items.append(Comment(f"[{component.name}.{region.name}.states]"))
-        items.append(Places(region).package_of_states())
+        items.append(Places(region).package_of_states(system.origin))
     for port in component.inputs():
         name = ada_case(port.name)
         items.append(Comment(f"[{component.name}.{port.name}] what its readers see"))

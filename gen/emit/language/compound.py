@@ -25,6 +25,7 @@ from ravenchart.gen.model.statechart import (
     TransitionKind,
     Trigger,
 )
+from ravenchart.gen.origins import Origin
 
 from .own_names import transition_literal
 
@@ -88,6 +89,8 @@ class Firing:
     entries: tuple[Step, ...] = ()
     goal: str | None = None
     """The pseudostate or state it leads to; None for a fork."""
+    origins: tuple[Origin, ...] = ()
+    """Where the transitions that it consists of stand, or the vertex that it comes from."""
 
     @property
     def literal(self) -> str:
@@ -210,15 +213,17 @@ class Compounds:
                         (e,),
                         (),
                         None,
+                        origins=(state.origin,),
                     )
                     for e in state.defers
                 ]
         for pseudo in self.region.pseudostates:
             if self.region.lane(pseudo.name) == lane and pseudo.kind in PASSED:
-                lines += self._passing(pseudo.name, pseudo.kind, lane)
+                lines += self._passing(pseudo, lane)
         return lines
 
-    def _passing(self, name: str, kind: PseudoKind, lane: Lane) -> list[Firing]:
+    def _passing(self, pseudo: Pseudostate, lane: Lane) -> list[Firing]:
+        name, kind = pseudo.name, pseudo.kind
         lines: list[Firing] = []
         if kind is not PseudoKind.CHOICE:
             lines.append(
@@ -231,6 +236,7 @@ class Compounds:
                     (),
                     self.place(name),
                     goal=name,
+                    origins=(pseudo.origin,),
                 )
             )
         out = self.region.outgoing(name)
@@ -250,6 +256,7 @@ class Compounds:
                     place,
                     (),
                     entries,
+                    origins=(pseudo.origin,),
                 )
             )
         return lines
@@ -291,8 +298,19 @@ class Compounds:
             triggers = (Completion(),)
         guards = tuple(t.guard for t in path if t.guard is not None)
         effects = tuple(Effect(t.name, t.effect) for t in path)
+        origins = tuple(t.origin for t in path)
         if main.kind is TransitionKind.INTERNAL:
-            return Firing(name, Kind.INTERNAL, lane, sources, triggers, guards, None, effects)
+            return Firing(
+                name,
+                Kind.INTERNAL,
+                lane,
+                sources,
+                triggers,
+                guards,
+                None,
+                effects,
+                origins=origins,
+            )
         targets: list[str] = [last.target]
         before: dict[str, Effect] = {}
         pseudo = self.region.pseudostate(last.target)
@@ -302,6 +320,7 @@ class Compounds:
             targets = [t.target for t in prongs]
             before = {t.target: Effect(t.name, t.effect) for t in prongs}
             goal = None
+            origins += tuple(t.origin for t in prongs)
         domain = self._domain(main, sources, targets)
         return Firing(
             name,
@@ -314,6 +333,7 @@ class Compounds:
             effects,
             self.into(domain, targets, before),
             goal,
+            origins,
         )
 
     def _domain(self, main: Transition, sources: tuple[str, ...], targets: list[str]) -> Place:

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.emit.ada.naming import ada_case, states_package
+from ravenchart.gen.emit.ada.naming import ada_case, states_package, where
 from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
     Chain,
+    Comment,
     Component,
     Decl,
     EnumType,
@@ -27,6 +28,7 @@ from ravenchart.gen.emit.ada.syntax import (
     member,
 )
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Region
+from ravenchart.gen.origins import Origin
 
 from .compound import Enter, Place, Step, compounds_of
 from .own_names import state_literal
@@ -135,17 +137,23 @@ class Places:
             at = lane.owner
         return tuple(found)
 
-    def package_of_states(self) -> Package:
-        """The enumerations, the composites, and the configuration where there are lanes."""
+    def package_of_states(self, model: Origin) -> Package:
+        """The enumerations, the composites, and the configuration where there are lanes.
+
+        Each state with the place where it stands, as seen from ``model``.
+        """
         items: list[Decl] = []
         for lane in reversed(self.lanes):
-            names = tuple(state_literal(n) for n in self.literals(lane))
-            items.append(EnumType(self.lane_type(lane), names))
+            leaves = list(self.literals(lane))
+            names = tuple(map(state_literal, leaves))
+            notes = tuple(self._where(name, model) for name in leaves)
+            items.append(EnumType(self.lane_type(lane), names, notes))
         for state in self.region.states:
             if len(state.regions) == 1:
                 leaves = list(self.literals_in(Place(state.name, state.regions[0].name)))
                 outer = self.parent_type(state.name)
                 bounds = f"{outer} range {state_literal(leaves[0])} .. {state_literal(leaves[-1])}"
+                items.append(self._where(state.name, model))
                 items.append(PlainType(state_literal(state.name), bounds, subtype=True))
         if not self.single:
             rows = tuple(
@@ -156,6 +164,11 @@ class Places:
             )
             items.append(RecordType("Configuration", rows))
         return Package(self.states, tuple(items))
+
+    def _where(self, vertex: str, model: Origin) -> Comment:
+        """The state or pseudostate, and where it stands in the model."""
+        found = self.region.pseudostate(vertex) or self.region.state(vertex)
+        return where(found.name, (found.origin,), model)
 
     def parent_type(self, state: str) -> str:
         """The type that a composite's leaves are a range of."""

@@ -7,7 +7,6 @@ directly, so that row k of the table is the processor's number + 1 + k.
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import dataclass
 from itertools import product
 
@@ -106,5 +105,4 @@ def trace_json(system: System) -> str:
 
 def _place(origin: Origin, model: Origin) -> str:
     """Where an element stands, from the model's folder: the same wherever that is."""
-    file = os.path.relpath(origin.file, os.path.dirname(model.file) or ".")
-    return f"{file}:{origin.line}:{origin.column}"
+    return f"{origin.beside(model)}:{origin.column}"

@@ -5,11 +5,6 @@
 package body Two_Nodes.Linear_Servo.Drive
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    function Select_Transition
      (Leaf : Drive_States.Leaf; Now : Occurrence; Ins : Inputs)
      return Selection is
