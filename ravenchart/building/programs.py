@@ -29,7 +29,7 @@ from .checking import Checked, is_usual
 
 DRIVER_FOLDERS = {
     "loopback": ("drivers/loopback",),
-    "slcan": ("drivers/slcan", "drivers/tcp", "drivers/sockets"),
+    "slcan": ("drivers/slcan", "drivers/serial", "drivers/tcp", "drivers/sockets"),
     "bus": ("drivers/bus", "drivers/tcp", "drivers/sockets"),
     "socketcan": ("drivers/socketcan", "drivers/sockets"),
     "ctucanfd": ("drivers/ctucanfd",),

@@ -27,7 +27,7 @@ from .workbench import Verdict
 
 UNITS = [
     path.relative_to(ROOT)
-    for folder in ("spark_runtime/src", "hw_can/hal")
+    for folder in ("spark_runtime/src", "hw_can/hal", "hw_can/drivers/serial")
     for path in sorted((ROOT / folder).glob("*.ad[bs]"))
 ]
 """What is broken."""

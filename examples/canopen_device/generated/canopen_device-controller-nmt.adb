@@ -169,10 +169,12 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Exit_Initialisation
       with
         Post =>
@@ -187,6 +189,7 @@ is
          Active :=
            Chart.Moved (Active, Chart.Initialisation, Chart.Nowhere);
       end Exit_Initialisation;
+
       procedure Enter_Initialisation
       with
         Post =>
@@ -202,6 +205,7 @@ is
          Active :=
            Chart.Moved (Active, Chart.Nowhere, Chart.Initialisation);
       end Enter_Initialisation;
+
       procedure Enter_Boot_Up_Due
       with
         Post =>

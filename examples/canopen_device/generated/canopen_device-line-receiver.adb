@@ -26,6 +26,7 @@ is
    procedure Run_Receive (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
+
       Valid : Boolean;
       Nmt_Item : Canopen_Device.Nmt_Command;
       Sync_Item : Canopen_Device.Sync_Count;

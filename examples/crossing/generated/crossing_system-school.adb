@@ -80,6 +80,7 @@ is
 
    procedure Put_Button (Item : Crossing_System.Press) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Button_Mailbox.Put (Item, Status);
@@ -96,6 +97,7 @@ is
 
    procedure Put_Order (Item : Crossing_System.Order) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Order_Mailbox.Put (Item, Status);
@@ -112,6 +114,7 @@ is
 
    procedure Offer (Item : Crossing.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item.Name is
@@ -164,7 +167,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Button_Item : Crossing_System.Press;
       Button_Change : Crossing.Button_Port.Change;
       Order_Item : Crossing_System.Order;
@@ -222,10 +227,13 @@ is
    procedure Step_Lights is
       Now : Crossing.Lights.Occurrence;
       Fired : Crossing.Lights.Firing_List;
+
       use type Crossing.Lights_States.Leaf;
       use type Crossing.Lights.Occurrence;
+
       Event : Crossing.Event := Crossing.No_Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
    begin
       Crossing.Lights.Poll (Lights_Region, Now);

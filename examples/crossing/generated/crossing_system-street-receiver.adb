@@ -26,6 +26,7 @@ is
    procedure Run_Receive (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
+
       Valid : Boolean;
       Order_Item : Crossing_System.Order;
       Button_Item : Crossing_System.Press;

@@ -26,6 +26,7 @@ is
    procedure Run_Receive (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
+
       Valid : Boolean;
       Rival_Claim_Item : J1939_Node.Name;
       Request_To_All_Item : J1939_Node.Pgn_Octets;

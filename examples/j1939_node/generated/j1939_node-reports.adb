@@ -25,6 +25,7 @@ is
 
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
+
       Item : Ravenchart.Traces.Trace_Record;
       Status : Ravenchart.Queueing.Take_Status;
    begin
@@ -39,6 +40,7 @@ is
 
    procedure Report_Reception is
       use type Ravenchart.Element_Id;
+
       Found : Reception.Processor.Statistics;
    begin
       Reception.Processor.Observe (Found);
@@ -54,6 +56,7 @@ is
 
    procedure Report_Protocol is
       use type Ravenchart.Element_Id;
+
       Found : Protocol.Processor.Statistics;
    begin
       Protocol.Processor.Observe (Found);
@@ -69,6 +72,7 @@ is
 
    procedure Report_Control is
       use type Ravenchart.Element_Id;
+
       Found : Control.Processor.Statistics;
    begin
       Control.Processor.Observe (Found);

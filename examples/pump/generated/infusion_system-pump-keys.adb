@@ -52,6 +52,7 @@ is
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)

@@ -23,6 +23,7 @@ is
 
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
+
       Item : Ravenchart.Traces.Trace_Record;
       Status : Ravenchart.Queueing.Take_Status;
    begin
@@ -37,6 +38,7 @@ is
 
    procedure Report_Reception is
       use type Ravenchart.Element_Id;
+
       Found : Reception.Processor.Statistics;
    begin
       Reception.Processor.Observe (Found);
@@ -52,6 +54,7 @@ is
 
    procedure Report_Control is
       use type Ravenchart.Element_Id;
+
       Found : Control.Processor.Statistics;
    begin
       Control.Processor.Observe (Found);

@@ -26,6 +26,7 @@ is
    procedure Run_Receive (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
+
       Valid : Boolean;
       Line_Item : Infusion_System.Line;
       Panel_Item : Infusion_System.Press;

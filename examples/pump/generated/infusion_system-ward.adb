@@ -28,6 +28,7 @@ is
 
    procedure Send_Motor (Item : Infusion_System.Portion) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Motor (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -59,6 +60,7 @@ is
 
    procedure Send_Display (Item : Infusion_System.View) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Display (Item);
       Status : Ravenchart.Can.Send_Status;

@@ -287,7 +287,7 @@ def _subprogram(sub: Subprogram) -> Doc:
         return upright(group(head, " is", nest(SOFT, inner, by=2)), aspects, ";")
     if sub.body is None:
         return upright(head, aspects, ";")
-    declarations = _lines([_declaration(d) for d in sub.declarations])
+    declarations = _lines(_items(sub.declarations))
     start = [SOFT, "is"] if sub.aspects else [" is"]
     return upright(
         head,

@@ -55,7 +55,7 @@ from .shape import START, RegionShape
 
 MANY = 24
 """More transitions than so many are fired by procedures of a few each (`BATCH`)."""
-BATCH = 8
+BATCH = 6
 """So many transitions each of them fires: what the prover must see at a time stays small."""
 
 _Row = tuple[str, tuple[Stmt, ...]]

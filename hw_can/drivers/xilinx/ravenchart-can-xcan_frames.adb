@@ -34,6 +34,7 @@ is
       end if;
       pragma Assert (Bits_Of (Result) = Bits);
       pragma Assert (Identifier (Bits) = F.Id);
+      pragma Assert (Identifier (Bits_Of (Result)) = F.Id);
       return Result;
    end Identity_Of;
 

@@ -28,6 +28,7 @@ is
 
    procedure Send_Servo_Report (Item : Two_Nodes.Servo_Report) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Servo_Report (Item);
       Status : Ravenchart.Can.Send_Status;

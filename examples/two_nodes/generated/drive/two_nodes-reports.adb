@@ -24,6 +24,7 @@ is
 
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
+
       Item : Ravenchart.Traces.Trace_Record;
       Status : Ravenchart.Queueing.Take_Status;
    begin
@@ -38,6 +39,7 @@ is
 
    procedure Report_Reception_Drive is
       use type Ravenchart.Element_Id;
+
       Found : Reception_Drive.Processor.Statistics;
    begin
       Reception_Drive.Processor.Observe (Found);
@@ -53,6 +55,7 @@ is
 
    procedure Report_Control is
       use type Ravenchart.Element_Id;
+
       Found : Control.Processor.Statistics;
    begin
       Control.Processor.Observe (Found);

@@ -26,6 +26,7 @@ is
    procedure Run_Receive (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
+
       Valid : Boolean;
       Servo_Report_Item : Two_Nodes.Servo_Report;
    begin

@@ -23,6 +23,7 @@ is
 
    procedure Run_Watch (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Controller_State;
+
       Now : Ravenchart.Can.Fault_Notices.Fault_Log;
       Found : Ravenchart.Can.Fault_Notices.Notices;
       Is_Due : Boolean;

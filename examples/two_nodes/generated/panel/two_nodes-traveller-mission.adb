@@ -75,10 +75,12 @@ is
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Enter_Outward
       with
         Post =>
@@ -92,6 +94,7 @@ is
          Active := Chart.Moved (Active, Chart.Travelling, Chart.Outward);
          Self.Data.Goal := 20_000;
       end Enter_Outward;
+
       procedure Enter_Homeward
       with
         Post =>
