@@ -75,7 +75,7 @@ class Target:
     """One thing to prove: the name of its record, the run, and the folder of its model."""
 
     name: str
-    task: proving.Task
+    task: proving.ProofTask
     folder: Path | None = None
 
     def reasons(self) -> dict[str, str]:
@@ -152,7 +152,7 @@ def record_names(name: str, folder: Path) -> tuple[str, ...]:
 def _floats() -> Target:
     obj = ROOT / "obj"
     project = ROOT / "ravenchart.gpr"
-    task = proving.Task(
+    task = proving.ProofTask(
         project,
         {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
         (obj / f"checks-{DRIVERS[0]}" / "gnatprove",),
@@ -165,7 +165,7 @@ def _floats() -> Target:
 
 def _bus() -> Target:
     folder, obj = ROOT / "hw_can" / "server", ROOT / "obj"
-    task = proving.Task(
+    task = proving.ProofTask(
         folder / "can_bus.gpr",
         {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
         (obj / "bus-checks" / "gnatprove", obj / f"checks-{DRIVERS[0]}" / "gnatprove"),
@@ -180,7 +180,9 @@ def _kernel() -> Target:
     folder = ROOT / "analysis" / "kernel"
     results = (ROOT / "obj" / "kernel" / "objects" / "gnatprove",)
     sources = (ROOT, ROOT / "spark_runtime", folder, *(p for p in folder.rglob("*") if p.is_dir()))
-    task = proving.Task(folder / "kernel.gpr", {}, results, sources, warnings="error", whole=True)
+    task = proving.ProofTask(
+        folder / "kernel.gpr", {}, results, sources, warnings="error", whole=True
+    )
     return Target(KERNEL, task)
 
 
@@ -193,7 +195,7 @@ def _runtime(driver: str) -> Target:
     sources = {path.name for folder in own for path in folder.glob("*.ad[sb]")}
     bodies = {name for name in sources if name.endswith(".adb")}
     specs = {name for name in sources - bodies if f"{name[:-1]}b" not in bodies}
-    task = proving.Task(
+    task = proving.ProofTask(
         project,
         {"MODE": "checks", "CAN_DRIVER": driver},
         (obj / f"proofs-checks-{driver}" / "gnatprove", obj / f"checks-{driver}" / "gnatprove"),

@@ -22,7 +22,7 @@ from ravenchart.gen.model.system import Carried, Stop
 from ravenchart.gen.origins import Origin
 
 from .commands import from_release
-from .latencies import Hop
+from .latencies import HopKind
 
 if TYPE_CHECKING:
     from .timing import Analysis
@@ -106,7 +106,7 @@ def _of_port(instance: Instance, port: Port, analysis: Analysis) -> Iterator[Dep
     needed: int | None = 0
     for way in ways:
         hop = analysis.latency(way).hops[-1]
-        one = 1 if hop.step.hop is not Hop.QUEUED else hop.backlog
+        one = 1 if hop.step.hop is not HopKind.QUEUED else hop.backlog
         one = None if hop.step.waits else one
         needed = None if one is None or needed is None else max(needed, one)
     expected = port.overflow is Overflow.DROP_OLDEST or port.on_overflow is not None

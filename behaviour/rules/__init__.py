@@ -19,7 +19,7 @@ from .inductive import contracts
 from .invariants import NOT_PROVED, VIOLATED, invariants_hold
 from .livelock import eventless_steps_end
 from .outcomes import TooManyWays
-from .reach import Reach
+from .reach import Reachable
 
 
 def behaviour(system: System, effort: int = EFFORT) -> Behaviour:
@@ -52,7 +52,7 @@ def findings(system: System, effort: int = EFFORT) -> tuple[Diagnostic, ...]:
 
 
 def _of_component(component: Component, system: System, budget: Budget) -> Iterator[Diagnostic]:
-    reach = Reach(component, system, budget)
+    reach = Reachable(component, system, budget)
     for thread in reach.threads:
         if thread.name in reach.published:
             for rule in (*RULES, eventless_steps_end):

@@ -102,7 +102,7 @@ def _at(token: Token) -> int:
 
 
 @v_args(inline=True)
-class Builder(Transformer[Token, Term]):
+class ExpressionBuilder(Transformer[Token, Term]):
     """Builds terms while the parser reduces, so that nothing recurses."""
 
     def number(self, digits: Token) -> Term:
@@ -142,7 +142,7 @@ class Builder(Transformer[Token, Term]):
 PARSER = Lark(
     GRAMMAR,
     parser="lalr",
-    transformer=Builder(),
+    transformer=ExpressionBuilder(),
     maybe_placeholders=False,
     propagate_positions=True,
 )

@@ -20,7 +20,7 @@ from ravenchart.gen.emit.program import (
 )
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT, work
-from ravenchart.proof.proving import Task
+from ravenchart.proof.proving import ProofTask
 from ravenchart.stacks.report import Memory
 from ravenchart.tools import toolchain
 
@@ -171,7 +171,7 @@ class Program:
         stacks.keep(
             made,
             stacks.examine(
-                stacks.Made(
+                stacks.BuiltProgram(
                     self.part,
                     made,
                     stacks.objects_of(made),
@@ -219,7 +219,7 @@ class Program:
         """What of the system it is."""
         return next(p for p in programs(self.checked.system) if p.nodes[0].name == self.node)
 
-    def proof(self, driver: str, *, warnings: str = "continue", whole: bool = False) -> Task:
+    def proof(self, driver: str, *, warnings: str = "continue", whole: bool = False) -> ProofTask:
         """The run of gnatprove on it, with the runtime and the HAL again if ``whole``."""
         own = self.home(driver) / "checks" / "gnatprove"
         runtime = work() / "obj" / f"checks-{driver}" / "gnatprove"
@@ -230,7 +230,7 @@ class Program:
         if types_with_registers(self.part):
             read = (*read, self.generated / HARDWARE)
             scenario["RAVENCHART_REGISTERS"] = HARDWARE
-        return Task(
+        return ProofTask(
             self.project,
             scenario,
             (own, runtime) if whole else (own,),

@@ -38,7 +38,7 @@ class _Form(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class Region(_Form):
+class MemoryRegion(_Form):
     """Memory: its first address, and its bytes."""
 
     at: int = Field(ge=0)
@@ -54,7 +54,7 @@ class CanController(_Form):
     interrupt: int = Field(ge=0)
 
 
-class Overheads(_Form):
+class TargetOverheads(_Form):
     """What the run-time library costs there, in ns; named as the keys of a node are."""
 
     context_switch: Span
@@ -115,8 +115,8 @@ class TargetForm(_Form):
     compilers: tuple[str, ...] = ()
     drivers: tuple[str, ...] = Field(min_length=1)
     tick: PositiveSpan | None = None
-    overheads: Overheads | None = None
-    memory: dict[str, Region] = {}
+    overheads: TargetOverheads | None = None
+    memory: dict[str, MemoryRegion] = {}
     stacks: Stacks = Stacks()
     can: tuple[CanController, ...] = ()
     emulator: Emulator | None = None

@@ -129,7 +129,7 @@ class ProveResult(Result):
 
 
 @dataclass(slots=True)
-class Row(Described):
+class ActivityRow(Described):
     """An activity of a processor."""
 
     activity: str
@@ -168,7 +168,7 @@ class Allocated(Described):
     """Worst-case execution time in ns."""
     response: int | None
     """Response-time bound in ns; null where there is none."""
-    activities: list[Row]
+    activities: list[ActivityRow]
     """Its table, first to last."""
 
 
@@ -257,7 +257,7 @@ class NewResult(Result):
 
 
 @dataclass(slots=True)
-class Case(Described):
+class LoopbackCase(Described):
     """A case of the suite."""
 
     name: str
@@ -276,7 +276,7 @@ class LoopbackResult(Result):
 
     passed: bool
     """Whether nothing failed, and something passed."""
-    cases: list[Case]
+    cases: list[LoopbackCase]
     """In the order in which they ran."""
     latencies: list[int]
     """From sending to receiving, in ns."""

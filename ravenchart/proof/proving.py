@@ -26,7 +26,7 @@ from .verdicts import Memcached
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class ProofTask:
     """One gnatprove run."""
 
     project: Path
@@ -82,7 +82,7 @@ class NotProved(ToolFailed):
 
 
 def prove(
-    task: Task,
+    task: ProofTask,
     *,
     fresh: bool = False,
     memcached: Memcached | None = None,
@@ -124,7 +124,7 @@ def prove(
     return proof
 
 
-def examples(task: Task, proof: Proof, tell: Callable[[str], None] = lambda _: None) -> str:
+def examples(task: ProofTask, proof: Proof, tell: Callable[[str], None] = lambda _: None) -> str:
     """The messages about what is not proved, with values for which it fails where there are some.
 
     Each unit with such a check is proved again, for the provers look for values only then.
@@ -139,7 +139,7 @@ def examples(task: Task, proof: Proof, tell: Callable[[str], None] = lambda _: N
     return ""
 
 
-def _run(task: Task, server: str | None, tell: Callable[[str], None], *more: str) -> None:
+def _run(task: ProofTask, server: str | None, tell: Callable[[str], None], *more: str) -> None:
     arguments = ["-P", task.project.name, "-f", "-q", "--output=oneline", *more]
     arguments.append(steps.SWITCH)
     arguments.append(f"--warnings={task.warnings}")
@@ -149,7 +149,7 @@ def _run(task: Task, server: str | None, tell: Callable[[str], None], *more: str
         arguments.append(f"--memcached-server={server}")
     if task.units:
         arguments += ["-u", *task.units]
-    taken = steps.Steps(tell).takes
+    taken = steps.Announced(tell).takes
     ages.run(arguments, task.project.parent, task.scenario, taken)
 
 

@@ -13,7 +13,7 @@ SWITCH = "--ide-progress-bar"
 _DONE = re.compile(r"completed (\d+) out of (\d+) \(\d+%\)\.\.\.\s*")
 
 
-class Steps:
+class Announced:
     """Tells after each unit how many are done, and how long the others take at that pace."""
 
     def __init__(

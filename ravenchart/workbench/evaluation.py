@@ -15,7 +15,7 @@ from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.pipeline import Loaded, load
 
 from .edits import Document
-from .places import Places
+from .places import ModelPlaces
 
 Texts = Mapping[str, bytes]
 """The files of a model by the names that its messages use, main file first."""
@@ -50,9 +50,9 @@ class Evaluation:
         return (*self.loaded.diagnostics, *self.late)
 
     @cached_property
-    def places(self) -> Places:
+    def places(self) -> ModelPlaces:
         """Where the files say what."""
-        return Places({name: document(content) for name, content in self.texts.items()})
+        return ModelPlaces({name: document(content) for name, content in self.texts.items()})
 
 
 def document(content: bytes) -> Document | None:

@@ -97,7 +97,7 @@ class Checkout:
     def _proved(self) -> Verdict:
         """All that `make prove ONLY=runtime-loopback` proves, with the verdicts of earlier runs."""
         objects = self.folder / "obj"
-        task = proving.Task(
+        task = proving.ProofTask(
             self.folder / "proofs" / "proofs.gpr",
             self._scenario,
             tuple(

@@ -9,7 +9,7 @@ import pytest
 from ravenchart.behaviour.limits import UNFINISHED
 from ravenchart.behaviour.rules import findings
 from ravenchart.behaviour.rules.budget import Budget
-from ravenchart.behaviour.rules.reach import Reach
+from ravenchart.behaviour.rules.reach import Reachable
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.system import System
@@ -20,8 +20,8 @@ from tests.support.interpreted import system_of
 pytestmark = pytest.mark.slow
 
 
-def _reach(system: System, index: int = 0) -> Reach:
-    return Reach(system.components[index], system, Budget(150_000_000))
+def _reach(system: System, index: int = 0) -> Reachable:
+    return Reachable(system.components[index], system, Budget(150_000_000))
 
 
 def test_120_leaves_are_checked_to_the_end() -> None:

@@ -28,13 +28,11 @@ is
       Move,                  --  [move] coordinator.yaml:67
       Halt,                  --  [halt] coordinator.yaml:73
       Halt_Homing,           --  [halt_homing] coordinator.yaml:74
-      --  [shut_down_failed] coordinator.yaml:81
-      Shut_Down_Failed,
+      Shut_Down_Failed,      --  [shut_down_failed] coordinator.yaml:81
       Recover,               --  [recover] coordinator.yaml:82
       Recovered,             --  [recovered] coordinator.yaml:83
       Not_Recovered,         --  [not_recovered] coordinator.yaml:87
-      --  [shut_down_recovering] coordinator.yaml:88
-      Shut_Down_Recovering,
+      Shut_Down_Recovering,  --  [shut_down_recovering] coordinator.yaml:88
       Joint_Failed,          --  [joint_failed] coordinator.yaml:75
       Joint_Lost,            --  [joint_lost] coordinator.yaml:79
       Shut_Down,             --  [shut_down] coordinator.yaml:80

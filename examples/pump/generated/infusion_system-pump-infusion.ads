@@ -54,10 +54,8 @@ is
       Default_Of_Where_It_Was,
       Ready,                           --  [ready] model.yaml:120
       Again,                           --  [again] model.yaml:121
-      --  [order_portion] model.yaml:122
-      Order_Portion,
-      --  [order_volume] model.yaml:123
-      Order_Volume,
+      Order_Portion,                   --  [order_portion] model.yaml:122
+      Order_Volume,                    --  [order_volume] model.yaml:123
       Start,                           --  [start] model.yaml:124
       Stop,                            --  [stop] model.yaml:143
       Lost,                            --  [lost] model.yaml:146

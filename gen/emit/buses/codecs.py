@@ -20,14 +20,14 @@ from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Aspect,
     Assign,
-    Chain,
     Comment,
     Decl,
     Do,
     Expr,
-    If,
     IfExpr,
+    IfStatement,
     Object,
+    OperatorChain,
     Package,
     Param,
     Pragma,
@@ -349,11 +349,11 @@ class _Codec:
         """What the row counts, case by case: provers take the step to numbers here alone."""
         counted: Expr = call(NUMBER, Ref("Raw"))
         if signal.signed:
-            below = Chain("<=", (Ref("Raw"), bits((1 << signal.width - 1) - 1)))
+            below = OperatorChain("<=", (Ref("Raw"), bits((1 << signal.width - 1) - 1)))
             full = number(1 << signal.width)
-            counted = IfExpr(((below, counted),), Chain("-", (counted, full)))
+            counted = IfExpr(((below, counted),), OperatorChain("-", (counted, full)))
         elif container(signal) == WORD:
-            below = Chain("<=", (Ref("Raw"), bits(RAW_LIMIT - 1)))
+            below = OperatorChain("<=", (Ref("Raw"), bits(RAW_LIMIT - 1)))
             counted = IfExpr(((below, counted),), Ref("2**62"))
         steps: list[Expr] = [equal(shown, counted)]
         if container(signal) != WORD:
@@ -453,7 +453,7 @@ class _Codec:
         item: Stmt = Assign("Item", built)
         if is_valid != TRUE:  # all bits may stand for values
             absent = Assign("Item", default_value(self.system, self.type))
-            item = If(((Ref("Valid"), (item,)),), (absent,))
+            item = IfStatement(((Ref("Valid"), (item,)),), (absent,))
         return Subprogram(
             "Unpack",
             (

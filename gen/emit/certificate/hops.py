@@ -17,7 +17,7 @@ from ravenchart.gen.model.system import Carried, Chain, Processor, Slot, Stop, S
 
 
 @dataclass(frozen=True, slots=True)
-class Hop:
+class ClaimedHop:
     """One step of a chain: a row, a task, a message, or a message's handing over.
 
     ``how`` values come to it: ``released`` by the step before or the chain's event,
@@ -39,9 +39,9 @@ class Hop:
     renewed: str = ""
 
 
-def hops_of(system: System, chain: Chain) -> tuple[Hop, ...]:
+def hops_of(system: System, chain: Chain) -> tuple[ClaimedHop, ...]:
     """The steps of a chain, from its way; none where that is broken."""
-    hops: list[Hop] = []
+    hops: list[ClaimedHop] = []
     sure = True  # whether the row before renews what stands between it and the next
     for number, place in enumerate(chain.way):
         following = next(iter(chain.way[number + 1 :]), None)
@@ -67,7 +67,7 @@ def hops_of(system: System, chain: Chain) -> tuple[Hop, ...]:
     return tuple(_irregular(system, chain, hops))
 
 
-def _irregular(system: System, chain: Chain, hops: list[Hop]) -> list[Hop]:
+def _irregular(system: System, chain: Chain, hops: list[ClaimedHop]) -> list[ClaimedHop]:
     """The steps, the first not sure where it is a sporadic message that something samples.
 
     What it releases runs as seldom as it comes; what samples it may find the same value
@@ -79,21 +79,21 @@ def _irregular(system: System, chain: Chain, hops: list[Hop]) -> list[Hop]:
     return hops
 
 
-def _message(system: System, name: str, following: Stop | None) -> Iterator[Hop]:
+def _message(system: System, name: str, following: Stop | None) -> Iterator[ClaimedHop]:
     """The driver's work and the frame, then its reception for the port that follows."""
     message = named(system.messages, name)
     mode = message.transmission
-    hops: list[Hop] = []
+    hops: list[ClaimedHop] = []
     rare = mode is not None or message.transport is not None
     if message.source is not None:
-        hops.append(Hop(message.sending, "item", "released", rare=rare))
-    hops.append(Hop(message.element, "item", "released"))
+        hops.append(ClaimedHop(message.sending, "item", "released", rare=rare))
+    hops.append(ClaimedHop(message.element, "item", "released"))
     received = system.reception(message, following)
     if received is not None:
-        hops.append(Hop(received.driver, "item", "released"))
-        hops.append(Hop(received.element, "handed", "released"))
+        hops.append(ClaimedHop(received.driver, "item", "released"))
+        hops.append(ClaimedHop(received.element, "handed", "released"))
     if message.transport is not None:
-        last = Hop(message.element, "transfer", "released", renewed=message.element)
+        last = ClaimedHop(message.element, "transfer", "released", renewed=message.element)
         hops = [*hops[:-1], last]
     elif mode is not None and mode.longest is not None:
         hops = [replace(hop, renewed=message.element) for hop in hops]
@@ -102,14 +102,16 @@ def _message(system: System, name: str, following: Stop | None) -> Iterator[Hop]
     yield from hops
 
 
-def _row(system: System, element: str, row: Region | Activity, hops: list[Hop]) -> Hop:
+def _row(
+    system: System, element: str, row: Region | Activity, hops: list[ClaimedHop]
+) -> ClaimedHop:
     """A region or activity."""
     follows = bool(hops) and _follows(system, hops[-1], element)
     waits = isinstance(row, Region) and row.takes_turns
-    return Hop(element, "row", "released" if follows else "sampled", open=waits)
+    return ClaimedHop(element, "row", "released" if follows else "sampled", open=waits)
 
 
-def _handler(system: System, owner: str, port: str, hops: list[Hop]) -> Hop:
+def _handler(system: System, owner: str, port: str, hops: list[ClaimedHop]) -> ClaimedHop:
     """The port region of an instance, as far as it handles this port."""
     element = f"{owner}.ports"
     queued = system.instance(owner).component.port(port).kind is PortKind.QUEUED
@@ -121,13 +123,13 @@ def _handler(system: System, owner: str, port: str, hops: list[Hop]) -> Hop:
         if connection.source.port in row.sends
     ]
     if queued and hops and sum(many) > 1:
-        return Hop(element, "row", "queued", max(many), open=len(many) > 1)
+        return ClaimedHop(element, "row", "queued", max(many), open=len(many) > 1)
     if hops and _follows(system, hops[-1], element):
-        return Hop(element, "row", "released")
-    return Hop(element, "row", "queued" if queued and hops else "sampled")
+        return ClaimedHop(element, "row", "released")
+    return ClaimedHop(element, "row", "queued" if queued and hops else "sampled")
 
 
-def _follows(system: System, before: Hop, element: str) -> bool:
+def _follows(system: System, before: ClaimedHop, element: str) -> bool:
     """Whether a row runs in the same jobs as the one before, after it."""
     if before.kind != "row":
         return False

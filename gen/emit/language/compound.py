@@ -13,6 +13,7 @@ from enum import Enum
 from functools import cached_property, lru_cache
 
 from ravenchart.gen.language.terms import Expression, Flow
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import (
     Completion,
     Lane,
@@ -33,21 +34,13 @@ PASSED = (PseudoKind.CHOICE, PseudoKind.HISTORY, PseudoKind.DEEP_HISTORY)
 """Pseudostates that an execution passes through as a leaf."""
 
 
-class Kind(Enum):
+class FiringKind(Enum):
     """What a firing is."""
 
     MOVE = "move"
     INTERNAL = "internal"
     DEFERRAL = "deferral"
     RESTORE = "restore"
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """A region of the chart: of state ``owner``, or the top-level one for None."""
-
-    owner: str | None
-    region: str
 
 
 TOP = Place(None, "")
@@ -69,7 +62,7 @@ class Enter:
     vertex: str
 
 
-Step = Effect | Enter
+EntryStep = Effect | Enter
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +70,7 @@ class Firing:
     """One line of the declared chart; see the module."""
 
     name: str
-    kind: Kind
+    kind: FiringKind
     lane: Lane
     sources: tuple[str, ...]
     triggers: tuple[Trigger | str, ...]
@@ -86,7 +79,7 @@ class Firing:
     domain: Place | None
     """The innermost region that holds all it leaves and enters; None: it moves nothing."""
     effects: tuple[Effect, ...] = ()
-    entries: tuple[Step, ...] = ()
+    entries: tuple[EntryStep, ...] = ()
     goal: str | None = None
     """The pseudostate or state it leads to; None for a fork."""
     origins: tuple[Origin, ...] = ()
@@ -150,7 +143,7 @@ class Compounds:
 
     # --- entries
 
-    def default(self, place: Place) -> tuple[Step, ...]:
+    def default(self, place: Place) -> tuple[EntryStep, ...]:
         """Default entry of a region: its initial effect, then its initial state."""
         if place.owner is None:
             label, initial = self.region.name, self.region.initial
@@ -162,7 +155,7 @@ class Compounds:
 
     def into(
         self, place: Place, targets: list[str], effects: dict[str, Effect] | None = None
-    ) -> tuple[Step, ...]:
+    ) -> tuple[EntryStep, ...]:
         """Entry from ``place`` down to ``targets``; each one's effect runs before its region."""
         top = self.below(place, targets[0])[0]
         if self.region.pseudostate(top) is not None:
@@ -174,7 +167,7 @@ class Compounds:
 
     def _nested(
         self, place: Place, targets: list[str], effects: dict[str, Effect]
-    ) -> tuple[Step, ...]:
+    ) -> tuple[EntryStep, ...]:
         here = [t for t in targets if place in self.places(t)]
         if not here:
             return self.default(place)
@@ -207,7 +200,7 @@ class Compounds:
                 lines += [
                     Firing(
                         f"Defer_{e}_In_{state.name}",
-                        Kind.DEFERRAL,
+                        FiringKind.DEFERRAL,
                         lane,
                         (state.name,),
                         (e,),
@@ -229,7 +222,7 @@ class Compounds:
             lines.append(
                 Firing(
                     f"Restore_{name}",
-                    Kind.RESTORE,
+                    FiringKind.RESTORE,
                     lane,
                     (name,),
                     (Segment(),),
@@ -248,7 +241,7 @@ class Compounds:
             lines.append(
                 Firing(
                     f"Default_Of_{name}",
-                    Kind.MOVE,
+                    FiringKind.MOVE,
                     lane,
                     (name,),
                     (Segment(),),
@@ -302,7 +295,7 @@ class Compounds:
         if main.kind is TransitionKind.INTERNAL:
             return Firing(
                 name,
-                Kind.INTERNAL,
+                FiringKind.INTERNAL,
                 lane,
                 sources,
                 triggers,
@@ -324,7 +317,7 @@ class Compounds:
         domain = self._domain(main, sources, targets)
         return Firing(
             name,
-            Kind.MOVE,
+            FiringKind.MOVE,
             lane,
             sources,
             triggers,

@@ -13,24 +13,25 @@ from ravenchart.gen.emit.ada.naming import ada_case, states_package, where
 from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
-    Chain,
     Comment,
-    Component,
     Decl,
     EnumType,
     Expr,
+    OperatorChain,
     Package,
     PlainType,
-    RecordType,
+    RecordComponent,
+    RecordDeclaration,
     Ref,
     both,
     equal,
     member,
 )
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Region
 from ravenchart.gen.origins import Origin
 
-from .compound import Enter, Place, Step, compounds_of
+from .compound import Enter, EntryStep, compounds_of
 from .own_names import state_literal
 
 
@@ -157,12 +158,12 @@ class Places:
                 items.append(PlainType(state_literal(state.name), bounds, subtype=True))
         if not self.single:
             rows = tuple(
-                Component(
+                RecordComponent(
                     self.lane_field(n), self.lane_type(n), Ref(state_literal(self.default_leaf(n)))
                 )
                 for n in reversed(self.lanes)
             )
-            items.append(RecordType("Configuration", rows))
+            items.append(RecordDeclaration("Configuration", rows))
         return Package(self.states, tuple(items))
 
     def _where(self, vertex: str, model: Origin) -> Comment:
@@ -186,7 +187,7 @@ class Places:
         """The lanes that begin in an orthogonal state."""
         return tuple(n for n in self.lanes if n.owner == state)
 
-    def after(self, entries: tuple[Step, ...]) -> dict[Lane, str]:
+    def after(self, entries: tuple[EntryStep, ...]) -> dict[Lane, str]:
         """The leaves that entries lead to, lane by lane; other lanes keep theirs."""
         found: dict[Lane, str] = {}
         for step in entries:
@@ -218,7 +219,7 @@ def flat(parts: list[Expr]) -> list[Expr]:
     """One conjunction instead of nested ones."""
     found: list[Expr] = []
     for part in parts:
-        if isinstance(part, Chain) and part.operator == "and then":
+        if isinstance(part, OperatorChain) and part.operator == "and then":
             found += flat(list(part.operands))
         else:
             found.append(part)

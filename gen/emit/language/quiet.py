@@ -12,11 +12,11 @@ from dataclasses import replace
 
 from ravenchart.gen.emit.ada.syntax import Package, Pragma, Ref, Unit, compares
 from ravenchart.gen.language import terms as m
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region, When
 from ravenchart.gen.model.system import System
 
-from .compound import Place
 from .places import Places
 from .terms import expressions_in
 
