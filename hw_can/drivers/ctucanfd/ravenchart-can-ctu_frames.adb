@@ -6,11 +6,9 @@ is
      Pre  => Fits (Id, Format),
      Post =>
        (if Format = Extended
-        then Identifier (Identity_Of'Result and 16#1FFF_FFFF#)
-        else Identifier
-               (Interfaces.Shift_Right (Identity_Of'Result, 18)
-                and 16#7FF#))
-       = Id;
+        then (Identity_Of'Result and 16#1FFF_FFFF#) = Word (Id)
+        else (Interfaces.Shift_Right (Identity_Of'Result, 18) and 16#7FF#)
+             = Word (Id));
    --  IDENTIFIER_W.
 
    function Rest_Of (Length : Fd_Frames.Fd_Length) return Word
@@ -36,20 +34,14 @@ is
 
    function Identity_Of (Id : Identifier; Format : Frame_Format) return Word
    is
-      Bits   : constant Word := Word (Id);
-      Result : constant Word :=
-        (if Format = Extended
-         then Bits
-         else Interfaces.Shift_Left (Bits, 18));
+      Bits : constant Word := Word (Id);
    begin
       pragma Assert (Bits <= 16#1FFF_FFFF#);
       pragma Assert (if Format = Can.Standard then Bits <= 16#7FF#);
-      pragma Assert (Identifier (Bits) = Id);
-      pragma Assert
+      return
         (if Format = Extended
-         then (Result and 16#1FFF_FFFF#) = Bits
-         else (Interfaces.Shift_Right (Result, 18) and 16#7FF#) = Bits);
-      return Result;
+         then Bits
+         else Interfaces.Shift_Left (Bits, 18));
    end Identity_Of;
 
    --------------
