@@ -67,22 +67,14 @@ def forget_working_folder() -> None:
 
 def _command(arguments: Sequence[str] | None) -> int:
     """The command itself, imported only now; its output has been written when it returns."""
-    from rich.console import Console
-
     from .command_line import main as command
 
-    setattr(Console, "on_broken_pipe", _again)  # noqa: B010 - rich asks for a subclass
     try:
         status = command(arguments)
     except SystemExit as ended:  # argparse: --help and wrong calls
         status = ended.code if isinstance(ended.code, int) else 2
     sys.stdout.flush()
     return status
-
-
-def _again(console: object) -> None:
-    """Within the handling of a broken pipe, where rich would end with status 1."""
-    raise
 
 
 def _heed_signals() -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from ravenchart.analysis.core import holistic
 from ravenchart.analysis.core.can_response import FrameResponse
@@ -21,10 +22,12 @@ from ravenchart.gen.origins import Origin
 
 from . import latencies
 from .depths import Depth, depths
-from .graph import Ways
 from .latencies import Delivery, Latencies
 from .network import network_of
 from .transport import Transfer, transfers
+
+if TYPE_CHECKING:
+    from .graph import Ways
 
 FACTOR_STEPS = 1000
 """Factors of execution times are counted in 1 / this."""
@@ -175,6 +178,8 @@ class Analysis:
     @cached_property
     def ways(self) -> Ways:
         """The ways that values can take."""
+        from .graph import Ways  # only here: its graphs take longer to import than all of this
+
         return Ways.of(self.system)
 
     @cached_property

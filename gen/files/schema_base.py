@@ -245,7 +245,7 @@ E = TypeVar("E", bound="Element")
 class Element(BaseModel):
     """A mapping of the file format, which remembers where it and its parts were read."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
+    model_config = ConfigDict(extra="forbid", strict=True, defer_build=True)
     _raw: Map = PrivateAttr(default_factory=lambda: Map(Origin("", 1, 1)))
 
     req: Annotated[list[RequirementId], AfterValidator(_each_once)] | None = optional(

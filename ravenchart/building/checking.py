@@ -15,7 +15,6 @@ from ravenchart.behaviour.limits import EFFORT, Behaviour
 from ravenchart.failures import Refused
 from ravenchart.gen.derive.identifiers import with_order
 from ravenchart.gen.diagnostics import Diagnostic, Sources, render_all
-from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
@@ -58,7 +57,7 @@ class Checked:
     @property
     def stem(self) -> str:
         """The system's name as its files carry it."""
-        return ada_case(self.system.name).lower()
+        return self.system.name.lower()
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from ravenchart.terminal import progress
 
 from . import common
 from .answer import say
-from .results import BuildResult, Built
+from .build_results import BuildResult, Built
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:

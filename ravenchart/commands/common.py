@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ravenchart.failures import Unusable
 
 from .answer import Answer, say
-from .results import GenerateResult
+from .build_results import GenerateResult
 
 if TYPE_CHECKING:
     from ravenchart.building.checking import Checked

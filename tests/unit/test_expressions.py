@@ -145,6 +145,8 @@ def test_number_and_boolean_stand_for_themselves() -> None:
         ("done && done", 5),
         ("1.5", 1),
         ("length length", 7),
+        ("done ordone", 5),
+        ("done and if done then done else done", 9),
         ("min(1,)", 6),
         ("if done then 1", 13),
         ("in(Motion)", 9),
