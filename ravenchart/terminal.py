@@ -31,9 +31,7 @@ def console(width: int | None = WIDTH, *, errors: bool = False) -> Console:
             raise
 
     plain = bool(os.environ.get("NO_COLOR")) or os.environ.get("TERM") == "dumb"
-    return Ours(
-        width=width, highlight=False, stderr=errors, color_system=None if plain else "auto"
-    )
+    return Ours(width=width, highlight=False, stderr=errors, color_system=None if plain else "auto")
 
 
 @contextmanager

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from ravenchart.building import checking, generation, programs
+from ravenchart.building import checking, generation, programs, variants
 from ravenchart.failures import Refused, ToolFailed
 from ravenchart.paths import ROOT
 from ravenchart.proof import ages, outside_spark, proving
@@ -48,7 +48,7 @@ MODELS = {
     for path in sorted((ROOT / "tests" / kind).glob("*/model.yaml"))
 }
 """The models of the tests: all of them are proved. Their programs are not kept: see `made`."""
-DRIVERS = tuple(programs.DRIVER_FOLDERS)
+DRIVERS = tuple(variants.DRIVER_FOLDERS)
 PROVED_WITH = {"bus": ("protocol",)}
 """Folders of hw_can/ that only this driver uses, though every project has them."""
 GENERIC_BODIES = {
@@ -190,7 +190,7 @@ def _runtime(driver: str) -> Target:
     """All of it with the first driver; with another only what differs."""
     obj = ROOT / "obj"
     project = ROOT / "proofs" / "proofs.gpr"
-    folders = (*PROVED_WITH.get(driver, ()), *programs.DRIVER_FOLDERS[driver])
+    folders = (*PROVED_WITH.get(driver, ()), *variants.DRIVER_FOLDERS[driver])
     own = tuple(ROOT / "hw_can" / folder for folder in folders)
     sources = {path.name for folder in own for path in folder.glob("*.ad[sb]")}
     bodies = {name for name in sources if name.endswith(".adb")}

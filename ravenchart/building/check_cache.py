@@ -6,7 +6,6 @@ A result that is not finished is kept with the work that it might take.
 
 from __future__ import annotations
 
-import hashlib
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -15,10 +14,7 @@ from importlib import metadata
 from typing import Any
 
 from ravenchart.behaviour.limits import UNFINISHED, Behaviour
-from ravenchart.gen.diagnostics import Diagnostic, Severity
 from ravenchart.gen.model.safety import Fact, SafeRegion
-from ravenchart.gen.origins import Origin
-from ravenchart.paths import PACKAGE
 from ravenchart.tools import kept
 
 KIND = "checks"
@@ -30,11 +26,7 @@ SOURCES = ("analysis", "behaviour", "gen")
 @cache
 def _tool() -> list[object]:
     """All that decides what is found in a model."""
-    paths = sorted(path for name in SOURCES for path in (PACKAGE / name).rglob("*.py"))
-    sources = [
-        (str(p.relative_to(PACKAGE)), hashlib.sha256(p.read_bytes()).hexdigest()) for p in paths
-    ]
-    return [FORMAT, sys.version, metadata.version("z3-solver"), sources]
+    return [FORMAT, sys.version, metadata.version("z3-solver"), kept.sources(*SOURCES)]
 
 
 def key(sources: Mapping[str, Sequence[str]]) -> str:
@@ -49,7 +41,7 @@ def load(key: str, effort: int, *, finished: bool) -> Behaviour | None:
     """
     entry: Any = kept.load(KIND, key)
     try:
-        found = tuple(_diagnostic(one) for one in entry["found"])
+        found = tuple(kept.diagnostic(one) for one in entry["found"])
         is_open = any(one.code == UNFINISHED for one in found)
         safe = tuple(_safe(one) for one in entry["safe"])
         if is_open and (finished or entry["effort"] < effort):
@@ -61,7 +53,7 @@ def load(key: str, effort: int, *, finished: bool) -> Behaviour | None:
 
 def store(key: str, effort: int, behaviour: Behaviour) -> None:
     """Keep what was found with so much work."""
-    found = [_entry(one) for one in behaviour.found]
+    found = [kept.listed(one) for one in behaviour.found]
     safe = [asdict(one) for one in behaviour.safe]
     kept.store(KIND, key, {"effort": effort, "found": found, "safe": safe})
 
@@ -74,19 +66,3 @@ def _safe(entry: Any) -> SafeRegion:
     names = tuple(entry["invariants"])
     home = entry["component"], entry["region"]
     return SafeRegion(*home, names, tuple(facts), tuple(entry["alone"]))
-
-
-def _entry(found: Diagnostic) -> list[object]:
-    notes = [(_place(origin), text) for origin, text in found.notes]
-    place = _place(found.origin)
-    return [found.code, found.severity.value, place, found.message, notes, found.hint]
-
-
-def _place(origin: Origin) -> list[object]:
-    return [origin.file, origin.line, origin.column]
-
-
-def _diagnostic(entry: Any) -> Diagnostic:
-    code, severity, place, message, notes, hint = entry
-    shown = tuple((Origin(*origin), text) for origin, text in notes)
-    return Diagnostic(code, Severity(severity), Origin(*place), message, shown, hint)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterator
+import hashlib
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -43,6 +44,8 @@ class Checked:
     sources: Sources
     diagnostics: tuple[Diagnostic, ...]
     """What ``warnings`` shows."""
+    read: Mapping[str, str]
+    """SHA-256 of each file of the model, by its path."""
 
     @property
     def folder(self) -> Path:
@@ -87,7 +90,14 @@ def check(
     found in the same content before is taken again; with ``finish``, unless it was not
     finished. ``read`` is how files are read.
     """
-    loaded = load(path, read)
+    digests: dict[str, str] = {}
+
+    def noted(file: Path, limit: int) -> bytes:
+        content = read(file, limit)
+        digests[str(file)] = hashlib.sha256(content).hexdigest()
+        return content
+
+    loaded = load(path, noted)
     system = loaded.system
     if system is None:
         raise Refused(_rendered(loaded, loaded.diagnostics), loaded.diagnostics)
@@ -100,7 +110,7 @@ def check(
     if any(d.is_error for d in everything):
         raise Refused(_rendered(loaded, everything), everything)
     warnings = _rendered(loaded, everything)
-    return Checked(path, system, analysis, warnings, loaded.sources, everything)
+    return Checked(path, system, analysis, warnings, loaded.sources, everything, digests)
 
 
 def _behaviour(loaded: Loaded, system: System, effort: int, finish: bool) -> Behaviour:

@@ -22,27 +22,14 @@ from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT, work
 from ravenchart.proof.proving import ProofTask
 from ravenchart.stacks.report import Memory
-from ravenchart.tools import toolchain
 
 from . import images, stacks, targets
 from .checking import Checked, is_usual
+from .compilation import Compilation
+from .variants import DRIVER_FOLDERS, NATIVE
 
-DRIVER_FOLDERS = {
-    "loopback": ("drivers/loopback",),
-    "slcan": ("drivers/slcan", "drivers/serial", "drivers/tcp", "drivers/sockets"),
-    "bus": ("drivers/bus", "drivers/tcp", "drivers/sockets"),
-    "socketcan": ("drivers/socketcan", "drivers/sockets"),
-    "ctucanfd": ("drivers/ctucanfd",),
-    "xilinx": ("drivers/xilinx",),
-}
-"""The folders of hw_can/ that ravenchart.gpr adds for each driver."""
-
-
-DRIVERS = tuple(DRIVER_FOLDERS)
 TRACE_MAP = "trace.json"
 """Beside the generated sources: what the numbers of a trace mean."""
-REGISTERS = ("simulated", HARDWARE)
-"""What the registers of devices can be: see the project file of a program."""
 RUNTIME_FOLDERS = (
     "spark_runtime/src",
     "spark_runtime/native",
@@ -85,11 +72,11 @@ class Program:
         """Its GNAT project."""
         return self.generated / f"{self.checked.stem}.gpr"
 
-    def home(self, driver: str, target: str = targets.NATIVE) -> Path:
+    def home(self, driver: str, target: str = NATIVE) -> Path:
         """Where its objects and the program itself go."""
         return build_home(self.checked, driver, target) / self.folder
 
-    def scenario(self, mode: str, driver: str, target: str = targets.NATIVE) -> dict[str, str]:
+    def scenario(self, mode: str, driver: str, target: str = NATIVE) -> dict[str, str]:
         """The scenario variables of a build: mode, CAN driver, and where objects go."""
         home = self.home(driver, target)
         return {"MODE": mode, "CAN_DRIVER": driver, "RAVENCHART_BUILD": str(home)}
@@ -112,7 +99,34 @@ class Program:
         Refused where ``driver`` cannot do what the model wants, and with ``registers`` of the
         hardware where a device has no address.
         """
-        target = board.target if board else targets.target(targets.NATIVE)
+        target = board.target if board else targets.target(NATIVE)
+        compilation = self.compilation(mode, driver, registers, board)
+        made = compilation.image
+
+        def compiled(*more: str) -> None:
+            said = compilation.run(*more)
+            if said.strip():
+                warn(said.rstrip())
+
+        compiled()
+        if target.facts.memory:
+            images.check(made, target)
+        if stacks_needed:
+            if stacks.without_graph(stacks.objects_of(made)):
+                compiled("-f")  # objects of another build, which asked for no call graphs
+                stacks.must_have_graphs(stacks.objects_of(made))
+            self._examine(made, mode, target, board)
+        return made
+
+    def compilation(
+        self,
+        mode: str = "checks",
+        driver: str | None = None,
+        registers: str = "simulated",
+        board: targets.Board | None = None,
+    ) -> Compilation:
+        """How `build` calls gprbuild. Refused as there."""
+        target = board.target if board else targets.target(NATIVE)
         chosen = driver or default_driver(self.checked, target)
         check_driver(self.checked, chosen, target)
         if registers == HARDWARE:
@@ -126,22 +140,8 @@ class Program:
             variables |= board.scenario()
             options = [*board.options(), *options]
         options += ["-cargs:Ada", stacks.CALL_GRAPHS, "-gargs"]
-        made = self.home(chosen, target.name) / mode / f"{self.checked.stem}_main"
-
-        def compiled(*more: str) -> None:
-            said = toolchain.run("gprbuild", [*options, *more], self.project.parent, variables)
-            if said.strip():
-                warn(said.rstrip())
-
-        compiled()
-        if target.facts.memory:
-            images.check(made, target)
-        if stacks_needed:
-            if stacks.without_graph(stacks.objects_of(made)):
-                compiled("-f")  # objects of another build, which asked for no call graphs
-                stacks.must_have_graphs(stacks.objects_of(made))
-            self._examine(made, mode, target, board)
-        return made
+        image = self.home(chosen, target.name) / mode / f"{self.checked.stem}_main"
+        return Compilation(tuple(options), self.project.parent, variables, image)
 
     def last_build(self) -> Memory | None:
         """The stacks and the memory of its last build from these sources, if there is one."""
@@ -252,9 +252,9 @@ def programs_of(checked: Checked) -> tuple[Program, ...]:
     )
 
 
-def build_home(checked: Checked, driver: str, target: str = targets.NATIVE) -> Path:
+def build_home(checked: Checked, driver: str, target: str = NATIVE) -> Path:
     """What is built of a model, below build/ of the place of work, apart for driver and target."""
-    place = driver if target == targets.NATIVE else f"{driver}-{target}"
+    place = driver if target == NATIVE else f"{driver}-{target}"
     return work() / "build" / f"{checked.stem}-{_mark(checked.path)}-{place}"
 
 
@@ -275,7 +275,7 @@ def default_driver(checked: Checked, target: targets.Target | None = None) -> st
     So does one whose transmit buffers are by priority: an slcan adapter has none. On another
     target it is the first of that target's drivers.
     """
-    if target is not None and target.name != targets.NATIVE:
+    if target is not None and target.name != NATIVE:
         return target.facts.drivers[0]
     if len(checked.system.nodes) > 1 or _by_priority(checked):
         return "bus"

@@ -122,10 +122,15 @@ def read_record(path: Path) -> Memory:
         raise Unusable(f"{path} is no record of stacks and memory: {fault}") from None
 
 
+def facts_of(target: Target) -> tuple[Path, ...]:
+    """What decides beside a program whether its stacks are large enough, this module apart."""
+    return FRAMES, file_of(target.name)
+
+
 def is_known(image: Path, target: Target) -> bool:
     """Was this very program found to have stacks that are large enough?"""
     kept = record_of(image)
-    read = (image, FRAMES, file_of(target.name), Path(__file__))
+    read = (image, *facts_of(target), Path(__file__))
     return kept.is_file() and kept.stat().st_mtime_ns >= max(r.stat().st_mtime_ns for r in read)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from ravenchart.building import generation
+from ravenchart.building import unchanged
 from ravenchart.failures import OK
 
 from . import common
@@ -13,7 +13,15 @@ add_arguments = common.add_model
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Write it; the exit status."""
-    written = generation.write_program(common.checked(options))
+    """Write it, where it is not there as it would be written; the exit status."""
+    before = unchanged.generation(options.model)
+    if before is not None:
+        options.answer.result = common.generated_before(before, options.answer)
+        return OK
+    checked = common.checked(options)
+    from ravenchart.building import generation  # only here: it imports all that writes Ada
+
+    written = generation.write_program(checked)
+    unchanged.keep(checked, written)
     options.answer.result = common.tell_written(written, options.answer)
     return OK

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from ravenchart.building import generation, programs
+from ravenchart.building import generation, programs, variants
 from ravenchart.failures import OK, WRONG
 from ravenchart.proof import outside_spark, proving, unproved, verdicts
 from ravenchart.proof.spark_results import Outside
@@ -25,7 +25,7 @@ SILENCE = 30.0
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
-    sub.add_argument("--driver", choices=programs.DRIVERS, help="the CAN driver")
+    sub.add_argument("--driver", choices=variants.DRIVERS, help="the CAN driver")
     sub.add_argument(
         "--whole", action="store_true",
         help="prove the runtime and the HAL again, which `make prove` proves by themselves",

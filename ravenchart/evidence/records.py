@@ -10,7 +10,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravenchart.building.programs import DRIVER_FOLDERS, Program
+from ravenchart.building.programs import Program
+from ravenchart.building.variants import DRIVER_FOLDERS
 from ravenchart.gen.emit.commands.registers import HARDWARE
 from ravenchart.gen.emit.program import source_folders
 from ravenchart.paths import ROOT
