@@ -6,6 +6,7 @@ orderly end, and gives every kind of end its own exit status.
 
 from __future__ import annotations
 
+import gc
 import os
 import select
 import signal
@@ -53,6 +54,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _say(traceback.format_exc())
         _say("ravenchart: internal error (above): a fault of Ravenchart, not of the model")
         return INTERNAL
+    finally:
+        gc.freeze()  # Python ends, and does not search all that is left for garbage
 
 
 def forget_working_folder() -> None:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import gc
 import hashlib
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -21,6 +19,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
 
 from . import check_cache
+from .garbage import without_collector
 
 
 def is_usual(path: Path) -> bool:
@@ -61,18 +60,6 @@ class Checked:
     def stem(self) -> str:
         """The system's name as its files carry it."""
         return self.system.name.lower()
-
-
-@contextmanager
-def without_collector() -> Iterator[None]:
-    """No search for garbage in circles: a large model is searched again whenever it has grown."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
 
 
 @without_collector()

@@ -21,7 +21,8 @@ from ravenchart.gen.emit.program import (
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.rules.unready import unready
 
-from .checking import Checked, without_collector
+from .checking import Checked
+from .garbage import without_collector
 from .written import EDITED, MANIFEST, Written
 from .written import listed as listed_in
 

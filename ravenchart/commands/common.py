@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ravenchart.building import variants
+from ravenchart.building.garbage import without_collector
 from ravenchart.failures import Unusable
 
 from .answer import Answer, say
@@ -95,7 +96,8 @@ def checked(
     options: argparse.Namespace, *, deadlines: bool = True, finish: bool = False
 ) -> Checked:
     """The model, with its warnings printed; Refused with its errors."""
-    from ravenchart.building import checking
+    with without_collector():
+        from ravenchart.building import checking
 
     found = checking.check(options.model, deadlines=deadlines, finish=finish)
     tell_warnings(found.warnings)

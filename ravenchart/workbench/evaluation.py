@@ -9,7 +9,8 @@ from pathlib import Path
 
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.system.timing import Analysis, analyse
-from ravenchart.building.checking import identified, without_collector
+from ravenchart.building.checking import identified
+from ravenchart.building.garbage import without_collector
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.pipeline import Loaded, load

@@ -51,7 +51,7 @@ def test_a_wrong_file_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     (tmp_path / "moon").mkdir()
     file = tmp_path / "moon" / "target.toml"
     file.write_text('run_time = "light"\ndrivers = []\nclock = 1\n', encoding="utf-8")
-    monkeypatch.setattr(targets, "RUNTIME", tmp_path)
+    monkeypatch.setattr(variants, "RUNTIME", tmp_path)
     with pytest.raises(Unusable, match=r"target\.toml: 2 validation errors"):
         targets.target("moon")
 
