@@ -334,7 +334,7 @@ def test_a_real_build_is_made_again_by_gprbuild_alone(
     assert checks == []
     helper = Path("user/helper.ads")
     helper.write_text("package Helper is\nend Helper;\n")
-    UNIT.write_text(f"with Helper;\n{UNIT.read_text()}")
+    UNIT.write_text(f"with Helper;\npragma Unreferenced (Helper);\n{UNIT.read_text()}")
     told("build")
     checks.clear()
     helper.write_text("package Helper is\n   X : Integer := 5;\nend Helper;\n")
