@@ -297,6 +297,7 @@ def test_another_program_is_examined(
     else:
         (fake.fact if what == "other facts" else fake.image).write_text("another")
     assert told("build") == built
+    assert told("build") == built
     assert fake.examined == 2
 
 
