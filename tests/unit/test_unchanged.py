@@ -275,15 +275,15 @@ def test_other_switches_are_another_build(
     assert (len(checks), fake.examined) == (1, 2)
 
 
-@pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
+@pytest.mark.parametrize("change", ["an included file", "an edited file", "an empty record"])
 def test_a_change_is_seen_by_a_build(
-    change: Callable[[], object],
+    change: str,
     built: Said,
     told: Callable[..., Said],
     fake: Fake,
     checks: list[Path],
 ) -> None:
-    change()
+    CHANGES[change]()
     told("build")
     assert (len(checks), fake.examined) == (1, 2)
 
