@@ -37,7 +37,7 @@ with "ravenchart.gpr";
 
 project Gateway extends "{program}" is
 
-   for Source_Dirs use (".", "{gateway}", "{lines}");
+   for Source_Dirs use (".", {folders});
    for Object_Dir use "objects";
    for Exec_Dir use ".";
    for Create_Missing_Dirs use "True";
@@ -59,11 +59,11 @@ def build(
     home = program.home(gateway.driver, board.target.name) / "gateway"
     home.mkdir(parents=True, exist_ok=True)
     main = f"{ada_case(program.checked.system.name)}_Main"
-    sources = file_of(board.target.name).parent / "gateway"
-    lines = ROOT / "hw_can" / "drivers" / "serial"
+    places = file_of(board.target.name).parent / "gateway", ROOT / "hw_can" / "drivers" / "serial"
+    folders = ", ".join(f'"{place}"' for place in places)
     texts = {
         "gateway_main.adb": MAIN.format(main=main),
-        "gateway.gpr": PROJECT.format(program=program.project, gateway=sources, lines=lines),
+        "gateway.gpr": PROJECT.format(program=program.project, folders=folders),
     }
     for name, text in texts.items():
         path = home / name
