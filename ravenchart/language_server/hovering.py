@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import microseconds
-from ravenchart.workbench.evaluation import Evaluation
+from ravenchart.editing.evaluation import Evaluation
 
 from .model import OpenModel
 from .symbols import ModelSymbol

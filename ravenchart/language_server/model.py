@@ -9,11 +9,11 @@ from functools import cached_property
 from pathlib import Path
 
 from ravenchart.building import checking
+from ravenchart.editing.evaluation import MARK, Evaluation, evaluate
 from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.pipeline import Loaded, load
-from ravenchart.workbench.evaluation import MARK, Evaluation, evaluate
 
 from .symbols import Symbols
 from .texts import FileText

@@ -17,10 +17,10 @@ from pygls.exceptions import JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
 from pygls.uris import from_fs_path, to_fs_path
 
+from ravenchart.editing.evaluation import MARK, Evaluation
 from ravenchart.gen.diagnostics import Diagnostic, Severity
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import version
-from ravenchart.workbench.evaluation import MARK, Evaluation
 
 from . import model as models
 from .completing import key_meaning, proposals

@@ -17,9 +17,8 @@ from pathlib import Path
 from signal import SIGKILL
 from typing import Any
 
+from ravenchart.editing.evaluation import Texts
 from ravenchart.tools import children
-
-from .evaluation import Texts
 
 WORDS = (sys.executable, "-P", "-m", "ravenchart.workbench.room")
 

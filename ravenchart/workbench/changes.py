@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ravenchart.editing import edits
+from ravenchart.editing.edits import Document, LayoutError
+from ravenchart.editing.evaluation import Evaluation, Texts, content
+from ravenchart.editing.places import ModelPlaces, NamedEntry
 from ravenchart.gen.files.schema_deployment import PRIORITIES
 from ravenchart.gen.language.quantities import LONGEST, duration
 
-from . import edits
-from .edits import Document, LayoutError
-from .evaluation import Evaluation, Texts, content
-from .places import ModelPlaces, NamedEntry
 from .requests import Move, SetProcessor, SetTime
 
 

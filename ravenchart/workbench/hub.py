@@ -9,11 +9,11 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
 from ravenchart.building import drawings
+from ravenchart.editing.evaluation import Evaluation
 from ravenchart.gen.draw.svg import mark
 
 from .aside import Aside
 from .changes import ChangeRefusedError
-from .evaluation import Evaluation
 from .requests import Move, PageRequest, Rewind, Save, SetProcessor, SetTime, Settle
 from .session import Session
 from .view import located, view

@@ -17,8 +17,7 @@ from ravenchart.analysis.findings.growth import largest_wcet
 from ravenchart.analysis.present.words import binding_lines, growth_line
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import duration
-
-from .evaluation import evaluate
+from ravenchart.editing.evaluation import evaluate
 
 
 def main() -> None:

@@ -14,13 +14,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ravenchart.building import checking
+from ravenchart.editing.evaluation import Evaluation, Texts, evaluate, over
 from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.files.load import LARGEST, read_file
 
 from . import changes
 from .changes import ChangeRefusedError
-from .evaluation import Evaluation, Texts, evaluate, over
 from .requests import Move, SetProcessor, SetTime
 
 MOST_STATES = 1_000

@@ -16,6 +16,8 @@ from ravenchart.analysis.system.latencies import Latency
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import microseconds, percent
 from ravenchart.building import drawings
+from ravenchart.editing.evaluation import Evaluation, document
+from ravenchart.editing.places import TIMES, DeclaredRow, ModelPlaces, NamedEntry
 from ravenchart.gen.files.spans import YamlScalar
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.system import Chain
@@ -23,8 +25,6 @@ from ravenchart.gen.origins import Origin
 from ravenchart.reported import found_of
 
 from . import pictures
-from .evaluation import Evaluation, document
-from .places import TIMES, DeclaredRow, ModelPlaces, NamedEntry
 from .session import Session
 
 Json = dict[str, Any]

@@ -7,10 +7,10 @@ import re
 
 import pytest
 
+from ravenchart.editing import edits
+from ravenchart.editing.edits import Document, LayoutError, TakenItem
 from ravenchart.gen.files.spans import Sequence, YamlMapping, plain
 from ravenchart.paths import ROOT
-from ravenchart.workbench import edits
-from ravenchart.workbench.edits import Document, LayoutError, TakenItem
 
 BLOCK = """\
 processors:  # all of them
