@@ -219,6 +219,16 @@ class DoctorResult(Result):
 
 
 @dataclass(slots=True)
+class ExampleResult(Described):
+    """Files, and what is called beside them."""
+
+    commands: list[str]
+    """The last one reports the code where the files are wrong."""
+    files: dict[str, str]
+    """Each file by its name, with its text."""
+
+
+@dataclass(slots=True)
 class ExplainResult(Result):
     """What a code means."""
 
@@ -226,12 +236,12 @@ class ExplainResult(Result):
     """The code."""
     meaning: str
     """One sentence."""
-    reason: str | None
-    """Why it matters; null where the code has no example yet."""
-    wrong: str | None
-    """A whole model with the error."""
-    corrected: str | None
-    """The same model without it."""
+    reason: str
+    """Why it matters."""
+    wrong: ExampleResult
+    """A whole model, and the files that it needs, with the error."""
+    corrected: ExampleResult
+    """The same without it."""
     text: str
     """What is printed without `--json`."""
 
