@@ -69,8 +69,10 @@ def _command(arguments: Sequence[str] | None) -> int:
     """The command itself, imported only now; its output has been written when it returns."""
     from rich.console import Console
 
+    from . import terminal
     from .command_line import main as command
 
+    terminal.LINES.set()
     setattr(Console, "on_broken_pipe", _again)  # noqa: B010 - rich asks for a subclass
     try:
         status = command(arguments)

@@ -22,7 +22,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT, work
 from ravenchart.proof.proving import Task
 from ravenchart.stacks.report import Memory
-from ravenchart.tools import toolchain
+from ravenchart.tools import steps, toolchain
 
 from . import images, stacks, targets
 from .checking import Checked, is_usual
@@ -102,12 +102,14 @@ class Program:
         warn: Callable[[str], None] = to_standard_error,
         board: targets.Board | None = None,
         stacks_needed: bool = True,
+        tell: Callable[[str], None] = lambda _: None,
     ) -> Path:
         """Compile it; the path of the executable. ToolFailed with the compiler's words, or
         where the memory of the target has no room for it. Refused where a stack is too small;
         without ``stacks_needed`` nobody looks.
 
-        ``warn`` gets the compiler's warnings. Without a ``board`` it is for this machine.
+        ``warn`` gets the compiler's warnings, and ``tell`` how far the build is. Without a
+        ``board`` it is for this machine.
 
         Refused where ``driver`` cannot do what the model wants, and with ``registers`` of the
         hardware where a device has no address.
@@ -121,7 +123,7 @@ class Program:
             **self.scenario(mode, chosen, target.name),
             "RAVENCHART_REGISTERS": registers,
         }
-        options = ["-p", "-q", "-j0", "-P", self.project.name]
+        options = ["-p", "-q", "-j0", steps.OF_GPRBUILD, "-P", self.project.name]
         if board:
             variables |= board.scenario()
             options = [*board.options(), *options]
@@ -129,7 +131,9 @@ class Program:
         made = self.home(chosen, target.name) / mode / f"{self.checked.stem}_main"
 
         def compiled(*more: str) -> None:
-            said = toolchain.run("gprbuild", [*options, *more], self.project.parent, variables)
+            taken = steps.Steps(steps.COMPILING, tell).takes
+            words, where = [*options, *more], self.project.parent
+            said = toolchain.run("gprbuild", words, where, variables, taken)
             if said.strip():
                 warn(said.rstrip())
 
@@ -137,6 +141,7 @@ class Program:
         if target.facts.memory:
             images.check(made, target)
         if stacks_needed:
+            tell("bounding the stacks")
             if stacks.without_graph(stacks.objects_of(made)):
                 compiled("-f")  # objects of another build, which asked for no call graphs
                 stacks.must_have_graphs(stacks.objects_of(made))

@@ -6,10 +6,10 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from ravenchart.building import generation, programs
+from ravenchart.building import programs
 from ravenchart.building.stacks import kept, write
 from ravenchart.failures import OK
-from ravenchart.terminal import progress
+from ravenchart.terminal import stages
 
 from . import common
 from .answer import say
@@ -39,13 +39,15 @@ def execute(options: argparse.Namespace) -> int:
     """Build every program of the model; the exit status."""
     checked = common.checked(options)
     board = common.board(options, checked)
-    generated = common.tell_written(generation.write_program(checked), options.answer)
+    generated = common.generated(checked, options.answer)
     answer = options.answer.result = BuildResult(generated, [])
     warn = partial(say, options.answer, severity="warning")
     found = programs.programs_of(checked)
     for made in found:
-        with progress(f"compile {made.node}"):
-            program = made.build(options.mode, options.driver, options.registers, warn, board)
+        with stages(f"compile {made.node}") as tell:
+            program = made.build(
+                options.mode, options.driver, options.registers, warn, board, tell=tell
+            )
         memory = kept(program)
         answer.programs.append(Built(made.node, str(program), memory))
         if options.memory:

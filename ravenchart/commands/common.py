@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ravenchart.failures import Unusable
+from ravenchart.terminal import progress
 
 from .answer import Answer, say
 from .results import GenerateResult
 
 if TYPE_CHECKING:
     from ravenchart.building.checking import Checked
-    from ravenchart.building.generation import Written
     from ravenchart.building.targets import Board
     from ravenchart.gen.model.system import System
     from ravenchart.hw_can.bench.interfaces import Interface
@@ -97,7 +97,8 @@ def checked(
     """The model, with its warnings printed; Refused with its errors."""
     from ravenchart.building import checking
 
-    found = checking.check(options.model, deadlines=deadlines, finish=finish)
+    with progress(f"check {options.model.name}"):
+        found = checking.check(options.model, deadlines=deadlines, finish=finish)
     tell_warnings(found)
     options.answer.add(found.diagnostics)
     return found
@@ -123,10 +124,12 @@ def verdict(found: Checked) -> str:
     return f"{system.name}: {instances} on {processors}, {messages}; every deadline is met"
 
 
-def tell_written(written: Written, answer: Answer) -> GenerateResult:
-    """What a generation did, and what is still to write: printed, and for the answer."""
-    from ravenchart.building.generation import EDITED
+def generated(checked: Checked, answer: Answer) -> GenerateResult:
+    """The program written; what that did, and what is still to write, is printed too."""
+    from ravenchart.building.generation import EDITED, write_program
 
+    with progress("generate"):
+        written = write_program(checked)
     print(f"{written.folder}: {several(written.files, 'file')}, {written.changed} changed")
     for name in written.edited:
         say(

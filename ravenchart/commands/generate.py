@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 
-from ravenchart.building import generation
 from ravenchart.failures import OK
 
 from . import common
@@ -14,6 +13,5 @@ add_arguments = common.add_model
 
 def execute(options: argparse.Namespace) -> int:
     """Write it; the exit status."""
-    written = generation.write_program(common.checked(options))
-    options.answer.result = common.tell_written(written, options.answer)
+    options.answer.result = common.generated(common.checked(options), options.answer)
     return OK
