@@ -247,6 +247,32 @@ class ExplainResult(Result):
 
 
 @dataclass(slots=True)
+class BusResult(Result):
+    """A bus that processes can join from now on."""
+
+    channel: str
+    """Where they join it: `HOST:PORT`."""
+
+
+@dataclass(slots=True)
+class WorkbenchResult(Result):
+    """A workbench that can be opened from now on."""
+
+    address: str
+    """The URL of its page, with the token; whoever has it can change the model."""
+
+
+@dataclass(slots=True)
+class CompletionResult(Result):
+    """The script by which a shell completes commands."""
+
+    shell: str
+    """The shell that reads it."""
+    script: str
+    """The script."""
+
+
+@dataclass(slots=True)
 class CleanResult(Result):
     """What was deleted."""
 
@@ -445,5 +471,8 @@ RESULTS: dict[str, type[Result]] = {
     "requirements": RequirementsResult,
     "evidence": EvidenceResult,
     "tests": TestsResult,
+    "bus": BusResult,
+    "workbench": WorkbenchResult,
+    "completion": CompletionResult,
 }
 """Of each command with such an object; `analyse` and `simulate` have forms of their own."""

@@ -224,6 +224,13 @@ def test_the_loopback_test_answers_with_its_cases(capsys: PRINTED) -> None:
     assert answer["diagnostics"]
 
 
+def test_a_completion_script_is_in_the_answer(capsys: PRINTED) -> None:
+    assert main(["completion", "fish"]) == 0
+    script = capsys.readouterr().out
+    result = answered(capsys, "completion", "fish")["result"]
+    assert result == {"shell": "fish", "script": script} and script
+
+
 def test_every_command_has_an_answer_or_is_named_as_one_that_has_none() -> None:
     forms = {*RESULTS, "analyse", "simulate", *WITHOUT_JSON}
     assert forms == set(COMMANDS)
