@@ -17,11 +17,11 @@ from ravenchart.gen.model.statechart import (
     Transition,
 )
 
-Place = tuple[str | None, str]
-TOP: Place = (None, "")
+RegionKey = tuple[str | None, str]
+TOP: RegionKey = (None, "")
 
 
-class Tree:
+class ChartTree:
     """A top-level region, indexed."""
 
     def __init__(self, region: Region) -> None:
@@ -42,12 +42,12 @@ class Tree:
         """What kind of pseudostate; None for a state."""
         return self.pseudo[vertex].kind if vertex in self.pseudo else None
 
-    def place(self, vertex: str) -> Place:
+    def place(self, vertex: str) -> RegionKey:
         """Where a vertex stands."""
         at = self.pseudo[vertex] if vertex in self.pseudo else self.states[vertex]
         return at.parent, at.region
 
-    def places(self, vertex: str) -> list[Place]:
+    def places(self, vertex: str) -> list[RegionKey]:
         """All places that a vertex is in, innermost first."""
         found = [self.place(vertex)]
         while (owner := found[-1][0]) is not None:
@@ -58,16 +58,16 @@ class Tree:
         """The states around a vertex, innermost first."""
         return [owner for owner, _ in self.places(vertex) if owner is not None]
 
-    def nested(self, state: str) -> list[Place]:
+    def nested(self, state: str) -> list[RegionKey]:
         """The places directly inside a state, in model order."""
         return [(state, region.name) for region in self.states[state].regions]
 
-    def common(self, vertices: Sequence[str]) -> Place:
+    def common(self, vertices: Sequence[str]) -> RegionKey:
         """The innermost place that all the vertices are in."""
         others = [self.places(vertex) for vertex in vertices[1:]]
         return next(p for p in self.places(vertices[0]) if all(p in other for other in others))
 
-    def towards(self, place: Place, vertex: str) -> str:
+    def towards(self, place: RegionKey, vertex: str) -> str:
         """What stands in ``place`` and is, or is around, ``vertex``."""
         chain = (vertex, *self.around(vertex))
         return next(one for one in chain if self.place(one) == place)
@@ -76,9 +76,9 @@ class Tree:
         """Whether a state is a leaf of its lane: it has no region, or several."""
         return len(self.states[state].regions) != 1
 
-    def lane(self, vertex: str) -> list[Place]:
+    def lane(self, vertex: str) -> list[RegionKey]:
         """The places that a vertex is in, as far as the region of an orthogonal state around it."""
-        found: list[Place] = []
+        found: list[RegionKey] = []
         for place in self.places(vertex):
             found.append(place)
             if place[0] is not None and len(self.states[place[0]].regions) > 1:
@@ -93,7 +93,7 @@ class Tree:
         """Whether anything waits for the completion of a state."""
         return any(isinstance(t.trigger, Completion) for t in self.leaving[state])
 
-    def default(self, places: Iterable[Place] = (TOP,)) -> frozenset[str]:
+    def default(self, places: Iterable[RegionKey] = (TOP,)) -> frozenset[str]:
         """The states that entering places by default makes active."""
         found: set[str] = set()
         for place in places:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 
 
@@ -16,3 +17,8 @@ class Origin:
     def __str__(self) -> str:
         """``file:line:column``, as editors read it."""
         return f"{self.file}:{self.line}:{self.column}"
+
+    def beside(self, model: Origin) -> str:
+        """``file:line``, the file as seen from the folder of ``model``."""
+        folder = os.path.dirname(model.file) or "."
+        return f"{os.path.relpath(self.file, folder)}:{self.line}"

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import signal
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from typing import TypeVar
 
 MANY = 500
@@ -26,7 +24,12 @@ def made_by_all(
     What ``make`` gives is sent between processes. Without `fork` one process makes all,
     and it does so where it is not ``worthwhile``.
     """
-    if not worthwhile or "fork" not in multiprocessing.get_all_start_methods():
+    if not worthwhile:
+        return [make(number) for number in range(count)], meanwhile()
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    if "fork" not in multiprocessing.get_all_start_methods():
         return [make(number) for number in range(count)], meanwhile()
     _shared[:] = [make]
     try:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from ravenchart.gen.diagnostics import CODES
 
-from .grammar import ENDINGS, Command, Grammar, Kind, Word
+from .grammar import ENDINGS, ArgumentKind, CommandWords, Grammar, Word
 
 VALUES = {"CODE": tuple(CODES)}
 """What can stand for a word of the help, where that is a list."""
@@ -80,7 +80,7 @@ def bash(grammar: Grammar) -> str:
     values = []
     for command in grammar.commands:
         for word in command.options:
-            if word.kind is not Kind.NOTHING:
+            if word.kind is not ArgumentKind.NOTHING:
                 cases = "|".join(f'"{n} {flag}"' for n in command.names for flag in word.flags)
                 values.append(f"        {cases}) {_bash_kind(word)} ;;")
         flags = " ".join(flag for word in command.options for flag in word.flags)
@@ -144,7 +144,7 @@ def zsh(grammar: Grammar) -> str:
     )
 
 
-def _zsh_command(command: Command) -> str:
+def _zsh_command(command: CommandWords) -> str:
     specs = [*_zsh_options(command.options)]
     for place, word in enumerate(command.arguments, 1):
         specs.append(_quoted(f"{place}:{_zsh_text(word.metavar)}:{_zsh_kind(word)}"))
@@ -155,7 +155,7 @@ def _zsh_command(command: Command) -> str:
 
 def _zsh_options(words: tuple[Word, ...]) -> Iterator[str]:
     for word in words:
-        takes = word.kind is not Kind.NOTHING
+        takes = word.kind is not ArgumentKind.NOTHING
         value = f":{_zsh_text(word.metavar)}:{_zsh_kind(word)}" if takes else ""
         others = "*" if word.repeated else f"({' '.join(word.flags)})"
         for flag in word.flags:
@@ -168,9 +168,9 @@ def _zsh_kind(word: Word) -> str:
     if values:
         return f"({' '.join(values)})"
     return {
-        Kind.MODEL: f'_files -g "*.({"|".join(ENDINGS)})(-.)"',
-        Kind.FILE: "_files",
-        Kind.FOLDER: "_files -/",
+        ArgumentKind.MODEL: f'_files -g "*.({"|".join(ENDINGS)})(-.)"',
+        ArgumentKind.FILE: "_files",
+        ArgumentKind.FOLDER: "_files -/",
     }.get(word.kind, " ")
 
 
@@ -202,11 +202,11 @@ def _fish_word(word: Word) -> str:
     parts = [f"-l {flag[2:]}" if flag[:2] == "--" else f"-s {flag[1:]}" for flag in word.flags]
     if values:
         parts += ["-x" if word.flags else "", f"-a {_fish_quoted(' '.join(values))}"]
-    elif word.kind is Kind.FOLDER:
+    elif word.kind is ArgumentKind.FOLDER:
         parts += ["-x" if word.flags else "", "-a '(__fish_complete_directories)'"]
-    elif word.kind in (Kind.FILE, Kind.MODEL):
+    elif word.kind in (ArgumentKind.FILE, ArgumentKind.MODEL):
         parts += ["-r -F" if word.flags else "-F"]
-    elif word.kind is Kind.TEXT and word.flags:
+    elif word.kind is ArgumentKind.TEXT and word.flags:
         parts += ["-x"]
     return " ".join(filter(None, [*parts, f"-d {_fish_quoted(word.help)}"]))
 

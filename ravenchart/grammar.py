@@ -12,7 +12,7 @@ from enum import Enum
 from pathlib import Path
 
 
-class Kind(Enum):
+class ArgumentKind(Enum):
     """What an option or argument takes."""
 
     NOTHING = "nothing"
@@ -22,7 +22,12 @@ class Kind(Enum):
     FOLDER = "folder"
 
 
-FILES = {"MODEL": Kind.MODEL, "FILE": Kind.FILE, "DIR": Kind.FOLDER, "FOLDER": Kind.FOLDER}
+FILES = {
+    "MODEL": ArgumentKind.MODEL,
+    "FILE": ArgumentKind.FILE,
+    "DIR": ArgumentKind.FOLDER,
+    "FOLDER": ArgumentKind.FOLDER,
+}
 """What is a file or a folder, by the word that stands for it in the help."""
 ENDINGS = ("yaml", "yml", "csv", "json")
 """How the names of models end, and of the plain files that `analyse` takes too."""
@@ -34,7 +39,7 @@ class Word:
 
     flags: tuple[str, ...]
     metavar: str
-    kind: Kind
+    kind: ArgumentKind
     choices: tuple[str, ...]
     help: str
     required: bool
@@ -42,7 +47,7 @@ class Word:
 
 
 @dataclass(frozen=True, slots=True)
-class Command:
+class CommandWords:
     """A command; ``words`` are its options, then its arguments."""
 
     name: str
@@ -74,7 +79,7 @@ class Grammar:
     program: str
     description: str
     options: tuple[Word, ...]
-    commands: tuple[Command, ...]
+    commands: tuple[CommandWords, ...]
 
 
 def grammar(parser: argparse.ArgumentParser) -> Grammar:
@@ -84,24 +89,24 @@ def grammar(parser: argparse.ArgumentParser) -> Grammar:
     return Grammar(parser.prog, parser.description or "", own, tuple(_commands(subs)))
 
 
-def _commands(subs: argparse._SubParsersAction[argparse.ArgumentParser]) -> Iterator[Command]:
+def _commands(subs: argparse._SubParsersAction[argparse.ArgumentParser]) -> Iterator[CommandWords]:
     names: dict[argparse.ArgumentParser, list[str]] = {}
     for name, parser in subs.choices.items():
         names.setdefault(parser, []).append(name)
     for parser, (name, *aliases) in names.items():
         words = sorted(map(_word, parser._actions), key=lambda word: not word.flags)
         usage = " ".join(parser.format_usage().removeprefix("usage: ").split())
-        yield Command(name, tuple(aliases), parser.description or "", usage, tuple(words))
+        yield CommandWords(name, tuple(aliases), parser.description or "", usage, tuple(words))
 
 
 def _word(action: argparse.Action) -> Word:
     takes = action.nargs != 0
     named = action.metavar if isinstance(action.metavar, str) else action.dest.upper()
-    kind = FILES.get(named, Kind.FILE if action.type is Path else Kind.TEXT)
+    kind = FILES.get(named, ArgumentKind.FILE if action.type is Path else ArgumentKind.TEXT)
     return Word(
         tuple(action.option_strings),
         named if takes else "",
-        kind if takes else Kind.NOTHING,
+        kind if takes else ArgumentKind.NOTHING,
         tuple(map(str, action.choices or ())),
         action.help or "",
         action.required,

@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Iterator, Mapping
 
 from .failures import MEANINGS
-from .grammar import Command, Grammar, Kind, Word
+from .grammar import ArgumentKind, CommandWords, Grammar, Word
 
 SECTION = 1
 
@@ -67,7 +67,7 @@ def page(grammar: Grammar, version: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _command(command: Command) -> Iterator[str]:
+def _command(command: CommandWords) -> Iterator[str]:
     yield f".SS {_escaped(command.name)}"
     yield f"{_text(_sentence(command.help))}"
     yield ".PP"
@@ -80,7 +80,7 @@ def _command(command: Command) -> Iterator[str]:
             yield from _word(word)
 
 
-def _synopsis(command: Command) -> str:
+def _synopsis(command: CommandWords) -> str:
     """The usage, with what is typed as it stands in bold."""
     program, name, *rest = command.usage.split(" ")
     parts = [rf"\fB{program} {name}\fR"]
@@ -92,7 +92,7 @@ def _synopsis(command: Command) -> str:
 def _word(word: Word) -> Iterator[str]:
     yield ".TP"
     flags = ", ".join(map(_bold, word.flags))
-    metavar = "" if word.kind is Kind.NOTHING else rf"\fI{_escaped(word.metavar)}\fR"
+    metavar = "" if word.kind is ArgumentKind.NOTHING else rf"\fI{_escaped(word.metavar)}\fR"
     yield " ".join(filter(None, [flags, metavar]))
     choices = f"One of {', '.join(word.choices)}." if word.choices else ""
     more = "May be given several times." if word.repeated else ""

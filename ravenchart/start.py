@@ -6,6 +6,7 @@ orderly end, and gives every kind of end its own exit status.
 
 from __future__ import annotations
 
+import gc
 import os
 import select
 import signal
@@ -53,6 +54,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _say(traceback.format_exc())
         _say("ravenchart: internal error (above): a fault of Ravenchart, not of the model")
         return INTERNAL
+    finally:
+        gc.freeze()  # Python ends, and does not search all that is left for garbage
 
 
 def forget_working_folder() -> None:
@@ -67,24 +70,16 @@ def forget_working_folder() -> None:
 
 def _command(arguments: Sequence[str] | None) -> int:
     """The command itself, imported only now; its output has been written when it returns."""
-    from rich.console import Console
-
     from . import terminal
     from .command_line import main as command
 
     terminal.LINES.set()
-    setattr(Console, "on_broken_pipe", _again)  # noqa: B010 - rich asks for a subclass
     try:
         status = command(arguments)
     except SystemExit as ended:  # argparse: --help and wrong calls
         status = ended.code if isinstance(ended.code, int) else 2
     sys.stdout.flush()
     return status
-
-
-def _again(console: object) -> None:
-    """Within the handling of a broken pipe, where rich would end with status 1."""
-    raise
 
 
 def _heed_signals() -> None:

@@ -38,10 +38,14 @@ def console(width: int | None = WIDTH, *, errors: bool = False) -> Console:
     """Standard output, or error, with styles only where a terminal shall show them."""
     from rich.console import Console
 
+    class Ours(Console):
+        """Leaves a broken pipe to `start`, where rich would end with status 1."""
+
+        def on_broken_pipe(self) -> None:
+            raise
+
     plain = bool(os.environ.get("NO_COLOR")) or os.environ.get("TERM") == "dumb"
-    return Console(
-        width=width, highlight=False, stderr=errors, color_system=None if plain else "auto"
-    )
+    return Ours(width=width, highlight=False, stderr=errors, color_system=None if plain else "auto")
 
 
 @contextmanager

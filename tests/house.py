@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from ravenchart.building import checking, generation, programs
+from ravenchart.building import checking, generation, programs, variants
 from ravenchart.failures import Refused, ToolFailed
 from ravenchart.paths import ROOT
 from ravenchart.proof import ages, outside_spark, proving
@@ -28,8 +28,8 @@ RECORDS = ROOT / "proofs" / "records"
 """A folder for each age of gnatprove."""
 OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
 """What may be outside SPARK in each target of ``make prove``, with the entry of the ledger."""
-PATIENCE = 300.0
-"""Seconds of processor time for the rules of behaviour: here they shall come to their end."""
+EFFORT = 150_000_000
+"""Work for the rules of behaviour, in units of z3: here they shall come to their end."""
 
 EXAMPLES = (
     "canopen_device",
@@ -48,7 +48,7 @@ MODELS = {
     for path in sorted((ROOT / "tests" / kind).glob("*/model.yaml"))
 }
 """The models of the tests: all of them are proved. Their programs are not kept: see `made`."""
-DRIVERS = tuple(programs.DRIVER_FOLDERS)
+DRIVERS = tuple(variants.DRIVER_FOLDERS)
 PROVED_WITH = {"bus": ("protocol",)}
 """Folders of hw_can/ that only this driver uses, though every project has them."""
 GENERIC_BODIES = {
@@ -75,7 +75,7 @@ class Target:
     """One thing to prove: the name of its record, the run, and the folder of its model."""
 
     name: str
-    task: proving.Task
+    task: proving.ProofTask
     folder: Path | None = None
 
     def reasons(self) -> dict[str, str]:
@@ -137,7 +137,7 @@ def _copied(name: str) -> Path:
 
 def _written(folder: Path) -> checking.Checked:
     """The model in a folder, checked, and its program written."""
-    checked = checking.check(folder / "model.yaml", patience=PATIENCE)
+    checked = checking.check(folder / "model.yaml", effort=EFFORT)
     generation.write_program(checked)
     return checked
 
@@ -152,7 +152,7 @@ def record_names(name: str, folder: Path) -> tuple[str, ...]:
 def _floats() -> Target:
     obj = ROOT / "obj"
     project = ROOT / "ravenchart.gpr"
-    task = proving.Task(
+    task = proving.ProofTask(
         project,
         {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
         (obj / f"checks-{DRIVERS[0]}" / "gnatprove",),
@@ -165,7 +165,7 @@ def _floats() -> Target:
 
 def _bus() -> Target:
     folder, obj = ROOT / "hw_can" / "server", ROOT / "obj"
-    task = proving.Task(
+    task = proving.ProofTask(
         folder / "can_bus.gpr",
         {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
         (obj / "bus-checks" / "gnatprove", obj / f"checks-{DRIVERS[0]}" / "gnatprove"),
@@ -180,7 +180,9 @@ def _kernel() -> Target:
     folder = ROOT / "analysis" / "kernel"
     results = (ROOT / "obj" / "kernel" / "objects" / "gnatprove",)
     sources = (ROOT, ROOT / "spark_runtime", folder, *(p for p in folder.rglob("*") if p.is_dir()))
-    task = proving.Task(folder / "kernel.gpr", {}, results, sources, warnings="error", whole=True)
+    task = proving.ProofTask(
+        folder / "kernel.gpr", {}, results, sources, warnings="error", whole=True
+    )
     return Target(KERNEL, task)
 
 
@@ -188,12 +190,12 @@ def _runtime(driver: str) -> Target:
     """All of it with the first driver; with another only what differs."""
     obj = ROOT / "obj"
     project = ROOT / "proofs" / "proofs.gpr"
-    folders = (*PROVED_WITH.get(driver, ()), *programs.DRIVER_FOLDERS[driver])
+    folders = (*PROVED_WITH.get(driver, ()), *variants.DRIVER_FOLDERS[driver])
     own = tuple(ROOT / "hw_can" / folder for folder in folders)
     sources = {path.name for folder in own for path in folder.glob("*.ad[sb]")}
     bodies = {name for name in sources if name.endswith(".adb")}
     specs = {name for name in sources - bodies if f"{name[:-1]}b" not in bodies}
-    task = proving.Task(
+    task = proving.ProofTask(
         project,
         {"MODE": "checks", "CAN_DRIVER": driver},
         (obj / f"proofs-checks-{driver}" / "gnatprove", obj / f"checks-{driver}" / "gnatprove"),
@@ -245,7 +247,7 @@ def check(_names: Sequence[str]) -> bool:
     compiler.use()  # `make test` builds the same programs
     fresh = True
     for example in EXAMPLES:
-        checked = checking.check(ROOT / "examples" / example / "model.yaml", patience=PATIENCE)
+        checked = checking.check(ROOT / "examples" / example / "model.yaml", effort=EFFORT)
         if checked.warnings:
             print(checked.warnings, file=sys.stderr)
             fresh = False

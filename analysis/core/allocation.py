@@ -26,7 +26,7 @@ from .checks import distinct, positive
 from .fixed_priority import analyse
 from .platform import Platform
 from .responses import Response
-from .tasks import FRAME_LIMIT, Row, Task
+from .tasks import FRAME_LIMIT, TableRow, Task
 
 WIDEST = 16
 """A table's longest period is at most so many of its shortest, where locality decides."""
@@ -36,7 +36,7 @@ TRIALS = 20_000
 
 
 @dataclass(frozen=True, slots=True)
-class Activity:
+class Movable:
     """A piece of work, all times in ticks above 0; ``owner`` is the instance that it is part of."""
 
     name: str
@@ -61,7 +61,7 @@ class Strategy(Enum):
     MOST_SLACK = "most slack"
 
 
-Table = tuple[Activity, ...]
+Table = tuple[Movable, ...]
 """Activities of one task, in the order in which it executes them."""
 
 
@@ -105,7 +105,7 @@ class Allocation:
 
 
 def allocate(
-    activities: Sequence[Activity],
+    activities: Sequence[Movable],
     strategy: Strategy,
     sections: Sequence[Section] = (),
     platforms: Mapping[str, Platform] | None = None,
@@ -144,15 +144,15 @@ def allocate(
     return checked(tables, sections, platforms, above, whole=whole)
 
 
-def by_period(activities: Sequence[Activity]) -> list[Table]:
+def by_period(activities: Sequence[Movable]) -> list[Table]:
     """One table for each period."""
     periods = sorted({activity.period for activity in activities})
     return [tuple(a for a in activities if a.period == period) for period in periods]
 
 
-def by_locality(activities: Sequence[Activity]) -> list[Table]:
+def by_locality(activities: Sequence[Movable]) -> list[Table]:
     """For each owner, tables of activities whose periods are multiples of the first one's."""
-    tables: list[list[Activity]] = []
+    tables: list[list[Movable]] = []
     for owner in dict.fromkeys(activity.owner for activity in activities):
         first = len(tables)
         mine = [activity for activity in activities if activity.owner == owner]
@@ -199,7 +199,7 @@ def checked(
     return Allocation(ordered, tasks, responses[: len(tasks)])
 
 
-def _hurried(table: Table) -> Iterator[Activity]:
+def _hurried(table: Table) -> Iterator[Movable]:
     """The activities, each with the deadline by which the last must be done."""
     first = min(activity.deadline for activity in table)
     for activity in table:
@@ -226,7 +226,7 @@ def _task(table: Table, priority: int, *, phased: bool) -> Task:
         for k in range(phase, count, every):
             costs[k] += activity.cost
     rows = tuple(
-        Row(activity.name, activity.cost, activity.period // period, phases[activity.name])
+        TableRow(activity.name, activity.cost, activity.period // period, phases[activity.name])
         for activity in table
     )
     deadline = max(activity.deadline for activity in table)
@@ -250,7 +250,7 @@ def _rank(tables: Sequence[Table], strategy: Strategy, found: Allocation) -> Ran
 
 
 def _searched(
-    activities: Sequence[Activity],
+    activities: Sequence[Movable],
     strategy: Strategy,
     check: Callable[[Sequence[Table]], Allocation],
 ) -> list[Table]:

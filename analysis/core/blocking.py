@@ -92,7 +92,7 @@ def blockers(
     return found
 
 
-Span = tuple[int, int, Section]
+HeldSection = tuple[int, int, Section]
 """Indices of the levels that a section can hold up, the last one not included."""
 
 
@@ -101,7 +101,7 @@ def _spans(
     users: Mapping[str, Task],
     sections: Sequence[Section],
     reach: Mapping[str, int],
-) -> list[Span]:
+) -> list[HeldSection]:
     """Above its user, and up to the ceiling of its resource."""
     spans = []
     for section in sections:
@@ -112,7 +112,7 @@ def _spans(
     return spans
 
 
-def _by_level(levels: Sequence[int], spans: Sequence[Span]) -> dict[int, Section]:
+def _by_level(levels: Sequence[int], spans: Sequence[HeldSection]) -> dict[int, Section]:
     """The longest section over each level: the longest take their levels first."""
     free = list(range(len(levels) + 1))
     longest: dict[int, Section] = {}

@@ -36,7 +36,7 @@ from .checks import positive
 from .holistic import Holistic, Network
 
 
-class Hop(Enum):
+class HopKind(Enum):
     """How data come to a step."""
 
     RELEASED = "released"
@@ -50,7 +50,7 @@ class Hop(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class ChainStep:
     """A task or frame of a chain.
 
     ``takes``   items in a job, where the hop to it is queued
@@ -66,7 +66,7 @@ class Step:
     """
 
     name: str
-    hop: Hop
+    hop: HopKind
     takes: int = 1
     puts: int = 1
     waits: str = ""
@@ -82,11 +82,11 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class Chain:
+class TimedChain:
     """Steps from input to output; the limits are in ticks, 0 where there is none."""
 
     name: str
-    steps: tuple[Step, ...]
+    steps: tuple[ChainStep, ...]
     reaction_limit: int = 0
     age_limit: int = 0
 
@@ -103,7 +103,7 @@ class HopLatency:
     ``backlog``   places that a queue before the step must have to lose nothing
     """
 
-    step: Step
+    step: ChainStep
     wait: int | None
     response: int | None
     renewal: int | None = 0
@@ -114,7 +114,7 @@ class HopLatency:
 class Latency:
     """The latencies of a chain, with the hops that they are the sums of."""
 
-    chain: Chain
+    chain: TimedChain
     hops: tuple[HopLatency, ...]
     renewal: int | None
     """Longest time for which the last output stays, None where nothing makes a next one."""
@@ -134,7 +134,7 @@ class Latency:
         parts = []
         for hop in self.hops:
             parts += [hop.response, hop.renewal]
-            if hop.step.hop is Hop.QUEUED:
+            if hop.step.hop is HopKind.QUEUED:
                 parts.append(hop.wait)
         return _total(parts)
 
@@ -153,7 +153,7 @@ class Latency:
         return all(not limit or (v is not None and v <= limit) for v, limit in pairs)
 
 
-def latency(chain: Chain, network: Network, found: Holistic) -> Latency:
+def latency(chain: TimedChain, network: Network, found: Holistic) -> Latency:
     """The latencies of ``chain`` from the responses ``found`` for ``network``.
 
     ValueError for a step that the network does not have, for one that is said to be
@@ -169,39 +169,39 @@ def latency(chain: Chain, network: Network, found: Holistic) -> Latency:
         response, cycle = found.from_event(step.name), _cycle(step.name, network)
         wait: int | None = 0
         backlog: int | None = 0
-        if step.hop is Hop.RELEASED and before is not None:
+        if step.hop is HopKind.RELEASED and before is not None:
             response = _less(response, found.from_event(before.name))
             wait = network.items()[step.name].period - network.items()[before.name].period
             #  some items are not passed on; of sporadic ones the next may never come
             wait = None if wait and (queued or cycle is None) else wait
-        elif step.hop is Hop.SAMPLED:
+        elif step.hop is HopKind.SAMPLED:
             wait, queued = cycle, False
-        elif step.hop is Hop.QUEUED and before is not None:
+        elif step.hop is HopKind.QUEUED and before is not None:
             wait, backlog = _queue(before.name, step, network, found)
             queued = True
         outputs = None if cycle is None else max(cycle, step.longest)
-        if step.hop is Hop.SAMPLED or before is None:
+        if step.hop is HopKind.SAMPLED or before is None:
             renewal = outputs
         else:
             renewal = None if renewal is None or outputs is None else max(renewal, outputs)
         renewal = None if step.keeps else renewal
         counted: int | None = 0
-        if after is not None and (renewal is None or after.hop is Hop.QUEUED or not queued):
-            counted = 0 if after.hop is Hop.RELEASED and not step.keeps else renewal
+        if after is not None and (renewal is None or after.hop is HopKind.QUEUED or not queued):
+            counted = 0 if after.hop is HopKind.RELEASED and not step.keeps else renewal
         wait = None if step.waits or wait is None else wait + step.delay
         hops.append(HopLatency(step, wait, response, counted, backlog))
     return Latency(chain, tuple(hops), renewal)
 
 
-def _check(chain: Chain, network: Network) -> None:
+def _check(chain: TimedChain, network: Network) -> None:
     """Refuse what the network does not have."""
     items = network.items()
-    if not chain.steps or chain.steps[0].hop is Hop.QUEUED:
+    if not chain.steps or chain.steps[0].hop is HopKind.QUEUED:
         raise ValueError(f"steps of chain {chain.name} must begin with a step without a queue")
     for number, step in enumerate(chain.steps):
         if step.name not in items:
             raise ValueError(f"step {step.name} of chain {chain.name} is no task or message")
-        if number and step.hop is Hop.RELEASED:
+        if number and step.hop is HopKind.RELEASED:
             before = chain.steps[number - 1].name
             if network.released_by.get(step.name) != before:
                 raise ValueError(
@@ -217,7 +217,7 @@ def _cycle(name: str, network: Network) -> int | None:
 
 
 def _queue(
-    writer: str, step: Step, network: Network, found: Holistic
+    writer: str, step: ChainStep, network: Network, found: Holistic
 ) -> tuple[int | None, int | None]:
     """How long an item waits for the arrival of the job that takes it, and how many do.
 

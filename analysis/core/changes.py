@@ -30,7 +30,7 @@ ORDERED = 30
 """Of so many tasks or frames at most an order is looked for from the lowest place up."""
 
 
-class Kind(Enum):
+class ChangeKind(Enum):
     """What is changed."""
 
     COST = "execution time"
@@ -48,7 +48,7 @@ class Change:
     a bus, most urgent first.
     """
 
-    kind: Kind
+    kind: ChangeKind
     name: str
     enough: bool
     factor: Fraction | None = None
@@ -83,7 +83,7 @@ def shorter(
 
         last = greatest(suffices, 1, STEPS - 1)
         factor = None if last is None else Fraction(last, STEPS)
-        yield Change(Kind.COST, name, factor is not None, factor)
+        yield Change(ChangeKind.COST, name, factor is not None, factor)
 
 
 def parts(task: Task) -> tuple[Part, ...]:
@@ -131,7 +131,7 @@ def slower(network: Network, roots: Sequence[str], holds: Met) -> Iterator[Chang
 
         last = greatest(suffices, 0, most - least)
         factor = None if last is None else Fraction(most - last, STEPS)
-        yield Change(Kind.PERIOD, root, factor is not None, factor)
+        yield Change(ChangeKind.PERIOD, root, factor is not None, factor)
 
 
 def stretched(network: Network, root: str, factor: Fraction) -> Network:
@@ -175,7 +175,7 @@ def reordered(network: Network, movable: Collection[str], holds: Met) -> Iterato
             if order != _now(items) and holds(_in_order(wide, items, order)):
                 found = order
                 break
-        yield Change(Kind.ORDER, place, bool(found), order=found)
+        yield Change(ChangeKind.ORDER, place, bool(found), order=found)
 
 
 def moved(network: Network, name: str, holds: Met) -> Iterator[Change]:
@@ -188,9 +188,9 @@ def moved(network: Network, name: str, holds: Met) -> Iterator[Change]:
         for place in reversed(range(now.index(name))):
             order = (*rest[:place], name, *rest[place:])
             if holds(_in_order(network, frames, order)):
-                yield Change(Kind.PLACE, name, enough=True, order=order)
+                yield Change(ChangeKind.PLACE, name, enough=True, order=order)
                 return
-        yield Change(Kind.PLACE, name, enough=False)
+        yield Change(ChangeKind.PLACE, name, enough=False)
 
 
 def _orders(network: Network, items: Sequence[Task | Frame]) -> Iterator[tuple[str, ...]]:

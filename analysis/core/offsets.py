@@ -110,7 +110,7 @@ def closer(
             yield plain
         else:
             tasks = aligned(plain)
-            yield Search(plain, tasks, effort).found() if tasks else plain
+            yield OffsetSearch(plain, tasks, effort).found() if tasks else plain
 
 
 def _together(tasks: Sequence[Task], platform: Platform) -> bool:
@@ -119,7 +119,7 @@ def _together(tasks: Sequence[Task], platform: Platform) -> bool:
     return len(begins) < 2 and not any(row.phase for task in tasks for row in task.rows)
 
 
-class Search:
+class OffsetSearch:
     """The instants of one task, tried from those on that can lead to the longest response."""
 
     def __init__(self, plain: Response, tasks: Sequence[Task], effort: Effort) -> None:

@@ -10,7 +10,7 @@ from .blocking import Section
 from .multiframe import Demand
 from .platform import Platform
 from .streams import Stream
-from .tasks import Row, Task
+from .tasks import TableRow, Task
 from .window import cost_of, releases, source
 
 
@@ -91,7 +91,7 @@ class RowResponse:
     It is attained by job ``job`` of a busy period, in frame ``frame``.
     """
 
-    row: Row
+    row: TableRow
     bound: int
     job: int
     frame: int

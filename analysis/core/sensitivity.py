@@ -17,7 +17,7 @@ from .fixed_priority import analyse
 from .holistic import Network
 from .platform import Platform
 from .responses import Response
-from .tasks import Row, Task
+from .tasks import TableRow, Task
 
 FACTOR_STEPS = 10_000
 """Factors are whole multiples of 1 / this."""
@@ -147,7 +147,7 @@ def growth(
 
 def scaled(task: Task, factor: Fraction) -> Task:
     """The task with its own time and its rows multiplied by ``factor``, each rounded up."""
-    rows = tuple(Row(r.name, _up(r.cost * factor), r.every, r.phase) for r in task.rows)
+    rows = tuple(TableRow(r.name, _up(r.cost * factor), r.every, r.phase) for r in task.rows)
     return replace(task, cost=_up(task.cost * factor), rows=rows, best=_down(task.best, factor))
 
 

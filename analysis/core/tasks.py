@@ -13,7 +13,7 @@ FRAME_LIMIT = 1024
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class TableRow:
     """One row of a task's table: executed in release k when k mod ``every`` is ``phase``.
 
     ``cost`` is its worst-case execution time in ticks, above 0.
@@ -60,7 +60,7 @@ class Task:
     cost: int = 0
     jitter: int = 0
     core: str = ""
-    rows: tuple[Row, ...] = ()
+    rows: tuple[TableRow, ...] = ()
     timed: bool = False
     sporadic: bool = False
     best: int = 0
@@ -93,7 +93,7 @@ class Task:
         return count if count <= FRAME_LIMIT else 1
 
     @property
-    def frames(self) -> tuple[tuple[Row, ...], ...]:
+    def frames(self) -> tuple[tuple[TableRow, ...], ...]:
         """The rows of each release until the table repeats; all in one past the limit."""
         count = self.frame_count
         if count == 1:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from ravenchart.analysis.core.chains import Chain
+from ravenchart.analysis.core.chains import TimedChain
 from ravenchart.analysis.core.holistic import Network
 
 from . import cheddar, mast, pycpa
 from .shapes import Unfit
 
-Export = Callable[[Network, Sequence[Chain], str], str]
+Export = Callable[[Network, Sequence[TimedChain], str], str]
 """The text of a system with that title; `Unfit` where the format cannot express it."""
 
 FORMATS: Mapping[str, Export] = {

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from xml.etree import ElementTree as Xml
 
 from ravenchart.analysis.core import holistic
-from ravenchart.analysis.core.chains import Chain
+from ravenchart.analysis.core.chains import TimedChain
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.tasks import Task
 
@@ -51,7 +51,7 @@ class _Item:
         )  # fmt: skip
 
 
-def export(network: Network, chains: Sequence[Chain], title: str) -> str:
+def export(network: Network, chains: Sequence[TimedChain], title: str) -> str:
     """The model of ``network``; Cheddar has nothing for ``chains``, nor a name for the whole."""
     del title
     no_errors(network, "Cheddar")

@@ -13,15 +13,15 @@ from dataclasses import replace
 
 from ravenchart.analysis.core.blocking import Section, ceilings
 from ravenchart.analysis.core.bus import Frame
-from ravenchart.analysis.core.chains import Chain
+from ravenchart.analysis.core.chains import TimedChain
 from ravenchart.analysis.core.fixed_priority import NO_OVERHEAD
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.responses import release_time, switch_time
 from ravenchart.analysis.core.tasks import Task
 
-from .mast_text import Attributes, Object, Value, printed
+from .mast_text import Attributes, MastObject, Value, printed
 from .shapes import (
-    Tree,
+    ReleaseTree,
     background,
     dense,
     exact,
@@ -44,7 +44,7 @@ NAMES = ("Activity_Operation", "Activity_Server", "Composite_Operation_List", "H
 """Attributes whose values are names: in quotes, for MAST has keywords by the hundred."""
 
 
-def export(network: Network, chains: Sequence[Chain], title: str) -> str:
+def export(network: Network, chains: Sequence[TimedChain], title: str) -> str:
     """The model of ``network``; ``chains`` that sample are not part of what MAST analyses."""
     exact(network)
     no_errors(network, "MAST")
@@ -54,7 +54,7 @@ def export(network: Network, chains: Sequence[Chain], title: str) -> str:
         network = spelled_out(network)
     writer = _Writer(network)
     name = names([title])[title]
-    model = Object(
+    model = MastObject(
         "Model",
         _attributes(Model_Name=name, Model_Date="2000-01-01", System_PiP_Behaviour="Strict"),
     )
@@ -108,7 +108,7 @@ class _Writer:
         reached = [self.ceilings[s.resource] for s in self.network.sections if s.user in users]
         return dense([task.priority for task in users.values()] + reached)
 
-    def objects(self) -> Iterator[Object]:
+    def objects(self) -> Iterator[MastObject]:
         """All objects but the model itself, in the usual order."""
         yield from self._resources()
         yield from self._schedulers()
@@ -118,7 +118,7 @@ class _Writer:
         for resource in seen:
             user = next(s.user for s in self.network.sections if s.resource == resource)
             ceiling = self.levels[cores[user]][self.ceilings[resource]]
-            yield Object(
+            yield MastObject(
                 "Shared_Resource",
                 _attributes(
                     Type="Immediate_Ceiling_Resource",
@@ -132,7 +132,7 @@ class _Writer:
             yield self._transaction(tree)
         yield from self._releases()
 
-    def _resources(self) -> Iterator[Object]:
+    def _resources(self) -> Iterator[MastObject]:
         for core in self.cores:
             platform = self.network.platforms.get(core)
             timer = None
@@ -140,7 +140,7 @@ class _Writer:
                 timer = _attributes(
                     Type="Ticker", Worst_Overhead=platform.tick_cost, Period=platform.tick_period
                 )
-            yield Object(
+            yield MastObject(
                 "Processing_Resource",
                 _attributes(
                     Type="Regular_Processor",
@@ -151,7 +151,7 @@ class _Writer:
                 ),
             )
         for bus, frames in self.network.frames.items():
-            yield Object(
+            yield MastObject(
                 "Processing_Resource",
                 _attributes(
                     Type="Packet_Based_Network",
@@ -164,7 +164,7 @@ class _Writer:
                 ),
             )
 
-    def _schedulers(self) -> Iterator[Object]:
+    def _schedulers(self) -> Iterator[MastObject]:
         for core in self.cores:
             platform = self.network.platforms.get(core)
             policy = _attributes(
@@ -185,16 +185,16 @@ class _Writer:
             )
             yield self._scheduler(bus, policy)
 
-    def _scheduler(self, place: str, policy: Attributes) -> Object:
+    def _scheduler(self, place: str, policy: Attributes) -> MastObject:
         name = self.place[place]
-        return Object(
+        return MastObject(
             "Scheduler",
             _attributes(
                 Type="Primary_Scheduler", Name=f"{name}_scheduler", Host=name, Policy=policy
             ),
         )
 
-    def _servers(self) -> Iterator[Object]:
+    def _servers(self) -> Iterator[MastObject]:
         for task in self.network.tasks:
             level = self.levels[task.core][task.priority]
             yield self._server(self.item[task.name], task.core, "Fixed_Priority_Policy", level)
@@ -207,9 +207,9 @@ class _Writer:
                 name = self.item[frame.name]
                 yield self._server(name, bus, "Non_Preemptible_FP_Policy", levels[frame.name])
 
-    def _server(self, name: str, place: str, policy: str, level: int) -> Object:
+    def _server(self, name: str, place: str, policy: str, level: int) -> MastObject:
         parameters = _attributes(Type=policy, The_Priority=str(level), Preassigned="YES")
-        return Object(
+        return MastObject(
             "Scheduling_Server",
             _attributes(
                 Type="Regular",
@@ -219,7 +219,7 @@ class _Writer:
             ),
         )
 
-    def _operations(self) -> Iterator[Object]:
+    def _operations(self) -> Iterator[MastObject]:
         for task in self.network.tasks:
             name = self.item[task.name]
             sections = [s for s in self.network.sections if s.user == task.name]
@@ -227,7 +227,7 @@ class _Writer:
             for number, section in enumerate(sections, 1):
                 parts.append(f"{name}_section_{number}")
                 yield self._section(parts[-1], section)
-            yield Object(
+            yield MastObject(
                 "Operation",
                 _attributes(
                     Type="Enclosing" if parts else "Simple",
@@ -238,7 +238,7 @@ class _Writer:
                 ),
             )
             if cost := self._release(task):
-                yield Object(
+                yield MastObject(
                     "Operation",
                     _attributes(
                         Type="Simple", Name=f"{name}_release_job", Worst_Case_Execution_Time=cost
@@ -246,7 +246,7 @@ class _Writer:
                 )
         for frames in self.network.frames.values():
             for frame in frames:
-                yield Object(
+                yield MastObject(
                     "Operation",
                     _attributes(
                         Type="Message_Transmission",
@@ -257,8 +257,8 @@ class _Writer:
                     ),
                 )
 
-    def _section(self, name: str, section: Section) -> Object:
-        return Object(
+    def _section(self, name: str, section: Section) -> MastObject:
+        return MastObject(
             "Operation",
             _attributes(
                 Type="Simple",
@@ -278,7 +278,7 @@ class _Writer:
         platform = self.network.platforms.get(task.core)
         return release_time(task, platform) if platform else 0
 
-    def _transaction(self, tree: Tree) -> Object:
+    def _transaction(self, tree: ReleaseTree) -> MastObject:
         """What one event releases, step by step; every step has its deadline from the event."""
         root = self.item[tree.item.name]
         internal, handlers = [], []
@@ -310,7 +310,7 @@ class _Writer:
                 handlers.append(
                     _attributes(Type="Multicast", Input_Event=done, Output_Events_List=events)
                 )
-        return Object(
+        return MastObject(
             "Transaction",
             _attributes(
                 Type="Regular",
@@ -340,7 +340,7 @@ class _Writer:
             Phase=phase or None,
         )
 
-    def _releases(self) -> Iterator[Object]:
+    def _releases(self) -> Iterator[MastObject]:
         """For each task whose releases cost time, that work as a transaction of its own."""
         for task in self.network.tasks:
             if self._release(task):
@@ -352,7 +352,7 @@ class _Writer:
                     Activity_Operation=f"{name}_job",
                     Activity_Server=f"{name}_server",
                 )
-                yield Object(
+                yield MastObject(
                     "Transaction",
                     _attributes(
                         Type="Regular",

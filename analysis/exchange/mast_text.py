@@ -40,7 +40,7 @@ class Attributes:
 
 
 @dataclass(frozen=True, slots=True)
-class Object:
+class MastObject:
     """One object of a model."""
 
     kind: str
@@ -50,7 +50,7 @@ class Object:
 _TOKEN = re.compile(r'\s+|--[^\n]*|=>|[(),;]|"[^"\n]*"|[A-Za-z0-9_.%+-]+')
 
 
-def parse(text: str) -> tuple[Object, ...]:
+def parse(text: str) -> tuple[MastObject, ...]:
     """The objects of a model; ValueError, with the line, where the text is not one."""
     reader = _Reader(text)
     found = []
@@ -60,7 +60,7 @@ def parse(text: str) -> tuple[Object, ...]:
         if not isinstance(value, Attributes):
             raise reader.wrong("attributes")
         reader.take(";")
-        found.append(Object(kind, value))
+        found.append(MastObject(kind, value))
     return tuple(found)
 
 
@@ -127,7 +127,7 @@ class _Reader:
         return Attributes(tuple(pairs)) if pairs else tuple(values)
 
 
-def printed(objects: tuple[Object, ...]) -> str:
+def printed(objects: tuple[MastObject, ...]) -> str:
     """The text of a model."""
     blocks = [f"{one.kind} {_text(one.attributes, 0)};\n" for one in objects]
     return "\n".join(blocks)

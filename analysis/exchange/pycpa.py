@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 
 from ravenchart.analysis.core.blocking import blockers
 from ravenchart.analysis.core.bus import Frame
-from ravenchart.analysis.core.chains import Chain, Hop
+from ravenchart.analysis.core.chains import HopKind, TimedChain
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.tasks import Task
 
@@ -65,7 +65,7 @@ if __name__ == "__main__":
 """
 
 
-def export(network: Network, chains: Sequence[Chain], title: str) -> str:
+def export(network: Network, chains: Sequence[TimedChain], title: str) -> str:
     """The script for ``network``, with the sampling ``chains`` as effect chains of tasks."""
     no_errors(network, "pyCPA")
     for name, bus in network.buses.items():
@@ -82,12 +82,12 @@ def export(network: Network, chains: Sequence[Chain], title: str) -> str:
     return HEAD.format(title=names([title])[title]) + "\n".join(lines) + "\n\n" + TAIL
 
 
-def _samples(chain: Chain, network: Network) -> bool:
+def _samples(chain: TimedChain, network: Network) -> bool:
     """Every step is a task, all after the first sample, and none is sporadic."""
     items = network.items()
     roots = {name: items[(name, *network.releasers(name))[-1]] for name in items}
     tasks = {task.name for task in network.tasks if not roots[task.name].sporadic}
-    sampled = all(step.hop is Hop.SAMPLED for step in chain.steps[1:])
+    sampled = all(step.hop is HopKind.SAMPLED for step in chain.steps[1:])
     return sampled and all(step.name in tasks for step in chain.steps)
 
 
@@ -129,7 +129,7 @@ def _task(name: str, place: str, item: Task | Frame, level: int, best: int) -> s
     )
 
 
-def _effect_chains(network: Network, chains: Sequence[Chain]) -> Iterator[str]:
+def _effect_chains(network: Network, chains: Sequence[TimedChain]) -> Iterator[str]:
     """The chains as effect chains."""
     items = names(network.items(), TAKEN)
     for number, chain in enumerate(chains, 1):

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from ravenchart.analysis.core import holistic
 from ravenchart.analysis.core.bus import Frame
-from ravenchart.analysis.core.chains import Chain
+from ravenchart.analysis.core.chains import TimedChain
 from ravenchart.analysis.core.fixed_priority import NO_OVERHEAD
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.responses import release_time, switch_time
@@ -147,7 +147,7 @@ def background(network: Network) -> Network:
     return replace(network, tasks=(*network.tasks, *tasks.values()), sections=tuple(sections))
 
 
-def remarks(network: Network, chains: Iterable[Chain]) -> Iterator[str]:
+def remarks(network: Network, chains: Iterable[TimedChain]) -> Iterator[str]:
     """What an export says in other words than the system does: lines for its head."""
     for task in network.tasks:
         if task.frame_count > 1:
@@ -220,13 +220,13 @@ def _above_all(network: Network, name: str, core: str, cost: int) -> Task:
 
 
 @dataclass(frozen=True, slots=True)
-class Tree:
+class ReleaseTree:
     """An item, and what its completion releases."""
 
     item: Task | Frame
-    followers: tuple[Tree, ...]
+    followers: tuple[ReleaseTree, ...]
 
-    def walk(self) -> list[Tree]:
+    def walk(self) -> list[ReleaseTree]:
         """This tree and all in it, each before what it releases."""
         found = [self]
         for one in self.followers:
@@ -234,7 +234,7 @@ class Tree:
         return found
 
 
-def trees(network: Network, tool: str) -> list[Tree]:
+def trees(network: Network, tool: str) -> list[ReleaseTree]:
     """The items that events release, each with all that follows it.
 
     `Unfit` where something that follows has jitter of its own.
@@ -246,8 +246,8 @@ def trees(network: Network, tool: str) -> list[Tree]:
             raise Unfit(f"{tool} has no jitter of what is released by another: {name} has")
         followers.setdefault(by, []).append(name)
 
-    def tree(name: str) -> Tree:
-        return Tree(items[name], tuple(tree(one) for one in followers.get(name, ())))
+    def tree(name: str) -> ReleaseTree:
+        return ReleaseTree(items[name], tuple(tree(one) for one in followers.get(name, ())))
 
     return [tree(name) for name in items if name not in network.released_by]
 

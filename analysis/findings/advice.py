@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ravenchart.analysis.core import changes, holistic
-from ravenchart.analysis.core.changes import Change, Kind, Met, Part
+from ravenchart.analysis.core.changes import Change, ChangeKind, Met, Part
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling, scaled_network
 from ravenchart.analysis.units import microseconds, percent
@@ -71,9 +71,8 @@ def of_model(analysis: Analysis) -> Advice | None:
     system, network = analysis.system, analysis.network
     costs: dict[str, list[Part]] = {}
     for task in system.tasks:
-        if task.released_by is not None:
-            bus = task.element.partition(".")[0]
-            costs.setdefault(f"driver_wcet of {bus}", []).append((task.element, ""))
+        if task.driver_of is not None:
+            costs.setdefault(f"driver_wcet of {task.driver_of}", []).append((task.element, ""))
         elif not task.slots:
             costs[task.element] = [(task.element, "")]
         costs |= {slot.element: [(task.element, slot.element)] for slot in task.slots}
@@ -208,11 +207,12 @@ def figures(found: Advice | None) -> list[dict[str, object]]:
 
 def _not_enough(rest: Sequence[Change]) -> Iterator[str]:
     """What cannot do it alone, in a sentence for each kind."""
+    longer = f"A longer period (up to {changes.LONGEST} times)"
     words = {
-        Kind.ORDER: "Reordering alone was not found to be enough on",
-        Kind.COST: "Shortening one of these alone is not enough",
-        Kind.PERIOD: f"A longer period (up to {changes.LONGEST} times) of one alone is not enough",
-        Kind.PLACE: "Even the most urgent identifier for one of these alone is not enough",
+        ChangeKind.ORDER: "Reordering alone was not found to be enough on",
+        ChangeKind.COST: "Shortening one of these alone is not enough",
+        ChangeKind.PERIOD: f"{longer} of one alone is not enough",
+        ChangeKind.PLACE: "Even the most urgent identifier for one of these alone is not enough",
     }
     for kind, text in words.items():
         names = [change.name or "the core" for change in rest if change.kind is kind]
@@ -225,12 +225,12 @@ def _told(change: Change, found: Advice) -> str:
     """One change in words; times are rounded to where they suffice."""
     if change.factor is None:
         what = "priorities" if change.order[0] in _tasks(found) else "identifiers"
-        if change.kind is Kind.PLACE:
+        if change.kind is ChangeKind.PLACE:
             place = change.order.index(change.name)
             return f"identifier of {change.name} before that of {change.order[place + 1]}"
         return f"{what} of {change.name or 'the core'} in this order: {', '.join(change.order)}"
     share = percent(change.amount)
-    if change.kind is Kind.PERIOD:
+    if change.kind is ChangeKind.PERIOD:
         period = found.network.items()[change.name].period
         longer = -(-period * change.factor.numerator // change.factor.denominator)
         after = f"{microseconds(period)} to {microseconds(longer)} us"

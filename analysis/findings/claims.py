@@ -13,8 +13,8 @@ from math import ceil
 from ravenchart.analysis.core import can
 from ravenchart.analysis.core.bus import Bus
 from ravenchart.analysis.core.can_response import ERRORS, FrameResponse
-from ravenchart.analysis.core.chains import Hop
-from ravenchart.analysis.core.offsets import Search, aligned
+from ravenchart.analysis.core.chains import HopKind
+from ravenchart.analysis.core.offsets import OffsetSearch, aligned
 from ravenchart.analysis.core.responses import Response, demand_of, jitter_of, release_time
 from ravenchart.analysis.core.window import Effort, Window, fixed_cost, source
 from ravenchart.analysis.system import latencies
@@ -121,7 +121,7 @@ def _since(
     starts = instants(analysis.system, task, reach)
     if {one.name for one in tasks} != everyone or starts is None or task.deadline > task.period:
         return None
-    search, found = Search(known, tasks, Effort(EFFORT)), []
+    search, found = OffsetSearch(known, tasks, Effort(EFFORT)), []
     for start in starts:
         window = search.window(start.time)
         due = task.offset + start.release * task.period
@@ -235,5 +235,5 @@ def _turns(analysis: Analysis, handed: set[str]) -> dict[str, Claim]:
 
 def _of_chain(latency: Latency) -> ChainClaim:
     """The latencies of a chain; what has no bound has no limit either."""
-    waits = tuple(Ns(hop.wait or 0) for hop in latency.hops if hop.step.hop is Hop.QUEUED)
+    waits = tuple(Ns(hop.wait or 0) for hop in latency.hops if hop.step.hop is HopKind.QUEUED)
     return ChainClaim(Ns(latency.reaction or 0), Ns(latency.age or 0), waits)

@@ -8,7 +8,7 @@ from fractions import Fraction
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.chains import HopLatency
 from ravenchart.analysis.core.responses import Interference, Reason, Response
-from ravenchart.analysis.system.latencies import Hop, Latency
+from ravenchart.analysis.system.latencies import HopKind, Latency
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import duration, microseconds, percent
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
@@ -290,7 +290,7 @@ def _chain_hint(found: Latency, what: str, value: int | None) -> str:
 
 def _ages(hop: HopLatency) -> bool:
     """It is as seldom as what is sporadic, and its last value is used meanwhile."""
-    return hop.renewal is None and not hop.step.keeps and hop.step.hop is not Hop.QUEUED
+    return hop.renewal is None and not hop.step.keeps and hop.step.hop is not HopKind.QUEUED
 
 
 def _unbounded(found: Latency, what: str) -> Iterator[str]:
@@ -298,7 +298,7 @@ def _unbounded(found: Latency, what: str) -> Iterator[str]:
     begun = found.hops[0].step.name
     for before, hop in zip((None, *found.hops), found.hops, strict=False):
         step = hop.step
-        begun = begun if step.hop is Hop.RELEASED else step.name
+        begun = begun if step.hop is HopKind.RELEASED else step.name
         if hop.response is None:
             yield f"{step.name} has no bound of its response"
         elif what == "age" and step.keeps:
@@ -307,8 +307,8 @@ def _unbounded(found: Latency, what: str) -> Iterator[str]:
             yield f"{begun} is sporadic: its next value may come at any later time"
         elif what == "reaction" and step.waits:
             yield step.waits
-        elif step.hop is Hop.QUEUED and hop.wait is None and before:
+        elif step.hop is HopKind.QUEUED and hop.wait is None and before:
             many = f"{step.puts} values at once" if step.puts > 1 else "them faster"
             yield f"{step.name} takes one value in a job, and {before.step.name} may put {many} in"
-        elif step.hop is Hop.SAMPLED and hop.wait is None:
+        elif step.hop is HopKind.SAMPLED and hop.wait is None:
             yield f"{step.name} has no period, so the age of its output is unbounded"

@@ -18,7 +18,7 @@ Figures = Mapping[str, Any]
 """An object of `analyse --json`."""
 
 
-class Word(Enum):
+class Wording(Enum):
     """What a change comes to."""
 
     WORSE = "worse"
@@ -37,12 +37,12 @@ class Difference:
     before: str
     now: str
     change: str
-    word: Word
+    word: Wording
 
     @property
     def line(self) -> str:
         """The whole of it in one line."""
-        if self.word in (Word.ADDED, Word.REMOVED):
+        if self.word in (Wording.ADDED, Wording.REMOVED):
             return f"{self.element}: {self.word.value}"
         by = f" ({self.change})" if self.change else ""
         return f"{self.element}: {self.figure} {self.before} -> {self.now}{by}, {self.word.value}"
@@ -73,7 +73,7 @@ class _Figure:
 
     name: str
     key: str
-    larger: Word
+    larger: Wording
     shown: Callable[[Any], str]
     none: str = "none"
 
@@ -83,18 +83,18 @@ def _plainly(value: object) -> str:
 
 
 _TIMES = (
-    _Figure("T", "period", Word.CHANGED, duration),
-    _Figure("D", "deadline", Word.CHANGED, duration),
-    _Figure("C", "cost", Word.CHANGED, duration),
-    _Figure("J", "jitter", Word.CHANGED, duration),
-    _Figure("B", "blocked", Word.CHANGED, duration),
-    _Figure("R", "response", Word.WORSE, duration, "no bound"),
+    _Figure("T", "period", Wording.CHANGED, duration),
+    _Figure("D", "deadline", Wording.CHANGED, duration),
+    _Figure("C", "cost", Wording.CHANGED, duration),
+    _Figure("J", "jitter", Wording.CHANGED, duration),
+    _Figure("B", "blocked", Wording.CHANGED, duration),
+    _Figure("R", "response", Wording.WORSE, duration, "no bound"),
 )
 
-_PRIORITY = _Figure("priority", "priority", Word.CHANGED, _plainly)
-_RANK = _Figure("order in arbitration", "rank", Word.CHANGED, hex)
-_CORE = _Figure("core", "core", Word.CHANGED, _plainly)
-_BUS = _Figure("bus", "bus", Word.CHANGED, _plainly)
+_PRIORITY = _Figure("priority", "priority", Wording.CHANGED, _plainly)
+_RANK = _Figure("order in arbitration", "rank", Wording.CHANGED, hex)
+_CORE = _Figure("core", "core", Wording.CHANGED, _plainly)
+_BUS = _Figure("bus", "bus", Wording.CHANGED, _plainly)
 
 _ELEMENTS: tuple[tuple[str, str, Sequence[_Figure]], ...] = (
     ("tasks", "task", (_CORE, _PRIORITY, *_TIMES)),
@@ -103,18 +103,21 @@ _ELEMENTS: tuple[tuple[str, str, Sequence[_Figure]], ...] = (
         "chains",
         "chain",
         (
-            _Figure("reaction limit", "reaction_limit", Word.CHANGED, duration),
-            _Figure("reaction", "reaction", Word.WORSE, duration, "no bound"),
-            _Figure("age limit", "age_limit", Word.CHANGED, duration),
-            _Figure("age", "age", Word.WORSE, duration, "no bound"),
+            _Figure("reaction limit", "reaction_limit", Wording.CHANGED, duration),
+            _Figure("reaction", "reaction", Wording.WORSE, duration, "no bound"),
+            _Figure("age limit", "age_limit", Wording.CHANGED, duration),
+            _Figure("age", "age", Wording.WORSE, duration, "no bound"),
         ),
     ),
 )
 """The lists of the object, what an entry of them is called, and its figures."""
 
-_LOAD = _Figure("load", "load", Word.WORSE, percent)
+_LOAD = _Figure("load", "load", Wording.WORSE, percent)
 _SCALING = _Figure(
-    "factor of all execution times", "scaling", Word.BETTER, lambda factor: f"{float(factor):.3f}"
+    "factor of all execution times",
+    "scaling",
+    Wording.BETTER,
+    lambda factor: f"{float(factor):.3f}",
 )
 
 
@@ -158,13 +161,13 @@ def _of_list(
     for name, old in before.items():
         element = f"{kind} {name}".strip() or "the core"
         if name not in now:
-            yield Difference(element, "", "present", "-", "", Word.REMOVED)
+            yield Difference(element, "", "present", "-", "", Wording.REMOVED)
         else:
             yield from _of_element(element, old, now[name], figures)
     for name in now:
         if name not in before:
             yield Difference(
-                f"{kind} {name}".strip() or "the core", "", "-", "present", "", Word.ADDED
+                f"{kind} {name}".strip() or "the core", "", "-", "present", "", Wording.ADDED
             )
 
 
@@ -178,19 +181,19 @@ def _of_element(
             more = figure.larger if _more(figure, old, new) else _opposite(figure.larger)
             yield Difference(element, figure.name, shown[0], shown[1], _change(old, new), more)
     if "met" in before and before["met"] != now["met"]:
-        word = Word.BETTER if now["met"] else Word.WORSE
+        word = Wording.BETTER if now["met"] else Wording.WORSE
         yield Difference(element, "verdict", _met(before["met"]), _met(now["met"]), "", word)
 
 
 def _more(figure: _Figure, old: Any, new: Any) -> bool:
     """The new value is larger; one without a bound is larger than any time, but no factor."""
     if old is None or new is None:
-        return (new is None) == (figure.larger is not Word.BETTER)
+        return (new is None) == (figure.larger is not Wording.BETTER)
     return bool(new > old)
 
 
-def _opposite(word: Word) -> Word:
-    return {Word.WORSE: Word.BETTER, Word.BETTER: Word.WORSE}.get(word, word)
+def _opposite(word: Wording) -> Wording:
+    return {Wording.WORSE: Wording.BETTER, Wording.BETTER: Wording.WORSE}.get(word, word)
 
 
 def _change(old: object, new: object) -> str:
@@ -208,7 +211,7 @@ def _verdict(rows: Sequence[Difference], before: bool, now: bool) -> str:
     """What all of it comes to, in one sentence."""
     if not rows and before == now:
         return "nothing changed."
-    counts = [(word, sum(row.word is word for row in rows)) for word in Word]
+    counts = [(word, sum(row.word is word for row in rows)) for word in Wording]
     listed = ", ".join(f"{count} {word.value}" for word, count in counts if count)
     kept = "every deadline and limit is"
     if before != now:

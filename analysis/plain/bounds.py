@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Slot, System, Work
 
-from .columns import LARGEST, Column, Form, Kinds, Values, values
-from .entries import Problem, Reading, read
+from .columns import LARGEST, Column, Form, Kinds, RowValues, values
+from .entries import Problem, ReadFile, read
 
 _COUNT = Column(Form.NUMBER, least=1)
 _COLUMNS = {"wcet": Column(Form.TIME_UP, least=1), "cycles": _COUNT, "clock_hz": _COUNT}
@@ -70,7 +70,7 @@ def function_of(slot: Slot, system: System) -> str:
     return f"{system.name}__{package}__run_{name}".lower()
 
 
-def _wcet(one: Values, reading: Reading) -> Ns | None:
+def _wcet(one: RowValues, reading: ReadFile) -> Ns | None:
     """The time of a row, rounded up; None, and a problem, where it gives none or two."""
     has = tuple(name for name in _COLUMNS if one.number(name))
     if has == ("wcet",):

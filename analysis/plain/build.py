@@ -11,13 +11,13 @@ from typing import TypeVar
 from ravenchart.analysis.core import frames
 from ravenchart.analysis.core.blocking import Section, blockers
 from ravenchart.analysis.core.bus import ERROR_BITS, Bus, Errors, Frame
-from ravenchart.analysis.core.chains import Chain, Hop, Step
+from ravenchart.analysis.core.chains import ChainStep, HopKind, TimedChain
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
-from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.tasks import TableRow, Task
 
-from .columns import Values, values
-from .entries import Problem, Reading, read
+from .columns import RowValues, values
+from .entries import Problem, ReadFile, read
 
 SECOND = 10**9
 
@@ -29,13 +29,13 @@ class PlainSystem:
     """What a plain file holds; all times in ns."""
 
     network: Network
-    chains: tuple[Chain, ...]
+    chains: tuple[TimedChain, ...]
 
 
 def load(text: str, file: str) -> PlainSystem | tuple[Problem, ...]:
     """The system in the text of a file, or what is wrong with it."""
     reading = read(text, file)
-    rows: dict[str, list[Values]] = {}
+    rows: dict[str, list[RowValues]] = {}
     for entry in reading.entries:
         found = values(entry, reading)
         if found is not None:
@@ -51,10 +51,10 @@ def load(text: str, file: str) -> PlainSystem | tuple[Problem, ...]:
     return tuple(reading.problems)
 
 
-def _check(rows: dict[str, list[Values]], reading: Reading) -> None:
+def _check(rows: dict[str, list[RowValues]], reading: ReadFile) -> None:
     """Names that are given twice, and names that nothing has."""
     for kinds in (("task", "message"), ("core",), ("bus",), ("object",)):
-        seen: dict[str, Values] = {}
+        seen: dict[str, RowValues] = {}
         for row in (row for kind in kinds for row in rows.get(kind, ())):
             first = seen.setdefault(row.name, row)
             if first is not row:
@@ -85,8 +85,8 @@ def _check(rows: dict[str, list[Values]], reading: Reading) -> None:
             reading.complain(core.entry.line, f"no task is on core {core.name}")
 
 
-def _system(rows: dict[str, list[Values]], reading: Reading) -> PlainSystem | None:
-    tables: dict[str, list[Row]] = {}
+def _system(rows: dict[str, list[RowValues]], reading: ReadFile) -> PlainSystem | None:
+    tables: dict[str, list[TableRow]] = {}
     for row in rows.get("row", ()):
         made = _made(row, reading, _row)
         if made is not None:
@@ -138,13 +138,13 @@ def _system(rows: dict[str, list[Values]], reading: Reading) -> PlainSystem | No
     return PlainSystem(network, tuple(chain for chain in chains if chain is not None))
 
 
-def _line_of(text: str, rows: dict[str, list[Values]]) -> int:
+def _line_of(text: str, rows: dict[str, list[RowValues]]) -> int:
     """The line of the first row whose name is the first one that the text speaks of."""
     lines = {row.name: row.entry.line for some in reversed(rows.values()) for row in reversed(some)}
     return next((lines[word] for word in text.replace(",", "").split() if word in lines), 0)
 
 
-def _made(row: Values, reading: Reading, make: Callable[[Values], Made]) -> Made | None:
+def _made(row: RowValues, reading: ReadFile, make: Callable[[RowValues], Made]) -> Made | None:
     """What is made of a row; None, and a problem, where its numbers do not go together."""
     try:
         return make(row)
@@ -153,11 +153,11 @@ def _made(row: Values, reading: Reading, make: Callable[[Values], Made]) -> Made
         return None
 
 
-def _row(row: Values) -> Row:
-    return Row(row.name, row.number("cost"), row.number("every", 1), row.number("phase"))
+def _row(row: RowValues) -> TableRow:
+    return TableRow(row.name, row.number("cost"), row.number("every", 1), row.number("phase"))
 
 
-def _task(row: Values, table: list[Row]) -> Task:
+def _task(row: RowValues, table: list[TableRow]) -> Task:
     if not table and not row.number("cost"):
         raise ValueError(f"cost_us of task {row.name} is missing, and it has no rows")
     period = row.number("period")
@@ -180,7 +180,7 @@ def _task(row: Values, table: list[Row]) -> Task:
     )
 
 
-def _platform(row: Values) -> Platform:
+def _platform(row: RowValues) -> Platform:
     return Platform(
         row.number("context_switch"),
         row.number("release"),
@@ -189,7 +189,7 @@ def _platform(row: Values) -> Platform:
     )
 
 
-def _bus(row: Values) -> Bus:
+def _bus(row: RowValues) -> Bus:
     period = row.number("error_period")
     errors = (
         Errors(period, row.number("error_burst", 1), row.number("error_bits", ERROR_BITS))
@@ -199,7 +199,7 @@ def _bus(row: Values) -> Bus:
     return Bus(-(-SECOND // row.number("bit_rate")), row.number("unknown"), errors)
 
 
-def _frame(row: Values, bus: Values) -> Frame:
+def _frame(row: RowValues, bus: RowValues) -> Frame:
     extended = bool(row.number("extended"))
     cost = row.number("cost")
     if bool(cost) == ("bytes" in row.numbers):
@@ -223,7 +223,7 @@ def _frame(row: Values, bus: Values) -> Frame:
     )
 
 
-def _ranks(rows: dict[str, list[Values]], on: dict[str, list[Frame]], reading: Reading) -> None:
+def _ranks(rows: dict[str, list[RowValues]], on: dict[str, list[Frame]], reading: ReadFile) -> None:
     """Two messages of one bus must not have the same identifier."""
     lines = {row.name: row.entry.line for row in rows.get("message", ())}
     for bus, some in on.items():
@@ -237,16 +237,16 @@ def _ranks(rows: dict[str, list[Values]], on: dict[str, list[Frame]], reading: R
                 )
 
 
-def _chain(rows: list[Values], reading: Reading) -> Chain | None:
+def _chain(rows: list[RowValues], reading: ReadFile) -> TimedChain | None:
     steps = []
     for row in rows:
         word = row.word("hop")
-        if word not in {hop.value for hop in Hop}:
+        if word not in {hop.value for hop in HopKind}:
             reading.complain(
                 row.entry.line,
                 f"hop of chain {row.name} must be released, sampled or queued, not {word}",
             )
             return None
-        steps.append(Step(row.word("step"), Hop(word), row.number("takes", 1)))
+        steps.append(ChainStep(row.word("step"), HopKind(word), row.number("takes", 1)))
     limits = [max(row.number(name) for row in rows) for name in ("reaction_limit", "age_limit")]
-    return Chain(rows[0].name, tuple(steps), *limits)
+    return TimedChain(rows[0].name, tuple(steps), *limits)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
-from .entries import Entry, Reading
+from .entries import Entry, ReadFile
 
 UNITS: Mapping[str, int] = {"ns": 1, "us": 10**3, "ms": 10**6, "s": 10**9}
 """What the name of a column of times ends in, and what it is in ns."""
@@ -123,7 +123,7 @@ KINDS: Kinds = {
 
 
 @dataclass(frozen=True, slots=True)
-class Values:
+class RowValues:
     """A row with its values by column; times in ns and without the unit in the name."""
 
     entry: Entry
@@ -148,7 +148,7 @@ class Values:
         return self.words.get(column, "")
 
 
-def values(entry: Entry, reading: Reading, kinds: Kinds = KINDS) -> Values | None:
+def values(entry: Entry, reading: ReadFile, kinds: Kinds = KINDS) -> RowValues | None:
     """The values of a row; None, and problems, where it cannot be used."""
     before = len(reading.problems)
     columns = kinds.get(entry.kind)
@@ -188,7 +188,7 @@ def values(entry: Entry, reading: Reading, kinds: Kinds = KINDS) -> Values | Non
             reading.complain(entry.line, f"{name}{suffix} of {_owner(entry)} is missing")
     if len(reading.problems) > before:
         return None
-    return Values(entry, entry.columns[entry.kind], words, numbers)
+    return RowValues(entry, entry.columns[entry.kind], words, numbers)
 
 
 def _owner(entry: Entry) -> str:

@@ -42,7 +42,7 @@ class Entry:
 
 
 @dataclass(slots=True)
-class Reading:
+class ReadFile:
     """The rows of a file and what is wrong with it."""
 
     file: str
@@ -54,9 +54,9 @@ class Reading:
         self.problems.append(Problem(self.file, line, text))
 
 
-def read(text: str, file: str) -> Reading:
+def read(text: str, file: str) -> ReadFile:
     """The rows of a file whose name ends in ``.json``, else of a CSV file."""
-    reading = Reading(file, [], [])
+    reading = ReadFile(file, [], [])
     if len(text) > TOO_LONG:
         reading.complain(0, f"the file must have at most {TOO_LONG} characters, not {len(text)}")
     elif file.lower().endswith(".json"):
@@ -66,7 +66,7 @@ def read(text: str, file: str) -> Reading:
     return reading
 
 
-def _read_csv(text: str, reading: Reading) -> None:
+def _read_csv(text: str, reading: ReadFile) -> None:
     header: list[str] = []
     lines = csv.reader(text.removeprefix("\ufeff").splitlines(), strict=True)
     try:
@@ -91,7 +91,7 @@ def _read_csv(text: str, reading: Reading) -> None:
         reading.complain(lines.line_num, f"not CSV: {fault}")
 
 
-def _check_header(header: list[str], line: int, reading: Reading) -> None:
+def _check_header(header: list[str], line: int, reading: ReadFile) -> None:
     named = [name for name in header if name]
     for name in sorted({name for name in named if named.count(name) > 1}):
         reading.complain(line, f"there are two columns {name}")
@@ -101,7 +101,7 @@ class _UnusableError(Exception):
     """A key that an object has twice, or a number that is none."""
 
 
-def _read_json(text: str, reading: Reading) -> None:
+def _read_json(text: str, reading: ReadFile) -> None:
     try:
         whole: Any = json.loads(
             text, object_pairs_hook=_once, parse_int=str, parse_float=str, parse_constant=_no_number

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from markupsafe import Markup
 
-from ravenchart.analysis.core.chains import Hop, Latency
+from ravenchart.analysis.core.chains import HopKind, Latency
 from ravenchart.analysis.core.holistic import Holistic
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.system.critical import frame_schedule, schedule
@@ -17,9 +17,9 @@ SHOWN_INSTANTS = 6
 """How many critical instants of each kind a report draws."""
 
 HOPS = {
-    Hop.RELEASED: "at once",
-    Hop.SAMPLED: "samples, every T",
-    Hop.QUEUED: "takes the oldest of a queue",
+    HopKind.RELEASED: "at once",
+    HopKind.SAMPLED: "samples, every T",
+    HopKind.QUEUED: "takes the oldest of a queue",
 }
 """How data come to a step of a chain, in words."""
 

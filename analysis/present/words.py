@@ -16,7 +16,7 @@ WORDS = {Verdict.MET: "ok", Verdict.MISSED: "MISS", Verdict.NO_BOUND: "NONE"}
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class TextPart:
     """Something that a window is made of: its kind, what it is, and how it adds up."""
 
     kind: str
@@ -114,12 +114,14 @@ def binding_lines(analysis: Analysis) -> tuple[str, ...]:
     return (f"{name} {room}: {share} of its response is {parts[0].name}",)
 
 
-def window_parts(analysis: Analysis, name: str) -> tuple[Part, ...]:
+def window_parts(analysis: Analysis, name: str) -> tuple[TextPart, ...]:
     """What the time of a task or message is made of, its lateness at the start included."""
     return response_parts(analysis.found.responses[name], analysis.network.released_by.get(name))
 
 
-def response_parts(response: Response | FrameResponse, releaser: str | None) -> tuple[Part, ...]:
+def response_parts(
+    response: Response | FrameResponse, releaser: str | None
+) -> tuple[TextPart, ...]:
     """The same of a response, released by that task or message if any."""
     if response.bound is None:
         return ()
@@ -127,7 +129,7 @@ def response_parts(response: Response | FrameResponse, releaser: str | None) -> 
     jitter = response.late if isinstance(response, Response) else response.frame.jitter
     if jitter:
         source = f"the jitter inherited from {releaser}" if releaser else "its late release"
-        parts.insert(0, Part("jitter", source, "", jitter))
+        parts.insert(0, TextPart("jitter", source, "", jitter))
     return tuple(part for part in parts if part.time)
 
 
@@ -139,12 +141,12 @@ def offset_lines(found: Iterable[Response | FrameResponse]) -> tuple[str, ...]:
     return (f"By their offsets: R of {', '.join(names)}. All others hold for any offsets.",)
 
 
-def _task_parts(response: Response) -> list[Part]:
+def _task_parts(response: Response) -> list[TextPart]:
     jobs = response.worst_job + 1
-    parts = [Part("own", "its own execution", f"{jobs} jobs" if jobs > 1 else "", response.own)]
+    parts = [TextPart("own", "its own execution", f"{jobs} jobs" if jobs > 1 else "", response.own)]
     if response.blocking is not None:
         inside = f"{response.blocking.user} in {response.blocking.resource}"
-        parts.append(Part("blocking", inside, "", response.blocked))
+        parts.append(TextPart("blocking", inside, "", response.blocked))
     by_name = {share.task.name: share for share in response.interference}
     for family, members in families(by_name).items():
         each = [by_name[member] for member in members]
@@ -154,7 +156,7 @@ def _task_parts(response: Response) -> list[Part]:
         plain = len(costs) == 1 and releases * max(costs) == time
         cost = microseconds(max(costs))
         sum_of = f"{releases} x {cost}" if plain else f"{releases} releases"
-        parts.append(Part("interference", family, sum_of, time))
+        parts.append(TextPart("interference", family, sum_of, time))
     lost = response.overheads
     for what, count, time in (
         ("context switches", lost.switches, lost.switch_time),
@@ -162,19 +164,21 @@ def _task_parts(response: Response) -> list[Part]:
         ("making jobs ready", lost.releases, lost.release_time),
     ):
         if time:
-            parts.append(Part("overhead", what, f"{count} x {microseconds(time // count)}", time))
+            parts.append(
+                TextPart("overhead", what, f"{count} x {microseconds(time // count)}", time)
+            )
     return parts
 
 
-def _frame_parts(response: FrameResponse) -> list[Part]:
+def _frame_parts(response: FrameResponse) -> list[TextPart]:
     own = response.own + response.frame.cost
-    parts = [Part("own", "its own frame", "", own)]
+    parts = [TextPart("own", "its own frame", "", own)]
     blocker = response.blocker or "a frame of somebody else"
-    parts.append(Part("blocking", blocker, "", response.blocked))
+    parts.append(TextPart("blocking", blocker, "", response.blocked))
     for share in response.interference:
         sum_of = f"{share.instances} x {microseconds(share.frame.cost)}"
-        parts.append(Part("interference", share.frame.name, sum_of, share.time))
-    parts.append(Part("overhead", "errors", "", response.errors))
+        parts.append(TextPart("interference", share.frame.name, sum_of, share.time))
+    parts.append(TextPart("overhead", "errors", "", response.errors))
     return parts
 
 

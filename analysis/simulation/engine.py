@@ -13,8 +13,8 @@ from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.tasks import Task
 
 from .phases import Phase, Scenario
-from .processor import Job, Processor, segments_of
-from .wire import Message, Wire
+from .processor import Job, SimulatedProcessor, segments_of
+from .wire import QueuedFrame, Wire
 
 EVENTS = 5_000_000
 """Events after which a simulation is given up."""
@@ -83,7 +83,7 @@ class _Engine:
         self.seen = Observed()
         self.pieces: dict[tuple[str, str, int, int], int] = {}
         self.order = 0
-        self.cores = {task.core: Processor() for task in network.tasks}
+        self.cores = {task.core: SimulatedProcessor() for task in network.tasks}
         self.wires = {
             name: Wire(bus, scenario.faults.get(name, ())) for name, bus in network.buses.items()
         }
@@ -140,7 +140,7 @@ class _Engine:
                 one.name, one.number + 1, one.arrival + item.period + phase.more(one.number)
             )
         if isinstance(item, Frame):
-            message = Message(item, one.number, one.event, self.order)
+            message = QueuedFrame(item, one.number, one.event, self.order)
             self.wires[self.home[one.name]].release(message)
             return
         frame = (phase.frame + one.number) % item.frame_count

@@ -8,7 +8,7 @@ from ravenchart.analysis.core.bus import ERROR_BITS, Bus, Frame
 
 
 @dataclass(slots=True)
-class Message:
+class QueuedFrame:
     """A queued instance of ``frame``; ``event`` began its chain, ``order`` tells who came first."""
 
     frame: Frame
@@ -27,8 +27,8 @@ class Wire:
 
     bus: Bus
     faults: tuple[int, ...] = ()
-    queued: list[Message] = field(default_factory=list)
-    sending: Message | None = None
+    queued: list[QueuedFrame] = field(default_factory=list)
+    sending: QueuedFrame | None = None
     start: int = 0
     free: int = 0
     arbitrating: bool = False
@@ -47,7 +47,7 @@ class Wire:
             )
         return self.free if self.queued else None
 
-    def advance(self, now: int) -> Message | None:
+    def advance(self, now: int) -> QueuedFrame | None:
         """Do what is due at ``now``; the message that has been sent."""
         if self.arbitrating:
             self.arbitrating = False
@@ -65,7 +65,7 @@ class Wire:
         self.free = now + (errors.bits if errors else ERROR_BITS) * self.bus.bit_time
         return None
 
-    def release(self, message: Message) -> None:
+    def release(self, message: QueuedFrame) -> None:
         """Queue a message."""
         self.queued.append(message)
 
@@ -76,9 +76,9 @@ class Wire:
             while (fault := self._next_fault()) is not None and fault <= now:
                 self._fault += 1
 
-    def _competing(self) -> list[Message]:
+    def _competing(self) -> list[QueuedFrame]:
         """What the nodes offer: all, but of each first-in first-out queue only the oldest."""
-        oldest: dict[str, Message] = {}
+        oldest: dict[str, QueuedFrame] = {}
         for message in self.queued:
             if message.frame.queue:
                 oldest.setdefault(message.frame.queue, message)

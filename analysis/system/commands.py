@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from ravenchart.gen.derive.calls import published_by
 from ravenchart.gen.model.commands import Binding, Device, Remote, RemoteRead, Server, wcet_of
+from ravenchart.gen.model.system import Carried, Stop
 
 if TYPE_CHECKING:
     from .timing import Analysis
@@ -58,7 +59,7 @@ def _cost(analysis: Analysis, binding: Binding, caller: str) -> Cost:
         return Cost(caller, need.name, provider.name, "direct", cost)
     if isinstance(provider, Remote):
         message = next(m for m in analysis.system.messages if m.name == provider.request)
-        way = (f"message {provider.request}", provider.served)
+        way = (Carried(provider.request), provider.served)
         whole = {chain.name: found.reaction for chain, found in analysis.limited}
         answered = whole.get(provider.request) if provider.reply else None
         return Cost(
@@ -74,7 +75,7 @@ def _cost(analysis: Analysis, binding: Binding, caller: str) -> Cost:
         )
     if isinstance(provider, RemoteRead):
         message = next(m for m in analysis.system.messages if m.name == provider.message)
-        age = analysis.latency((f"message {provider.message}", caller)).age
+        age = analysis.latency((Carried(provider.message), caller)).age
         name, how = str(message.source), f"over {message.bus}"
         return Cost(caller, need.name, name, how, 0, answered=age, limit=provider.time_limit)
     if isinstance(provider, Server):
@@ -88,7 +89,7 @@ def _cost(analysis: Analysis, binding: Binding, caller: str) -> Cost:
     return Cost(caller, need.name, stand_in or "nothing", "stand-in", 0)
 
 
-def from_release(analysis: Analysis, way: Sequence[str]) -> int | None:
+def from_release(analysis: Analysis, way: Sequence[Stop]) -> int | None:
     """The latency of a way from the release of the row that it begins with."""
     first, *others = analysis.latency(way).hops
     parts = [first.response, *(part for hop in others for part in (hop.wait, hop.response))]

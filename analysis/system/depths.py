@@ -18,10 +18,11 @@ from ravenchart.gen.model.commands import Provided
 from ravenchart.gen.model.component import Port, PortKind
 from ravenchart.gen.model.instances import Connection, Instance
 from ravenchart.gen.model.statechart import Overflow
+from ravenchart.gen.model.system import Carried, Stop
 from ravenchart.gen.origins import Origin
 
 from .commands import from_release
-from .latencies import Hop
+from .latencies import HopKind
 
 if TYPE_CHECKING:
     from .timing import Analysis
@@ -94,8 +95,8 @@ def _together(times: Sequence[tuple[int | None, int]]) -> int | None:
 def _of_port(instance: Instance, port: Port, analysis: Analysis) -> Iterator[Depth]:
     """The values that wait in a queued port for their handler."""
     system, place = analysis.system, f"{instance.name}.{port.name}"
-    ways: list[tuple[str, ...]] = [
-        (f"message {message.name}", place)
+    ways: list[tuple[Stop, ...]] = [
+        (Carried(message.name), place)
         for message in system.messages
         if place in map(str, message.targets)
     ]
@@ -105,7 +106,7 @@ def _of_port(instance: Instance, port: Port, analysis: Analysis) -> Iterator[Dep
     needed: int | None = 0
     for way in ways:
         hop = analysis.latency(way).hops[-1]
-        one = 1 if hop.step.hop is not Hop.QUEUED else hop.backlog
+        one = 1 if hop.step.hop is not HopKind.QUEUED else hop.backlog
         one = None if hop.step.waits else one
         needed = None if one is None or needed is None else max(needed, one)
     expected = port.overflow is Overflow.DROP_OLDEST or port.on_overflow is not None
@@ -128,7 +129,7 @@ def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> 
     if not (afar or near) or (expected and not afar):
         return
     served = f"{instance.name}.{provided.server}"
-    ways = [(f"message {m.name}", m.period) for m in afar if m.call and m.call.reply is None]
+    ways = [(Carried(m.name), m.period) for m in afar if m.call and m.call.reply is None]
     times = [(analysis.latency((way, served)).reaction, period) for way, period in ways]
     for binding in near:
         component = system.instance(binding.instance).component

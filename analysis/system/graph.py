@@ -1,9 +1,9 @@
 """The dependencies of a system as a graph, and the chains through it.
 
-Nodes are ids: ``owner.name`` for rows, ports and data, the plain name for
-messages, components and processors (each with its ``kind``). Edges point the way values
-go (``reads``, ``writes``, ``sends``, ``carries``) or from a processor to the rows
-it ``runs`` and an instance to its component (``is``).
+Nodes are ids: ``owner.name`` for rows, ports and data, `Carried` for messages, and for
+components, instances and processors their name behind what they are (each has its
+``kind``). Edges point the way values go (``reads``, ``writes``, ``sends``, ``carries``)
+or from a processor to the rows it ``runs`` and an instance to its component (``is``).
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ import networkx as nx
 from ravenchart.gen.model.component import Activity, Component, Direction
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import System
+from ravenchart.gen.model.system import Carried, Stop, System
 
 FLOW = frozenset({"reads", "writes", "sends", "carries"})
 """The kinds of edges along which values travel."""
 
 
-def dependencies(system: System) -> nx.DiGraph[str]:
+def dependencies(system: System) -> nx.DiGraph[Stop]:
     """The graph of the whole system."""
-    graph: nx.DiGraph[str] = nx.DiGraph(name=system.name)
+    graph: nx.DiGraph[Stop] = nx.DiGraph(name=system.name)
     for component in system.components:
         graph.add_node(f"component {component.name}", kind="component", label=component.name)
     for instance in system.instances:
@@ -39,14 +39,14 @@ def dependencies(system: System) -> nx.DiGraph[str]:
     for connection in system.connections:
         graph.add_edge(str(connection.source), str(connection.target), kind="carries")
     for message in system.messages:
-        node = f"message {message.name}"
-        graph.add_node(node, kind="message", label=message.name)
+        carried = Carried(message.name)
+        graph.add_node(carried, kind="message", label=message.name)
         if message.controls:
             continue  # no values travel with it
         if message.source is not None:
-            graph.add_edge(str(message.source), node, kind="carries")
+            graph.add_edge(str(message.source), carried, kind="carries")
         for target in message.targets:
-            graph.add_edge(node, str(target), kind="carries")
+            graph.add_edge(carried, str(target), kind="carries")
     return graph
 
 
@@ -55,7 +55,7 @@ class Ways:
     """The ways that values can take through messages, ports, rows and data."""
 
     system: System
-    flow: nx.DiGraph[str]
+    flow: nx.DiGraph[Stop]
 
     @classmethod
     def of(cls, system: System) -> Ways:
@@ -64,13 +64,13 @@ class Ways:
         carries = {edge for edge in graph.edges if graph.edges[edge]["kind"] in FLOW}
         return cls(system, nx.subgraph_view(graph, filter_edge=lambda a, b: (a, b) in carries))
 
-    def between_messages(self) -> tuple[tuple[str, ...], ...]:
+    def between_messages(self) -> tuple[tuple[Stop, ...], ...]:
         """From each message received to each message sent: the shortest way through the rows.
 
         Each lists the message, then every port, row and data item on its way.
         """
-        arriving = [f"message {m.name}" for m in self.system.messages if m.source is None]
-        leaving = [f"message {m.name}" for m in self.system.messages if not m.targets]
+        arriving = [Carried(m.name) for m in self.system.messages if m.source is None]
+        leaving = [Carried(m.name) for m in self.system.messages if not m.targets]
         found = []
         for first in arriving:
             ways = nx.single_source_shortest_path(self.flow, first)
@@ -98,7 +98,7 @@ def component_view(system: System) -> nx.DiGraph[str]:
     return graph
 
 
-def _add_instance(graph: nx.DiGraph[str], instance: Instance) -> None:
+def _add_instance(graph: nx.DiGraph[Stop], instance: Instance) -> None:
     """The ports, data and rows of one instance, and what they exchange."""
     component = instance.component
     graph.add_node(f"instance {instance.name}", kind="instance", label=instance.name)

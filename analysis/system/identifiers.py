@@ -37,7 +37,7 @@ PLACES = 1 << 11
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class IdentifierPlaces:
     """Where the frames of a bus may go; ``given`` are those whose rank is bound."""
 
     model_order: tuple[str, ...]
@@ -73,7 +73,7 @@ def order_of(bus: Bus, system: System) -> tuple[str, ...] | Diagnostic:
     network = network_of(system)
     frames, wire = network.frames[bus.name], network.buses[bus.name]
     given = frozenset(m.element for m in system.frames if m.given)
-    places = Places(tuple(frame.name for frame in frames), given)
+    places = IdentifierPlaces(tuple(frame.name for frame in frames), given)
     order = audsley_frames(frames, wire, places.candidates)
     if order.complete:
         return order.names
@@ -85,7 +85,7 @@ def _refusal(
     system: System,
     frames: Sequence[Frame],
     order: Order,
-    places: Places,
+    places: IdentifierPlaces,
     response: Callable[[Frame, Sequence[Frame], Sequence[Frame]], FrameResponse],
 ) -> Diagnostic:
     """What cannot go to the lowest place that is left, and why."""

@@ -13,7 +13,7 @@ from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from ravenchart.gen.model.system import Chain, System
+from ravenchart.gen.model.system import Carried, Chain, System
 
 from .observed import Observation
 from .timing import Analysis
@@ -61,8 +61,8 @@ def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
     """From each start of the first row to the end of the journey that the next one begins."""
     starts, *others = _stages(chain, system, seen)
     first = [start for start in starts if start >= seen.ready]
-    last = seen.executions.get(chain.way[-1], 0)
-    origins = first if chain.way[0].startswith("message ") else (None, *first)
+    last = seen.executions.get(str(chain.way[-1]), 0)
+    origins = first if isinstance(chain.way[0], Carried) else (None, *first)
     found = []
     for origin, start in zip(origins, first, strict=False):
         end = _end(start, others)
@@ -88,10 +88,9 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Sequenc
     inputs = {f"{i.name}.{port.name}" for i in system.instances for port in i.component.inputs()}
     rows = {slot.element for slot in system.slots}
     for place in chain.way:
-        if place.startswith("message "):
-            name = place.removeprefix("message ")
-            kind = "arrived" if sources[name] is None else "sent"
-            yield [r.time for r in seen.of(kind, name)]
+        if isinstance(place, Carried):
+            kind = "arrived" if sources[place.message] is None else "sent"
+            yield [r.time for r in seen.of(kind, place.message)]
         elif place in inputs:
             yield [r.time for r in seen.of("arrived", place)]
             yield [r.time for r in seen.of("activity", f"{place.partition('.')[0]}.ports")]

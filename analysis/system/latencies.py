@@ -17,11 +17,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import zip_longest
 
 from ravenchart.analysis.core import can
 from ravenchart.analysis.core.bus import Bus, Frame
-from ravenchart.analysis.core.chains import Chain, Hop, Latency, Step, latency
+from ravenchart.analysis.core.chains import ChainStep, HopKind, Latency, TimedChain, latency
 from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Level, Response
@@ -30,11 +29,11 @@ from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Processor, System
+from ravenchart.gen.model.system import Carried, Processor, Stop, System
 
 from .transport import Transfer, transfers
 
-__all__ = ["Delivery", "Hop", "Latencies", "Latency", "deliveries"]
+__all__ = ["Delivery", "HopKind", "Latencies", "Latency", "deliveries"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,14 +140,15 @@ class Latencies:
         view_of = replace(found, responses=responses, best=best)
         return cls(system, view, view_of, places, travels)
 
-    def along(self, name: str, way: Sequence[str], reaction: int = 0, age: int = 0) -> Latency:
+    def along(self, name: str, way: Sequence[Stop], reaction: int = 0, age: int = 0) -> Latency:
         """The latency of a way, which lists messages, ports, rows and data."""
-        steps: list[Step] = []
+        steps: list[ChainStep] = []
         released = dict(self.network.released_by)
         kept = ""  # why a job may leave what comes next as it was
-        for place, following in zip_longest(way, way[1:], fillvalue=""):
-            if place.startswith("message "):
-                found = named(self.system.messages, place.removeprefix("message "))
+        following: Stop | None
+        for place, following in zip(way, (*way[1:], None), strict=True):
+            if isinstance(place, Carried):
+                found = named(self.system.messages, place.message)
                 received = self.system.reception(found, following)
                 steps += _of_message(found, received, steps, released)
                 steps[-1] = self._whole(steps[-1], received)
@@ -165,9 +165,9 @@ class Latencies:
         if kept:
             steps[-1] = replace(steps[-1], keeps=kept)
         network = replace(self.network, released_by=released)
-        return latency(Chain(name, tuple(steps), reaction, age), network, self.found)
+        return latency(TimedChain(name, tuple(steps), reaction, age), network, self.found)
 
-    def _whole(self, step: Step, received: Reception | None) -> Step:
+    def _whole(self, step: ChainStep, received: Reception | None) -> ChainStep:
         """The handing over of a value in several frames: one at a time travels."""
         travel = None if received is None else self.travels.get(received.element)
         if travel is None or travel.cycle is None:
@@ -182,12 +182,12 @@ class Latencies:
                 return port
         return None
 
-    def _kept(self, row: str, following: str) -> str:
+    def _kept(self, row: str, following: Stop | None) -> str:
         """Why jobs of a row may leave what it leads to as it was; "" where none does."""
         owner, _, name = row.partition(".")
         component = self.system.instance(owner).component
         item = named(component.runnables(), name)
-        if not following or component.renews(item, following.rpartition(".")[2]):
+        if following is None or component.renews(item, str(following).rpartition(".")[2]):
             return ""
         return f"{row} gives {following} a new value in some of its jobs only"
 
@@ -196,22 +196,22 @@ class Latencies:
         row: str,
         port: Port | None,
         place: str,
-        steps: Sequence[Step],
+        steps: Sequence[ChainStep],
         released: dict[str, str],
-    ) -> Step:
+    ) -> ChainStep:
         """A row: later in the same job as the step before, or at its own times."""
         queued = port is not None and port.kind is PortKind.QUEUED and bool(steps)
         senders = self._senders(place) if queued else ()
         puts = max((getattr(one, "steps_per_execution", 1) for one in senders), default=1)
         before = steps[-1].name if steps else ""
-        made = Step(row, Hop.QUEUED if queued else Hop.SAMPLED, puts=puts)
+        made = ChainStep(row, HopKind.QUEUED if queued else HopKind.SAMPLED, puts=puts)
         if before in self.rows and row in self.rows and puts == 1 and len(senders) < 2:
             (processor, first), (other, then) = self.rows[before], self.rows[row]
             divisors = {processor.slots[first].divisor, other.slots[then].divisor}
             phases = {processor.slots[first].phase, other.slots[then].phase}
             if processor is other and first < then and len(divisors) == len(phases) == 1:
                 released[row] = before
-                made = Step(row, Hop.RELEASED)
+                made = ChainStep(row, HopKind.RELEASED)
         if len(senders) > 1:
             names = " and ".join(sender.name for sender in senders)
             made = replace(made, waits=f"{names} both send to {place}, which gives one in a job")
@@ -241,8 +241,11 @@ def _sending(system: System) -> set[str]:
 
 
 def _of_message(
-    message: Message, received: Reception | None, steps: Sequence[Step], released: dict[str, str]
-) -> list[Step]:
+    message: Message,
+    received: Reception | None,
+    steps: Sequence[ChainStep],
+    released: dict[str, str],
+) -> list[ChainStep]:
     """The driver's work and the frame, then its reception where there is one."""
     names = [message.element]
     mode = message.transmission
@@ -256,7 +259,7 @@ def _of_message(
     if mode is not None:
         keeps = "" if mode.longest is not None else f"{message.name} is sent {mode.words} only"
         longest = mode.longest or 0
-    steps_made = [Step(name, Hop.RELEASED, longest=longest) for name in names]
+    steps_made = [ChainStep(name, HopKind.RELEASED, longest=longest) for name in names]
     return [*steps_made[:-1], replace(steps_made[-1], keeps=keeps)]
 
 

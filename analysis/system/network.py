@@ -17,7 +17,7 @@ from ravenchart.analysis.core.bus import Bus, Errors, Frame
 from ravenchart.analysis.core.frames import Bits, classic_bits, fd_bits, rank
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
-from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.tasks import TableRow, Task
 from ravenchart.gen.model import buses, nodes
 from ravenchart.gen.model import system as model
 from ravenchart.gen.model.buses import Message
@@ -56,7 +56,7 @@ def network_of(system: System) -> Network:
 def _task(task: model.Task, system: System) -> Task:
     """A processor with its table, or a task whose jobs are all alike."""
     rows = tuple(
-        Row(slot.element, slot.timing.wcet, slot.divisor, slot.phase) for slot in task.slots
+        TableRow(slot.element, slot.timing.wcet, slot.divisor, slot.phase) for slot in task.slots
     )
     return Task(
         name=task.element,

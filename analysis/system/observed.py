@@ -33,7 +33,7 @@ class TraceError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Element:
+class NumberedElement:
     """One numbered element; ``leaves`` are a region's or bus's, ``transitions`` a region's."""
 
     number: int
@@ -50,27 +50,27 @@ class TraceMap:
 
     system: str
     digest: str
-    elements: Mapping[int, Element]
+    elements: Mapping[int, NumberedElement]
 
-    def named(self, name: str, kind: str) -> Element:
+    def named(self, name: str, kind: str) -> NumberedElement:
         """The element of that kind and name, whatever their case; KeyError where none is."""
         for element in self.elements.values():
             if element.kind == kind and element.name.lower() == name.lower():
                 return element
         raise KeyError(name)
 
-    def of_kind(self, kind: str) -> tuple[Element, ...]:
+    def of_kind(self, kind: str) -> tuple[NumberedElement, ...]:
         """The elements of one kind, by number."""
         return tuple(e for _, e in sorted(self.elements.items()) if e.kind == kind)
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class TraceRecord:
     """One T line; ``kind`` in lower case, ``text`` the state or transition it tells of."""
 
     time: Ns
     kind: str
-    element: Element
+    element: NumberedElement
     value: int
 
     @property
@@ -108,7 +108,7 @@ class Observation:
     """Everything that one trace file says; keys are element names or words of the file."""
 
     map: TraceMap
-    records: list[Record] = field(default_factory=list)
+    records: list[TraceRecord] = field(default_factory=list)
     processors: dict[str, Releases] = field(default_factory=dict)
     executions: dict[str, Ns] = field(default_factory=dict)
     faults: dict[str, int] = field(default_factory=dict)
@@ -150,7 +150,7 @@ class Observation:
         """Time of the last record."""
         return self.records[-1].time if self.records else Ns(0)
 
-    def of(self, kind: str, element: str) -> tuple[Record, ...]:
+    def of(self, kind: str, element: str) -> tuple[TraceRecord, ...]:
         """The records of one kind about one element, in order."""
         wanted = element.lower()
         return tuple(r for r in self.records if r.kind == kind and r.element.name.lower() == wanted)
@@ -222,7 +222,7 @@ def together(parts: Mapping[str, Observation]) -> Observation:
     those of their node, in front of whose words its name stands.
     """
     first = min(part.start for part in parts.values())
-    elements: dict[int, Element] = {}
+    elements: dict[int, NumberedElement] = {}
     whole = Observation(TraceMap("", "", elements), start=first, complete=True)
     for node, part in parts.items():
         own = {e: replace(e, number=e.number + len(elements)) for e in part.map.elements.values()}
@@ -276,21 +276,21 @@ def _take(words: list[str], seen: Observation) -> None:
             raise ValueError(f"not a trace line: {' '.join(words)[:60]!r}")
 
 
-def _record(time: str, kind: str, number: str, value: str, trace_map: TraceMap) -> Record:
+def _record(time: str, kind: str, number: str, value: str, trace_map: TraceMap) -> TraceRecord:
     """One T line."""
     if kind.lower() not in KINDS:
         raise ValueError(f"unknown kind {kind!r}")
     name = kind.lower()
     regions = {"state": ("region", "bus"), "transition": ("region",)}.get(name, ())
     element = _known(number, trace_map, *regions)
-    record = Record(Ns(_number(time)), name, element, _number(value))
+    record = TraceRecord(Ns(_number(time)), name, element, _number(value))
     choices = {"state": element.leaves, "transition": element.transitions}.get(name)
     if choices is not None and not 0 <= record.value < len(choices):
         raise ValueError(f"{element.name} has no {name} number {value}")
     return record
 
 
-def _known(number: str, trace_map: TraceMap, *kinds: str) -> Element:
+def _known(number: str, trace_map: TraceMap, *kinds: str) -> NumberedElement:
     """The element with that number, of one of those kinds where any are given."""
     element = trace_map.elements.get(_number(number))
     if element is None:
@@ -301,9 +301,9 @@ def _known(number: str, trace_map: TraceMap, *kinds: str) -> Element:
     return element
 
 
-def _element(item: Any) -> Element:
+def _element(item: Any) -> NumberedElement:
     """One element of the map."""
-    return Element(
+    return NumberedElement(
         number=int(item["id"]),
         name=str(item["element"]),
         kind=str(item["kind"]),

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from ravenchart.analysis.core import holistic
 from ravenchart.analysis.core.can_response import FrameResponse
@@ -15,16 +16,18 @@ from ravenchart.analysis.core.responses import Level, Response, RowResponse
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling
 from ravenchart.analysis.core.tasks import plain
 from ravenchart.gen.model.buses import Bus, Message
-from ravenchart.gen.model.system import Chain, System
+from ravenchart.gen.model.system import Chain, Stop, System
 from ravenchart.gen.model.system import Task as ModelTask
 from ravenchart.gen.origins import Origin
 
 from . import latencies
 from .depths import Depth, depths
-from .graph import Ways
 from .latencies import Delivery, Latencies
 from .network import network_of
 from .transport import Transfer, transfers
+
+if TYPE_CHECKING:
+    from .graph import Ways
 
 FACTOR_STEPS = 1000
 """Factors of execution times are counted in 1 / this."""
@@ -175,6 +178,8 @@ class Analysis:
     @cached_property
     def ways(self) -> Ways:
         """The ways that values can take."""
+        from .graph import Ways  # only here: its graphs take longer to import than all of this
+
         return Ways.of(self.system)
 
     @cached_property
@@ -191,9 +196,9 @@ class Analysis:
     def _latencies(self) -> Latencies:
         return Latencies.of(self.system, self.network, self.found, self.deliveries)
 
-    def latency(self, way: Sequence[str]) -> latencies.Latency:
+    def latency(self, way: Sequence[Stop]) -> latencies.Latency:
         """The latency of a way, which lists messages, ports, rows and data."""
-        return self._latencies.along(f"{way[0]} to {way[-1]}".replace("message ", ""), way)
+        return self._latencies.along(f"{way[0]} to {way[-1]}", way)
 
     @cached_property
     def limited(self) -> tuple[tuple[Chain, latencies.Latency], ...]:

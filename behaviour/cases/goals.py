@@ -23,15 +23,15 @@ from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Transition, When
 from ravenchart.gen.origins import Origin
 
-Element = tuple[str, str, str]
+GoalElement = tuple[str, str, str]
 """Component, region, and transition or state."""
 WHEN = ".when"
 """Behind the name of a transition: the condition that triggers it, and not its guard."""
-Evaluation = tuple[tuple[bool | None, ...], bool]
+GuardValues = tuple[tuple[bool | None, ...], bool]
 """The conditions of a decision, None where it did not come to one, and the outcome."""
 
 
-class Kind(Enum):
+class GoalKind(Enum):
     """What a goal is about; the value names it in a report."""
 
     TAKEN = "transitions taken"
@@ -45,8 +45,8 @@ class Kind(Enum):
 class Goal:
     """One thing to be shown. ``detail``: number of the condition, or the event."""
 
-    kind: Kind
-    element: Element
+    kind: GoalKind
+    element: GoalElement
     origin: Origin
     state: str
     """That must be active."""
@@ -58,13 +58,13 @@ class Goal:
         place = f"{component}.{region}.{name.removesuffix(WHEN)}"
         decision = "trigger" if name.endswith(WHEN) else "guard"
         match self.kind:
-            case Kind.TAKEN:
+            case GoalKind.TAKEN:
                 return f"{place} is taken"
-            case Kind.TRUE:
+            case GoalKind.TRUE:
                 return f"the {decision} of {place} is true"
-            case Kind.FALSE:
+            case GoalKind.FALSE:
                 return f"the {decision} of {place} is false"
-            case Kind.CONDITION:
+            case GoalKind.CONDITION:
                 assert isinstance(self.detail, int)
                 return f"condition {self.detail + 1} of the {decision} of {place} decides it"
         return f"{self.detail} is deferred in {place}"
@@ -78,13 +78,13 @@ def goals(component: Component) -> Iterator[Goal]:
         for state in region.states:
             for event in state.defers:
                 element = component.name, region.name, state.name
-                yield Goal(Kind.DEFERRED, element, state.origin, state.name, event)
+                yield Goal(GoalKind.DEFERRED, element, state.origin, state.name, event)
 
 
 def _of_transition(component: str, region: str, transition: Transition) -> Iterator[Goal]:
     element = component, region, transition.name
     here = transition.origin, transition.source
-    yield Goal(Kind.TAKEN, element, *here)
+    yield Goal(GoalKind.TAKEN, element, *here)
     decisions = [(transition.name, transition.guard)]
     if isinstance(transition.trigger, When):
         decisions.append((transition.name + WHEN, transition.trigger.condition))
@@ -92,11 +92,11 @@ def _of_transition(component: str, region: str, transition: Transition) -> Itera
         if expression is None:
             continue
         decided = component, region, name
-        yield Goal(Kind.TRUE, decided, *here)
-        yield Goal(Kind.FALSE, decided, *here)
+        yield Goal(GoalKind.TRUE, decided, *here)
+        yield Goal(GoalKind.FALSE, decided, *here)
         count = _conditions(expression)
         if count > 1:
-            yield from (Goal(Kind.CONDITION, decided, *here, n) for n in range(count))
+            yield from (Goal(GoalKind.CONDITION, decided, *here, n) for n in range(count))
 
 
 def _parts(expression: Expression) -> tuple[Expression, ...]:
@@ -115,7 +115,7 @@ def _conditions(expression: Expression) -> int:
     return sum(map(_conditions, parts)) if parts else 1
 
 
-def evaluated(expression: Expression, view: View) -> Evaluation:
+def evaluated(expression: Expression, view: View) -> GuardValues:
     """A guard and its conditions, evaluated as the generated code does: no further than needed."""
     parts = _parts(expression)
     if not parts:
@@ -143,31 +143,31 @@ def _unknown(expression: Expression) -> tuple[None, ...]:
 
 
 @dataclass(slots=True)
-class Coverage:
+class GoalCoverage:
     """What executions have shown. ``size`` grows with each thing that is new."""
 
-    taken: set[Element] = field(default_factory=set)
-    evaluations: dict[Element, set[Evaluation]] = field(default_factory=dict)
-    deferred: set[tuple[Element, str]] = field(default_factory=set)
+    taken: set[GoalElement] = field(default_factory=set)
+    evaluations: dict[GoalElement, set[GuardValues]] = field(default_factory=dict)
+    deferred: set[tuple[GoalElement, str]] = field(default_factory=set)
     size: int = 0
 
-    def take(self, element: Element) -> None:
+    def take(self, element: GoalElement) -> None:
         """A transition was taken."""
         self.size += element not in self.taken
         self.taken.add(element)
 
-    def decide(self, element: Element, evaluation: Evaluation) -> None:
+    def decide(self, element: GoalElement, evaluation: GuardValues) -> None:
         """A guard was evaluated."""
         known = self.evaluations.setdefault(element, set())
         self.size += evaluation not in known
         known.add(evaluation)
 
-    def defer(self, element: Element, event: str) -> None:
+    def defer(self, element: GoalElement, event: str) -> None:
         """A state deferred an event."""
         self.size += (element, event) not in self.deferred
         self.deferred.add((element, event))
 
-    def join(self, other: Coverage) -> None:
+    def join(self, other: GoalCoverage) -> None:
         """What others have shown, too."""
         for element in other.taken:
             self.take(element)
@@ -179,18 +179,18 @@ class Coverage:
 
     def shows(self, goal: Goal) -> bool:
         """Whether a goal is met."""
-        if goal.kind is Kind.TAKEN:
+        if goal.kind is GoalKind.TAKEN:
             return goal.element in self.taken
-        if goal.kind is Kind.DEFERRED:
+        if goal.kind is GoalKind.DEFERRED:
             return (goal.element, goal.detail) in self.deferred
         known = self.evaluations.get(goal.element, set())
-        if goal.kind is Kind.CONDITION:
+        if goal.kind is GoalKind.CONDITION:
             assert isinstance(goal.detail, int)
             return any(_decides(goal.detail, *pair) for pair in combinations(known, 2))
-        return any(outcome is (goal.kind is Kind.TRUE) for _, outcome in known)
+        return any(outcome is (goal.kind is GoalKind.TRUE) for _, outcome in known)
 
 
-def _decides(number: int, one: Evaluation, other: Evaluation) -> bool:
+def _decides(number: int, one: GuardValues, other: GuardValues) -> bool:
     """Whether two evaluations show that a condition decides by itself."""
     if one[1] is other[1] or {one[0][number], other[0][number]} != {True, False}:
         return False

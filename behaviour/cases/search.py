@@ -24,7 +24,7 @@ from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.statechart import OnEvent
 from ravenchart.gen.model.system import Slot, System
 
-from .goals import Coverage, Element, Goal, Kind, goals
+from .goals import Goal, GoalCoverage, GoalElement, GoalKind, goals
 from .stimulation import Choice, choices
 from .watched import branched, watched
 
@@ -43,7 +43,7 @@ COMPARED = 6
 ALIKE = 6
 """Branches kept of one condition of the system."""
 
-Entry = Raised | Arrived
+Stimulus = Raised | Arrived
 Instant = tuple[Ns, list[Slot]]
 
 
@@ -53,7 +53,7 @@ class Branch:
 
     machine: Machine
     at: int
-    entries: tuple[Entry, ...]
+    entries: tuple[Stimulus, ...]
     tries: int = 0
 
 
@@ -61,11 +61,11 @@ class Branch:
 class Feed:
     """A value that comes again and again, ``apart`` in ns."""
 
-    entry: Entry
+    entry: Stimulus
     apart: int
     next: int = 0
 
-    def due(self, now: Ns) -> Iterator[Entry]:
+    def due(self, now: Ns) -> Iterator[Stimulus]:
         """The value, where it is time."""
         if now >= self.next:
             self.next = now + self.apart
@@ -73,7 +73,7 @@ class Feed:
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class FoundCase:
     """Stimuli, and the goals that this case is the first of all to show."""
 
     stimuli: Stimuli
@@ -84,7 +84,7 @@ class Case:
 class Found:
     """The cases, and the goals that none of them shows."""
 
-    cases: list[Case]
+    cases: list[FoundCase]
     goals: list[Goal]
     open: list[Goal]
     executed: int
@@ -92,14 +92,14 @@ class Found:
     """One for each pseudostate that was met without a way out; the model is wrong."""
 
 
-class Search:
+class CaseSearch:
     """One search over a system."""
 
     def __init__(self, system: System, effort: int = EFFORT) -> None:
         """Nothing is shown yet."""
         self.system, self.effort = system, effort
         self.chance = random.Random(system.name)
-        self.coverage = Coverage()
+        self.coverage = GoalCoverage()
         self.goals = [
             goal
             for component in {i.component.name: i.component for i in system.instances}.values()
@@ -110,7 +110,7 @@ class Search:
         self.instants: list[Instant] = []
         start = watched(system, self.coverage)
         self._coming = start.instants(Ns(2**62))
-        self.near: dict[Element, list[Branch]] = {}
+        self.near: dict[GoalElement, list[Branch]] = {}
         """By component, region and active state."""
         self.known: dict[object, list[Branch]] = {}
         """By the condition of the system."""
@@ -144,7 +144,7 @@ class Search:
         some = [self.chance.choice(pool) for _ in range(COMPARED)]
         return min(some, key=lambda one: one.tries)
 
-    def _keep(self, machine: Machine, at: int, entries: tuple[Entry, ...]) -> None:
+    def _keep(self, machine: Machine, at: int, entries: tuple[Stimulus, ...]) -> None:
         """A branch, unless there are enough that are like it."""
         key = tuple(
             (name, *self._condition(run)) for name, run in sorted(machine.instances.items())
@@ -159,7 +159,7 @@ class Search:
         for place in self._active(branch):
             self.near.setdefault(place, []).append(branch)
 
-    def _active(self, branch: Branch) -> dict[Element, str]:
+    def _active(self, branch: Branch) -> dict[GoalElement, str]:
         """The active states of each component and region, each with an instance."""
         return {
             (run.component.name, region.region.name, state): name
@@ -218,7 +218,7 @@ class Search:
                 feeds.append(Feed(entry, one.max_age // 2))
         return feeds
 
-    def _drawn(self, branch: Branch, now: Ns) -> tuple[Entry, ...]:
+    def _drawn(self, branch: Branch, now: Ns) -> tuple[Stimulus, ...]:
         """What comes from outside at an instant: nothing, one thing or two."""
         wanted = self._wanted(branch)
         some = self.chance.choices((0, 1, 2), (2, 6, 1))[0]
@@ -231,7 +231,7 @@ class Search:
         """What triggers, from the active states, something that is open."""
         names = set()
         for instance, goal in self._near(branch):
-            if goal.kind is Kind.DEFERRED:
+            if goal.kind is GoalKind.DEFERRED:
                 names.add((instance, str(goal.detail)))
                 continue
             _, region, name = goal.element
@@ -273,10 +273,10 @@ class Search:
 
     # --- the cases
 
-    def _chosen(self) -> Iterator[Case]:
+    def _chosen(self) -> Iterator[FoundCase]:
         """Few paths that show together what all have shown, those that show most first."""
         shown = [(path, self._replayed(path)) for path in self.paths]
-        total, left = Coverage(), [g for g in self.goals if self.coverage.shows(g)]
+        total, left = GoalCoverage(), [g for g in self.goals if self.coverage.shows(g)]
         for path, coverage in sorted(shown, key=lambda one: (-one[1].size, one[0].until)):
             before = total.size
             total.join(coverage)
@@ -285,11 +285,11 @@ class Search:
             met = tuple(goal for goal in left if total.shows(goal))
             if met:
                 left = [goal for goal in left if goal not in met]
-                yield Case(path, met)
+                yield FoundCase(path, met)
 
-    def _replayed(self, path: Stimuli) -> Coverage:
+    def _replayed(self, path: Stimuli) -> GoalCoverage:
         """What one path shows by itself."""
-        coverage = Coverage()
+        coverage = GoalCoverage()
         for _ in watched(self.system, coverage).run(path):
             pass
         return coverage

@@ -11,14 +11,14 @@ from ravenchart.behaviour.interpreter.region import Happened, Nothing, Occurrenc
 from ravenchart.gen.model.statechart import Transition, When
 from ravenchart.gen.model.system import System
 
-from .goals import WHEN, Coverage, evaluated
+from .goals import WHEN, GoalCoverage, evaluated
 
 
 class WatchedRegion(RegionRun):
     """A region that notes what it shows, for its component."""
 
     component: str
-    coverage: Coverage
+    coverage: GoalCoverage
 
     def _lets_through(self, transition: Transition) -> bool:
         if transition.guard is None:
@@ -45,7 +45,7 @@ class WatchedRegion(RegionRun):
         super()._defer(event)
 
 
-def watched(system: System, coverage: Coverage) -> Machine:
+def watched(system: System, coverage: GoalCoverage) -> Machine:
     """The system before its epoch; what its charts show goes to ``coverage``."""
     machine = Machine(system, WatchedRegion)
     for instance in machine.instances.values():

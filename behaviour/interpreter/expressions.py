@@ -33,7 +33,7 @@ TRUE, FALSE = "True", "False"
 
 
 @dataclass(frozen=True, slots=True)
-class Port:
+class PortReading:
     """An input port as its readers see it; ``state`` is worded as the test for it."""
 
     value: Value
@@ -48,7 +48,7 @@ class View:
 
     data: dict[str, Value]
     parameters: Mapping[str, Scalar]
-    ports: Mapping[str, Port]
+    ports: Mapping[str, PortReading]
     active: Mapping[str, frozenset[str]]
     """The states that each region last published as active."""
     event: Value | None = None

@@ -13,22 +13,21 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 
 from ravenchart.gen.language.terms import Ns, Value
-from ravenchart.gen.model.component import Activity, PortKind
-from ravenchart.gen.model.component import Port as InputPort
+from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.statechart import DONE, OnEvent, Overflow, Region
 from ravenchart.gen.model.system import Slot, System, Work
 
-from .expressions import Outbox, Port, View, default, perform
+from .expressions import Outbox, PortReading, View, default, perform
 from .region import RegionRun
 from .stimuli import Arrived, Raised, Stimuli
-from .traces import Record
+from .traces import StepRecord
 
 
 class Mailbox:
     """What has arrived at an input port and waits for the handler."""
 
-    def __init__(self, port: InputPort) -> None:
+    def __init__(self, port: Port) -> None:
         """An empty one; that of a sampled port keeps the last value."""
         sampled = port.kind is PortKind.SAMPLED
         self.depth = 1 if sampled else port.depth
@@ -57,7 +56,9 @@ class InstanceRun:
         self.component = instance.component
         self.parameters = dict(instance.parameters)
         self.data = {data.name: data.initial for data in self.component.data}
-        self.ports = {port.name: Port(default(port.type)) for port in self.component.inputs()}
+        self.ports = {
+            port.name: PortReading(default(port.type)) for port in self.component.inputs()
+        }
         self.mailboxes = {port.name: Mailbox(port) for port in self.component.inputs()}
         policies = {e.name: e.overflow for e in self.component.events if e.overflow is not None}
         self.regions = {
@@ -104,12 +105,14 @@ class InstanceRun:
                 mailbox.has_lost = False
             if mailbox.waiting:
                 value = mailbox.waiting.popleft()
-                self.ports[port.name] = Port(value, "fresh")
+                self.ports[port.name] = PortReading(value, "fresh")
                 happened.append((port.on_arrival, value))
             elif before.state != "never_received":
                 age = before.age + 1
                 old = port.max_age is not None and age > port.max_age // timing.period
-                self.ports[port.name] = Port(before.value, "stale" if old else before.state, age)
+                self.ports[port.name] = PortReading(
+                    before.value, "stale" if old else before.state, age
+                )
                 if old and before.state == "fresh":
                     happened.append((port.on_stale, None))
             for event, value_of_event in happened:
@@ -138,7 +141,7 @@ class Machine:
         self.system = system
         self.instances = {one.name: InstanceRun(one, region_run) for one in system.instances}
 
-    def run(self, stimuli: Stimuli) -> Iterator[Record]:
+    def run(self, stimuli: Stimuli) -> Iterator[StepRecord]:
         """Everything up to the last instant: the steps that executed a behaviour."""
         coming = deque(stimuli.entries)
         for now, slots in self.instants(stimuli.until):
@@ -149,7 +152,7 @@ class Machine:
 
     def execute(
         self, now: Ns, slots: Iterable[Slot], entries: Iterable[Raised | Arrived] = ()
-    ) -> Iterator[Record]:
+    ) -> Iterator[StepRecord]:
         """What happens at one of the instants: what comes from outside, then the rows."""
         for entry in entries:
             self._take(entry)
@@ -181,7 +184,7 @@ class Machine:
     def _put(self, end: End, value: Value) -> None:
         self.instances[end.instance].mailboxes[end.port].put(value)
 
-    def _execute(self, now: Ns, slot: Slot) -> Iterator[Record]:
+    def _execute(self, now: Ns, slot: Slot) -> Iterator[StepRecord]:
         """One execution of a row."""
         match slot.work:
             case Work.PORT_REGION:
@@ -195,7 +198,7 @@ class Machine:
             case Work.BUS_RECEIVE | Work.BUS_WATCH:
                 pass
 
-    def _run_region(self, now: Ns, own: InstanceRun, name: str) -> Iterator[Record]:
+    def _run_region(self, now: Ns, own: InstanceRun, name: str) -> Iterator[StepRecord]:
         run = own.regions[name]
         view = own.view()
         run.begin()
@@ -205,7 +208,7 @@ class Machine:
             if step.lost and run.region.on_overflow is not None:
                 own.offer(run.region.on_overflow, None)
             if step.behaviours:
-                yield Record(now, own.instance.name, name, tuple(step.behaviours))
+                yield StepRecord(now, own.instance.name, name, tuple(step.behaviours))
         run.publish()
         own.publish(view, run.region.writes)
 

@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ravenchart.behaviour.tree import TOP, Place, Tree
+from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
 from ravenchart.gen.language.terms import Flow, Value
 from ravenchart.gen.model.statechart import (
     After,
@@ -79,7 +79,7 @@ Occurrence = Completed | TimeOut | Happened | Nothing
 
 
 @dataclass(frozen=True, slots=True)
-class Goal:
+class NamedGoal:
     """A vertex to enter, and the segment of a fork that leads to it."""
 
     vertex: str
@@ -87,14 +87,14 @@ class Goal:
 
 
 @dataclass(frozen=True, slots=True)
-class Firing:
+class ExecutedTransition:
     """A compound transition, ready to fire: its guards have been read."""
 
     source: str
-    scope: Place
+    scope: RegionKey
     """Everything in this place is left."""
     effects: tuple[Transition, ...]
-    goals: tuple[Goal, ...]
+    goals: tuple[NamedGoal, ...]
     internal: bool = False
 
 
@@ -129,11 +129,11 @@ class RegionRun:
     ) -> None:
         """Before its first execution; ``overflow`` is the policy of events that have their own."""
         self.region = region
-        self.tree = Tree(region)
+        self.tree = ChartTree(region)
         self.overflow = overflow
         self.works_in = frozenset(works_in)
-        self.active: dict[Place, str] = {}
-        self.history: dict[Place, str] = {}
+        self.active: dict[RegionKey, str] = {}
+        self.history: dict[RegionKey, str] = {}
         """The leaf that was left last in a place."""
         self.timers: dict[str, int] = {}
         """Transitions with a running time-out: the execution in which it is due."""
@@ -189,7 +189,7 @@ class RegionRun:
             assert isinstance(occurrence, Happened)
             self._defer(occurrence)
         else:
-            self._fire_all([one for one in selected if isinstance(one, Firing)])
+            self._fire_all([one for one in selected if isinstance(one, ExecutedTransition)])
         return self._step
 
     def publish(self) -> None:
@@ -241,7 +241,9 @@ class RegionRun:
 
     # --- selection
 
-    def _selected(self, place: Place, occurrence: Occurrence) -> Iterator[Firing | Deferral]:
+    def _selected(
+        self, place: RegionKey, occurrence: Occurrence
+    ) -> Iterator[ExecutedTransition | Deferral]:
         """What the occurrence enables in a place: inside the active state, or else its own."""
         state = self.active.get(place)
         if state not in self.tree.states:
@@ -273,29 +275,29 @@ class RegionRun:
                 return holds(condition, self._view)
         return False
 
-    def _enabled(self, first: Transition) -> Firing | None:
+    def _enabled(self, first: Transition) -> ExecutedTransition | None:
         """The compound transition that begins with ``first``, when all its guards hold."""
         if not self._lets_through(first):
             return None
         if first.kind is TransitionKind.INTERNAL:
             place = self.tree.place(first.source)
-            return Firing(first.source, place, (first,), (), internal=True)
+            return ExecutedTransition(first.source, place, (first,), (), internal=True)
         path = self._path((first,))
         if path is None:
             return None
         target = path[-1].target
-        goals: tuple[Goal, ...] = (Goal(target),)
+        goals: tuple[NamedGoal, ...] = (NamedGoal(target),)
         if self.tree.kind(target) is PseudoKind.FORK:
-            goals = tuple(Goal(s.target, s) for s in self.tree.leaving[target])
+            goals = tuple(NamedGoal(s.target, s) for s in self.tree.leaving[target])
         ends = [goal.vertex for goal in goals]
         sources = [t.source for t in path if t.source in self.tree.states] or [first.source]
         scope = self.tree.common([*sources, *ends])
         if first.kind is TransitionKind.LOCAL:
             within = [p for p in self.tree.nested(first.source) if self._is_in(p, *ends)]
             scope = within[0] if within else scope
-        return Firing(first.source, scope, path, goals)
+        return ExecutedTransition(first.source, scope, path, goals)
 
-    def _is_in(self, place: Place, *vertices: str) -> bool:
+    def _is_in(self, place: RegionKey, *vertices: str) -> bool:
         return all(place in self.tree.places(vertex) for vertex in vertices)
 
     def _path(self, taken: tuple[Transition, ...]) -> tuple[Transition, ...] | None:
@@ -327,9 +329,9 @@ class RegionRun:
 
     # --- firing
 
-    def _fire_all(self, selected: Sequence[Firing]) -> None:
+    def _fire_all(self, selected: Sequence[ExecutedTransition]) -> None:
         """Fire in order, without those that conflict with one that has fired."""
-        fired: list[Firing] = []
+        fired: list[ExecutedTransition] = []
         for firing in selected:
             leaves = {s for s in self.tree.around(firing.source) if self._is_in(firing.scope, s)}
             conflicts = firing.source in self._left or any(
@@ -340,7 +342,7 @@ class RegionRun:
                 self._settle()
                 fired.append(firing)
 
-    def _fire(self, firing: Firing) -> None:
+    def _fire(self, firing: ExecutedTransition) -> None:
         if not firing.internal:
             self._exit_place(firing.scope)
         for transition in firing.effects:
@@ -364,7 +366,7 @@ class RegionRun:
         message = f"{self.region.name} goes from pseudostate to pseudostate without end"
         raise Stuck(self.region.origin, message)
 
-    def _passing(self, place: Place) -> Iterator[str]:
+    def _passing(self, place: RegionKey) -> Iterator[str]:
         """The pseudostates that are active, in model order."""
         vertex = self.active.get(place)
         if vertex in self.tree.pseudo:
@@ -373,7 +375,7 @@ class RegionRun:
             for nested in self.tree.nested(vertex):
                 yield from self._passing(nested)
 
-    def _way_out(self, vertex: str) -> Firing:
+    def _way_out(self, vertex: str) -> ExecutedTransition:
         """The first enabled segment from a pseudostate."""
         for segment in self.tree.leaving[vertex]:
             firing = self._enabled(segment)
@@ -394,9 +396,9 @@ class RegionRun:
         elif last is not None:
             goals = [self.tree.towards(place, last)]
         del self.active[place]
-        self._enter_place(place, tuple(Goal(goal) for goal in goals))
+        self._enter_place(place, tuple(NamedGoal(goal) for goal in goals))
 
-    def _recorded(self, place: Place) -> list[str]:
+    def _recorded(self, place: RegionKey) -> list[str]:
         """The leaves that deep history finds in a place; none: enter it by default."""
         last = self.history.get(place)
         if last is None:
@@ -409,7 +411,7 @@ class RegionRun:
 
     # --- leaving and entering
 
-    def _exit_place(self, place: Place) -> None:
+    def _exit_place(self, place: RegionKey) -> None:
         vertex = self.active.get(place)
         if vertex in self.tree.states:
             self._exit(vertex)
@@ -434,19 +436,19 @@ class RegionRun:
             if state.final:
                 del self.history[self.tree.place(name)]
 
-    def _enter_place(self, place: Place, goals: Sequence[Goal]) -> None:
+    def _enter_place(self, place: RegionKey, goals: Sequence[NamedGoal]) -> None:
         """Enter a place on the way to goals in it, or by default when there is none."""
         if not goals:
             goals = (self._initial(place),)
         elif len(goals) == 1 and goals[0].segment is not None:
             self._effect(goals[0].segment)
-            goals = (Goal(goals[0].vertex),)
+            goals = (NamedGoal(goals[0].vertex),)
         vertex = self.tree.towards(place, goals[0].vertex)
         self.active[place] = vertex
         if vertex in self.tree.states:
             self._enter(vertex, [goal for goal in goals if goal.vertex != vertex])
 
-    def _initial(self, place: Place) -> Goal:
+    def _initial(self, place: RegionKey) -> NamedGoal:
         """Take the initial transition of a place."""
         owner, name = place
         if owner is None:
@@ -455,9 +457,9 @@ class RegionRun:
             initial, shown = self.tree.states[owner].nested(name).initial, name or owner
         if initial.effect:
             self._behave(f"initial({shown}).effect", initial.effect)
-        return Goal(initial.target)
+        return NamedGoal(initial.target)
 
-    def _enter(self, name: str, goals: Sequence[Goal]) -> None:
+    def _enter(self, name: str, goals: Sequence[NamedGoal]) -> None:
         state = self.tree.states[name]
         if not state.final:
             self._behave(f"{name}.entry", state.entry)

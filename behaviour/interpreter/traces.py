@@ -13,7 +13,7 @@ from ravenchart.gen.language.terms import Ns
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class StepRecord:
     """The behaviours that one step of a region executed, in order."""
 
     at: Ns
@@ -45,11 +45,11 @@ def seconds(time: Ns) -> str:
     return f"{whole}.{digits}"
 
 
-def parsed(line: str) -> Record:
-    """The record that `Record.text` printed as ``line``."""
+def parsed(line: str) -> StepRecord:
+    """The record that `StepRecord.text` printed as ``line``."""
     head, _, behaviours = line.partition(": ")
     time, _, element = head.partition(" ")
     instance, _, region = element.partition(".")
     whole, _, decimals = time.partition(".")
     at = Ns(int(whole) * 10**9 + int(decimals.ljust(9, "0")))
-    return Record(at, instance, region, tuple(behaviours.split(", ")))
+    return StepRecord(at, instance, region, tuple(behaviours.split(", ")))

@@ -8,42 +8,42 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.behaviour.limits import SECONDS, UNFINISHED, Behaviour
+from ravenchart.behaviour.limits import EFFORT, UNFINISHED, Behaviour
 from ravenchart.gen.diagnostics import Diagnostic, in_order, warning
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.system import System
 
-from .clock import Clock, OutOfTime
+from .budget import Budget, Exhausted
 from .control import RULES
 from .inductive import contracts
 from .invariants import NOT_PROVED, VIOLATED, invariants_hold
 from .livelock import eventless_steps_end
 from .outcomes import TooManyWays
-from .reach import Reach
+from .reach import Reachable
 
 
-def behaviour(system: System, seconds: float = SECONDS) -> Behaviour:
+def behaviour(system: System, effort: int = EFFORT) -> Behaviour:
     """What the behaviour of a valid model gets wrong, and the invariants for its code.
 
-    ``seconds`` are those of the search; what becomes a contract does not depend on time.
+    ``effort`` is that of the search; what becomes a contract does not depend on it.
     """
-    found = findings(system, seconds)
+    found = findings(system, effort)
     kept = contracts(system)
     open_ = {one.origin for one in found if one.code in (VIOLATED, NOT_PROVED)}
     more = (one for one in kept.found if one.origin not in open_)
     return Behaviour(in_order([*found, *more]), kept.regions)
 
 
-def findings(system: System, seconds: float = SECONDS) -> tuple[Diagnostic, ...]:
+def findings(system: System, effort: int = EFFORT) -> tuple[Diagnostic, ...]:
     """What the behaviour of a valid model gets wrong, in order of place."""
-    clock = Clock(seconds)
+    budget = Budget(effort)
     found: list[Diagnostic] = []
     for component in system.components:
         try:
-            for item in _of_component(component, system, clock):
+            for item in _of_component(component, system, budget):
                 found.append(item)
-        except OutOfTime:
-            looked = f"looked at {clock.situations} situations in {seconds:g} s of processor time"
+        except Exhausted:
+            looked = f"{budget.situations} situations took all the work that a check may take"
             found.append(_limit(component, looked))
             break
         except TooManyWays:
@@ -51,8 +51,8 @@ def findings(system: System, seconds: float = SECONDS) -> tuple[Diagnostic, ...]
     return in_order(found)
 
 
-def _of_component(component: Component, system: System, clock: Clock) -> Iterator[Diagnostic]:
-    reach = Reach(component, system, clock)
+def _of_component(component: Component, system: System, budget: Budget) -> Iterator[Diagnostic]:
+    reach = Reachable(component, system, budget)
     for thread in reach.threads:
         if thread.name in reach.published:
             for rule in (*RULES, eventless_steps_end):

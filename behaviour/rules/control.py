@@ -13,13 +13,13 @@ from ravenchart.gen.origins import Origin
 
 from . import logic
 from .logic import Term
-from .reach import Reach
-from .reasons import Reason, beaten, in_front, taken_inside
+from .reach import Reachable
+from .reasons import Obstacle, beaten, in_front, taken_inside
 from .stepping import Beaten
 from .threads import Edge, Thread
 from .words import label, reached, trace, valuation, where
 
-Rule = Callable[[Reach, Thread], Iterator[Diagnostic]]
+Rule = Callable[[Reachable, Thread], Iterator[Diagnostic]]
 
 
 def _active(thread: Thread) -> set[str]:
@@ -32,7 +32,7 @@ def _fired(thread: Thread) -> set[str]:
     return {name for edge in thread.edges for name in edge.outcome.fired}
 
 
-def _model(reach: Reach, thread: Thread, edge: Edge, condition: Term) -> Term | None:
+def _model(reach: Reachable, thread: Thread, edge: Edge, condition: Term) -> Term | None:
     """Data with which a step is made and a condition holds besides."""
     solver = logic.solver()
     solver.add(*reach.constants_over(reach.symbol), *reach.of_others(thread))
@@ -54,7 +54,7 @@ def _lost(thread: Thread) -> list[State]:
     return [s for s in states if s.parent is None or s.parent in active]
 
 
-def states_are_entered(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+def states_are_entered(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
     """Some data lead into each state."""
     tree, fired, shut_out = thread.tree, _fired(thread), _rivals(reach, thread)
     for state in _lost(thread):
@@ -84,7 +84,7 @@ def states_are_entered(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
         yield error("RV-1101", state.origin, message, notes=notes, hint=hint)
 
 
-def transitions_fire(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+def transitions_fire(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
     """Some data let each transition fire, and no earlier one always comes before it."""
     tree, fired = thread.tree, _fired(thread)
     lost = {state.name for state in _lost(thread)}
@@ -104,7 +104,7 @@ def transitions_fire(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
         yield error("RV-1102", transition.origin, message, notes=reason.notes, hint=hint)
 
 
-def _is_heard(reach: Reach, thread: Thread, transition: Transition, fired: set[str]) -> bool:
+def _is_heard(reach: Reachable, thread: Thread, transition: Transition, fired: set[str]) -> bool:
     """Whether its source is ever active, or reached by a transition, and its event ever comes."""
     tree, trigger = thread.tree, transition.trigger
     if isinstance(trigger, OnEvent) and trigger.event not in reach.events:
@@ -115,11 +115,11 @@ def _is_heard(reach: Reach, thread: Thread, transition: Transition, fired: set[s
 
 
 def _reason(
-    reach: Reach,
+    reach: Reachable,
     thread: Thread,
     transition: Transition,
     shut_out: Mapping[tuple[str, str], object],
-) -> Reason:
+) -> Obstacle:
     """Why a transition is never taken, although its source is active and its event comes."""
     tree = thread.tree
     earlier = [first for first, second in shut_out if second == transition.name]
@@ -137,7 +137,7 @@ def _reason(
     text = f"{what} in {transition.source}"
     if transition.source not in tree.kinds and not _waits(thread, transition.source):
         text = f"{transition.source} is left at once, as it is complete when entered"
-    return Reason(text, "correct its guard", "remove it", is_guard=True)
+    return Obstacle(text, "correct its guard", "remove it", is_guard=True)
 
 
 def _beaten(thread: Thread) -> Iterator[Beaten]:
@@ -153,7 +153,7 @@ def _waits(thread: Thread, state: str) -> bool:
     )
 
 
-def _rivals(reach: Reach, thread: Thread) -> dict[tuple[str, str], tuple[Edge, str]]:
+def _rivals(reach: Reachable, thread: Thread) -> dict[tuple[str, str], tuple[Edge, str]]:
     """The transitions that can both fire, with the nearest step and data that show it."""
     found: dict[tuple[str, str], tuple[Edge, str]] = {}
     for edge in thread.edges:
@@ -168,7 +168,7 @@ def _rivals(reach: Reach, thread: Thread) -> dict[tuple[str, str], tuple[Edge, s
     return found
 
 
-def guards_exclude_each_other(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+def guards_exclude_each_other(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
     """Of transitions with one source and trigger, at most one guard holds; else the first wins.
 
     A last one without guard is the rest, and is meant.
@@ -194,7 +194,7 @@ def guards_exclude_each_other(reach: Reach, thread: Thread) -> Iterator[Diagnost
 # --- Stuck ---------------------------------------------------------------------------
 
 
-def choices_have_a_way_out(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+def choices_have_a_way_out(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
     """No data leave a step in a choice without an enabled segment."""
     told: set[str] = set()
     for edge in thread.edges:
@@ -228,7 +228,7 @@ def choices_have_a_way_out(reach: Reach, thread: Thread) -> Iterator[Diagnostic]
 # --- Events that are not expected ------------------------------------------------------
 
 
-def events_are_expected(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+def events_are_expected(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
     """A warning for a state that alone among its siblings ignores an event.
 
     Only where all others, and at least three, handle or defer it: a chart that
@@ -279,7 +279,7 @@ def _listed(names: list[str]) -> str:
 # --- The safe state --------------------------------------------------------------------
 
 
-def safe_state_is_near(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+def safe_state_is_near(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
     """From each node some way leads to the safe state, guards considered."""
     tree, safe = thread.tree, thread.tree.region.safe_state
     if safe is None:

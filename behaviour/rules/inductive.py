@@ -24,20 +24,20 @@ from ravenchart.gen.language.terms import (
     Reading,
 )
 from ravenchart.gen.model.component import Component, Invariant
-from ravenchart.gen.model.safety import Fact, SafeRegion, Span, knows_guards
+from ravenchart.gen.model.safety import Fact, SafeRegion, ValueRange, knows_guards
 from ravenchart.gen.model.statechart import OnEvent, Region, Segment, Transition, When
 from ravenchart.gen.model.system import System
 
 from . import logic
 from .cells import partition
 from .logic import Term, Variable
-from .moves import Move, Place, TooManyMoves, guard_of, moves_of
-from .tree import Tree
+from .moves import ChartMove, Position, TooManyMoves, guard_of, moves_of
+from .tree import RegionTree
 
 MOST_QUESTIONS = 20_000
 """What the facts of one region may cost: the same on every machine."""
 
-Item = tuple[str, Variable]
+Held = tuple[str, Variable]
 """A vertex, and a data item of which a fact speaks there."""
 
 
@@ -179,12 +179,12 @@ class _Search:
         }
         cells = partition(component, self.types, self.initial)
         self.cells = {n: c for n, c in cells.items() if n[1] in self.region.writes}
-        self.tree = Tree(self.region)
+        self.tree = RegionTree(self.region)
         self.moves = list(moves_of(self.tree, self.symbol, self.alone))
         self.bad = {i.name: logic.term(i.condition, self.of_condition) for i in self.invariants}
         places = {move.after for move in self.moves}
         marked = {v for place in places for v in place.vertices if self.is_marked(v)}
-        self.allowed: dict[Item, set[int]] = {
+        self.allowed: dict[Held, set[int]] = {
             (vertex, name): set() for vertex in sorted(marked) for name in self.cells
         }
 
@@ -206,7 +206,7 @@ class _Search:
 
     # --- terms
 
-    def written(self, move: Move) -> list[tuple[Term, Term]]:
+    def written(self, move: ChartMove) -> list[tuple[Term, Term]]:
         """What stands for each variable after a move."""
         own = self.initial if move.before is None else {}
         pairs = {n: v for n, v in own.items() if n[1] in self.region.writes}
@@ -218,7 +218,7 @@ class _Search:
             pairs = dict(move.updates)
         return [(self.symbol(n), v) for n, v in pairs.items()]
 
-    def violated(self, name: str, place: Place) -> Term:
+    def violated(self, name: str, place: Position) -> Term:
         """That a place, as the condition sees it, violates an invariant."""
         states = [
             (self.symbol(one), z3.BoolVal(one[2] in place.active))
@@ -236,12 +236,12 @@ class _Search:
             return z3.Or([value if low else z3.Not(value) for low, _ in spans])
         return z3.Or([z3.And(value >= low, value <= high) for low, high in spans])
 
-    def before(self, move: Move) -> dict[Item | str, Term]:
+    def before(self, move: ChartMove) -> dict[Held | str, Term]:
         """What is known before a move, by the fact or invariant that says it."""
         place = move.before
         if place is None:
             return {}
-        known: dict[Item | str, Term] = {
+        known: dict[Held | str, Term] = {
             (vertex, name): self.in_cells(name, self.symbol(name), self.allowed[vertex, name])
             for vertex in place.vertices
             if self.is_marked(vertex)
@@ -249,10 +249,10 @@ class _Search:
         }
         return known | {name: z3.Not(self.violated(name, place)) for name in self.bad}
 
-    def after(self, move: Move) -> dict[Item | str, Term]:
+    def after(self, move: ChartMove) -> dict[Held | str, Term]:
         """What must hold behind a move, by the fact or invariant that says it."""
         pairs = self.written(move)
-        wanted: dict[Item | str, Term] = {
+        wanted: dict[Held | str, Term] = {
             (vertex, name): z3.substitute(
                 self.in_cells(name, self.symbol(name), self.allowed[vertex, name]), *pairs
             )
@@ -268,7 +268,7 @@ class _Search:
         """That every variable lies in its type."""
         return [logic.within(s, self.types[n]) for n, s in self.symbols.items() if n[0] != "in"]
 
-    def asked(self, terms: list[Term], tracked: Mapping[Item, Term]) -> Term:
+    def asked(self, terms: list[Term], tracked: Mapping[Held, Term]) -> Term:
         """A solver that was asked about some terms, with the tracked ones as assumptions."""
         self.questions += 1
         if self.questions > MOST_QUESTIONS:
@@ -285,13 +285,13 @@ class _Search:
 
     def run(self) -> None:
         """Allow what moves lead to until nothing more is allowed."""
-        first = Place(self.tree.default)
+        first = Position(self.tree.default)
         own = [(self.symbol(n), v) for n, v in self.initial.items()]
         for name in list(self.bad):
             if not z3.is_false(z3.simplify(z3.substitute(self.violated(name, first), *own))):
                 del self.bad[name]
         typed = self.typed()
-        leaving: dict[str, dict[int, Move]] = {}
+        leaving: dict[str, dict[int, ChartMove]] = {}
         for move in self.moves:
             for vertex in () if move.before is None else move.before.vertices:
                 leaving.setdefault(vertex, {})[id(move)] = move
@@ -308,7 +308,7 @@ class _Search:
                 for vertex in move.after.vertices:
                     waiting |= leaving.get(vertex, {})
 
-    def grows(self, move: Move, typed: list[Term]) -> bool:
+    def grows(self, move: ChartMove, typed: list[Term]) -> bool:
         """Allow one more outcome of a move; False when it has no more."""
         wanted = [one for one in self.after(move).values() if not z3.is_true(one)]
         if not wanted:
@@ -356,10 +356,10 @@ class _Search:
                     found.add(name)
         return found
 
-    def pairs(self) -> Iterator[tuple[Move, Move]]:
+    def pairs(self) -> Iterator[tuple[ChartMove, ChartMove]]:
         """Each move that is taken to be alone, with each from the same place of a lane before."""
         lanes = self.region.lanes()
-        at: dict[Place, list[Move]] = {}
+        at: dict[Position, list[ChartMove]] = {}
         for move in self.moves:
             if move.before is not None and move.path and not move.before.passing:
                 at.setdefault(move.before, []).append(move)
@@ -372,7 +372,7 @@ class _Search:
                         if before and _occur_together(move.path[0], other.path[0]):
                             yield move, other
 
-    def both(self, move: Move, other: Move, typed: list[Term]) -> list[Term]:
+    def both(self, move: ChartMove, other: ChartMove, typed: list[Term]) -> list[Term]:
         """That the guards of both hold."""
         return [*typed, guard_of(move.path, self.symbol), guard_of(other.path, self.symbol)]
 
@@ -380,8 +380,8 @@ class _Search:
 
     def facts(self) -> Iterator[Fact]:
         """The facts without which the invariants would not be inductive, in tree order."""
-        needed: set[Item] = set()
-        waiting: list[Item | str] = list(self.bad)
+        needed: set[Held] = set()
+        waiting: list[Held | str] = list(self.bad)
         typed = self.typed()
         while waiting:
             claim = waiting.pop(0)
@@ -400,15 +400,15 @@ class _Search:
             yield Fact(vertex, name[1], name[2], tuple(spans))
 
     def reasons(
-        self, move: Move, claim: Item | str, typed: list[Term], needed: set[Item]
-    ) -> set[Item]:
+        self, move: ChartMove, claim: Held | str, typed: list[Term], needed: set[Held]
+    ) -> set[Held]:
         """The facts from which it follows that a move keeps a claim."""
         wanted = self.after(move).get(claim)
         if wanted is None or z3.is_true(wanted):
             return set()
         return self.core(move, [*typed, move.condition, z3.Not(wanted)], needed)
 
-    def core(self, move: Move, terms: list[Term], needed: set[Item]) -> set[Item]:
+    def core(self, move: ChartMove, terms: list[Term], needed: set[Held]) -> set[Held]:
         """The facts about the place before a move that exclude some terms."""
         known = self.before(move)
         terms = terms + [one for key, one in known.items() if isinstance(key, str) or key in needed]
@@ -437,9 +437,9 @@ def _by_id(pairs: list[tuple[Term, Term]]) -> Iterator[tuple[int, Term]]:
         yield symbol.get_id(), value
 
 
-def _spans(cells: list[Span]) -> list[Span]:
+def _spans(cells: list[ValueRange]) -> list[ValueRange]:
     """Cells side by side as one."""
-    found: list[Span] = []
+    found: list[ValueRange] = []
     for first, last in cells:
         if found and found[-1][1] + 1 == first:
             found[-1] = (found[-1][0], last)

@@ -18,12 +18,12 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
 from . import logic
-from .clock import OutOfTime
+from .budget import Exhausted
 from .logic import Term, Variable
 from .parts import determines
-from .reach import Reach
+from .reach import Reachable
 from .schedule import PORTS, schedules, together
-from .search import Search, Violation
+from .search import Violation, WaySearch
 from .stepping import Configuration
 from .threads import Edge, Thread
 from .words import label, valuation, where
@@ -35,7 +35,7 @@ Pairs = Sequence[tuple[Term, Term]]
 """What stands for what in a substitution."""
 
 
-def invariants_hold(reach: Reach, system: System) -> Iterator[Diagnostic]:
+def invariants_hold(reach: Reachable, system: System) -> Iterator[Diagnostic]:
     """Each declared invariant holds in every reachable situation."""
     for invariant in reach.component.invariants:
         bad = logic.term(invariant.condition, reach.symbol)
@@ -45,12 +45,12 @@ def invariants_hold(reach: Reach, system: System) -> Iterator[Diagnostic]:
         if broken is None:
             continue
         searches = [
-            Search(reach, system, instance, rows, bad)
+            WaySearch(reach, system, instance, rows, bad)
             for instance, rows in schedules(system, reach.component)
         ]
         try:
-            violation = next((v for v in map(Search.violation, searches) if v), None)
-        except OutOfTime:
+            violation = next((v for v in map(WaySearch.violation, searches) if v), None)
+        except Exhausted:
             yield _not_inductive(invariant, broken, sum(search.looked for search in searches))
             raise
         if violation is None:
@@ -62,7 +62,7 @@ def invariants_hold(reach: Reach, system: System) -> Iterator[Diagnostic]:
 # --- Proof ---------------------------------------------------------------------------
 
 
-def _is_excluded(reach: Reach, bad: Term) -> bool:
+def _is_excluded(reach: Reachable, bad: Term) -> bool:
     """Whether no combination of reachable nodes is bad."""
     solver = logic.solver()
     solver.add(*reach.constants_over(reach.symbol), bad)
@@ -71,7 +71,7 @@ def _is_excluded(reach: Reach, bad: Term) -> bool:
     return bool(solver.check() == z3.unsat)
 
 
-def _somewhere(reach: Reach, thread: Thread) -> Term:
+def _somewhere(reach: Reachable, thread: Thread) -> Term:
     """That a thread is in one of its nodes."""
     if thread.parts is not None:
         at = {n.configuration.active or thread.tree.default for n in thread.nodes}
@@ -84,7 +84,7 @@ def _somewhere(reach: Reach, thread: Thread) -> Term:
     return z3.Or(list(cases.values()))
 
 
-def _states(reach: Reach, thread: Thread, at: Configuration) -> list[Term]:
+def _states(reach: Reachable, thread: Thread, at: Configuration) -> list[Term]:
     """What a thread publishes in a configuration, as far as anything asks for it."""
     active = thread.tree.default if at == Configuration() else at.active
     asked = _asked(reach, thread, active)
@@ -93,7 +93,7 @@ def _states(reach: Reach, thread: Thread, at: Configuration) -> list[Term]:
     ]
 
 
-def _asked(reach: Reach, thread: Thread, active: tuple[str, ...]) -> list[Variable]:
+def _asked(reach: Reachable, thread: Thread, active: tuple[str, ...]) -> list[Variable]:
     """The states of a thread that are asked for, and of which active ones say whether they are."""
     asked = [n for n in reach.symbols if n[0] == "in" and n[1] == thread.name]
     if thread.parts is None:
@@ -101,7 +101,7 @@ def _asked(reach: Reach, thread: Thread, active: tuple[str, ...]) -> list[Variab
     return [name for name in asked if determines(thread.tree, active, name.state)]
 
 
-def _written_by_users(reach: Reach) -> list[Term]:
+def _written_by_users(reach: Reachable) -> list[Term]:
     owned = {name for thread in reach.threads for name in thread.own}
     return [
         z3.Or([reach.in_cell(name, reach.symbol(name), cell) for cell in sorted(cells)])
@@ -119,7 +119,7 @@ class Broken:
     data: str
 
 
-def _breaking_step(reach: Reach, system: System, bad: Term) -> Broken | None:
+def _breaking_step(reach: Reachable, system: System, bad: Term) -> Broken | None:
     """The first step from a situation that keeps the invariant to one that does not."""
     if _possible(reach, [_substituted(bad, _start(reach))]) is not None:
         return Broken(f"the start of {reach.component.name}", reach.component.origin, "")
@@ -144,7 +144,7 @@ def _breaking_step(reach: Reach, system: System, bad: Term) -> Broken | None:
         old = [*reach.constants_over(reach.symbol), *reach.of_others(thread)]
         given = [*before, *others, *(_substituted(term, stale) for term in old)]
         for edge in _distinct(thread):
-            reach.clock.count()
+            reach.budget.count()
             after = _substituted(bad, _after(reach, thread, edge, stale))
             condition = _substituted(_lasting(reach, thread, edge.outcome.condition), stale)
             here = _states(reach, thread, edge.outcome.before)
@@ -156,7 +156,7 @@ def _breaking_step(reach: Reach, system: System, bad: Term) -> Broken | None:
     return None
 
 
-def _possible(reach: Reach, terms: Sequence[Term]) -> Term | None:
+def _possible(reach: Reachable, terms: Sequence[Term]) -> Term | None:
     """A model of some terms; None when there is none."""
     solver = logic.solver()
     solver.add(*reach.constants_over(reach.symbol), *terms)
@@ -170,7 +170,7 @@ def _substituted(term: Term, pairs: Pairs) -> Term:
     return z3.simplify(z3.substitute(term, *pairs))
 
 
-def _start(reach: Reach) -> Pairs:
+def _start(reach: Reachable) -> Pairs:
     """Every variable as it is before anything has run."""
     trees = {thread.name: thread.tree for thread in reach.threads}
     pairs = [
@@ -181,7 +181,7 @@ def _start(reach: Reach) -> Pairs:
     return [*pairs, *((reach.symbol(name), value) for name, value in reach.initial.items())]
 
 
-def _inputs(reach: Reach) -> Iterator[tuple[str, Origin, list[Variable]]]:
+def _inputs(reach: Reachable) -> Iterator[tuple[str, Origin, list[Variable]]]:
     """What writes without a flow: each port's handler, each body of the user's."""
     for port in reach.component.inputs():
         names = [n for n in reach.types if n[0] in ("port", "port state") and n[1] == port.name]
@@ -201,7 +201,7 @@ def _distinct(thread: Thread) -> Iterator[Edge]:
     yield from {(id(e.outcome), e.before): e for e in reversed(thread.edges)}.values()
 
 
-def _stale(reach: Reach, system: System, thread: Thread) -> Pairs:
+def _stale(reach: Reachable, system: System, thread: Thread) -> Pairs:
     """Copies of what a thread may have read before another processor wrote it anew."""
     component = reach.component
     rows = {r.name: r for r in component.runnables()}
@@ -217,13 +217,13 @@ def _stale(reach: Reach, system: System, thread: Thread) -> Pairs:
     return old
 
 
-def _written(reach: Reach, thread: Thread) -> list[tuple[Variable, ScalarType]]:
+def _written(reach: Reachable, thread: Thread) -> list[tuple[Variable, ScalarType]]:
     """The data of a thread, with their types."""
     writes = thread.tree.region.writes
     return [(n, t) for n, t in reach.types.items() if n[0] == "data" and n[1] in writes]
 
 
-def _lasting(reach: Reach, thread: Thread, condition: Term) -> Term:
+def _lasting(reach: Reachable, thread: Thread, condition: Term) -> Term:
     """What holds of a step for as long as it lasts: where regions are looked at one by one, another
     one may have set the data of the chart since they were read."""
     if thread.parts is None:
@@ -233,7 +233,7 @@ def _lasting(reach: Reach, thread: Thread, condition: Term) -> Term:
     return z3.And([one for one in asked if not own & {*logic.unknowns([one])}])
 
 
-def _after(reach: Reach, thread: Thread, edge: Edge, stale: Pairs) -> Pairs:
+def _after(reach: Reachable, thread: Thread, edge: Edge, stale: Pairs) -> Pairs:
     """What a step changes."""
     active = edge.outcome.after.active
     states = [
@@ -262,7 +262,7 @@ def _origin(thread: Thread, edge: Edge) -> Origin:
     return next(found, thread.tree.region.origin)
 
 
-def _violated(reach: Reach, invariant: Invariant, found: Violation) -> Diagnostic:
+def _violated(reach: Reachable, invariant: Invariant, found: Violation) -> Diagnostic:
     message = f"the invariant {invariant.name} of {reach.component.name} is violated: {found.trace}"
     notes = [(invariant.origin, f"then {found.data}")] if found.data else []
     return error(VIOLATED, invariant.origin, message, notes=notes)

@@ -16,8 +16,8 @@ from ravenchart.gen.diagnostics import Diagnostic, error, warning
 
 from . import logic
 from .logic import Term, Variable
-from .reach import Reach
-from .threads import Edge, Node, Thread
+from .reach import Reachable
+from .threads import Edge, Situation, Thread
 from .words import reached, trace, valuation
 
 LONGEST_CYCLE = 8
@@ -26,13 +26,13 @@ MOST_CYCLES = 200
 """Cycles of one group of nodes that are looked at."""
 
 
-def eventless_steps_end(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+def eventless_steps_end(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
     """No cycle of completions and conditions goes on without a change from outside."""
-    steps: dict[tuple[Node, Node], list[Edge]] = {}
+    steps: dict[tuple[Situation, Situation], list[Edge]] = {}
     for edge in thread.edges:
         if edge.outcome.occurrence.kind in ("completion", "conditions") and edge.outcome.fired:
             steps.setdefault((edge.before, edge.after), []).append(edge)
-    graph: networkx.DiGraph[Node] = networkx.DiGraph()
+    graph: networkx.DiGraph[Situation] = networkx.DiGraph()
     graph.add_edges_from(steps)
     told: set[str] = set()
     rank = {node: index for index, node in enumerate(thread.nodes)}
@@ -47,11 +47,11 @@ def eventless_steps_end(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
 
 
 def _endless(
-    reach: Reach,
+    reach: Reachable,
     thread: Thread,
-    graph: networkx.DiGraph[Node],
-    steps: dict[tuple[Node, Node], list[Edge]],
-    rank: dict[Node, int],
+    graph: networkx.DiGraph[Situation],
+    steps: dict[tuple[Situation, Situation], list[Edge]],
+    rank: dict[Situation, int],
 ) -> Iterator[tuple[Sequence[Edge], str]]:
     """The cycles that some data let go on, shortest first, each from its nearest node."""
     found = islice(networkx.simple_cycles(graph, LONGEST_CYCLE), MOST_CYCLES)
@@ -59,7 +59,7 @@ def _endless(
     for nodes in sorted(cycles, key=lambda c: (len(c), [rank[node] for node in c])):
         ways = product(*(steps[pair] for pair in pairwise([*nodes, nodes[0]])))
         for cycle in islice(ways, MOST_CYCLES):
-            reach.clock.count()
+            reach.budget.count()
             terms = _goes_on(reach, thread, cycle)
             solver = logic.solver()
             solver.add(*reach.constants_over(reach.symbol), *reach.of_others(thread), *terms)
@@ -68,12 +68,12 @@ def _endless(
                 break
 
 
-def _turned(nodes: Sequence[Node], rank: dict[Node, int]) -> list[Node]:
+def _turned(nodes: Sequence[Situation], rank: dict[Situation, int]) -> list[Situation]:
     start = min(range(len(nodes)), key=lambda index: rank[nodes[index]])
     return [*nodes[start:], *nodes[:start]]
 
 
-def _goes_on(reach: Reach, thread: Thread, cycle: Sequence[Edge]) -> list[Term]:
+def _goes_on(reach: Reachable, thread: Thread, cycle: Sequence[Edge]) -> list[Term]:
     """That the steps can be made one after the other and lead back to the same data."""
     store: dict[Variable, Term] = {}
     conditions = []
@@ -90,7 +90,7 @@ def _goes_on(reach: Reach, thread: Thread, cycle: Sequence[Edge]) -> list[Term]:
     ]
 
 
-def _finding(reach: Reach, thread: Thread, cycle: Sequence[Edge], data: str) -> Diagnostic:
+def _finding(reach: Reachable, thread: Thread, cycle: Sequence[Edge], data: str) -> Diagnostic:
     region = thread.tree.region
     first = next(t for t in region.transitions if t.name == cycle[0].outcome.fired[0])
     starves = all(edge.outcome.occurrence.kind == "completion" for edge in cycle)

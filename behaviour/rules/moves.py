@@ -18,8 +18,8 @@ from ravenchart.gen.model.safety import knows_guards
 from ravenchart.gen.model.statechart import PseudoKind, Segment, Transition, When
 
 from .logic import Questions, Read, Term, Variable, term
-from .stepping import Configuration, Path, Step
-from .tree import START, TOP, Slot, Tree
+from .stepping import Configuration, OpenStep, Path
+from .tree import START, TOP, RegionTree, Slot
 
 MOST_PLACES = 300
 """A region with more configurations is not looked into."""
@@ -28,7 +28,7 @@ MOST_MOVES = 6_000
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Position:
     """Where a region is between two moves: its active states, and pseudostates on the way."""
 
     active: tuple[str, ...] = ()
@@ -41,14 +41,14 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Move:
+class ChartMove:
     """What one transition or segment does, from a place where it can be taken."""
 
-    before: Place | None
+    before: Position | None
     """None at the start of the region."""
     condition: Term
     updates: dict[Variable, Term]
-    after: Place
+    after: Position
     path: Path
     """The transition or segment, with its way; empty at the start and for what a history enters."""
 
@@ -57,7 +57,7 @@ class TooManyMoves(Exception):  # noqa: N818
     """The region is too large for its moves to be looked at one by one."""
 
 
-def moves_of(tree: Tree, symbols: Read, alone: Container[str]) -> Iterator[Move]:
+def moves_of(tree: RegionTree, symbols: Read, alone: Container[str]) -> Iterator[ChartMove]:
     """Every move from every place that control can come to, data aside.
 
     ``alone`` names the transitions that fire only when nothing has fired before in their step.
@@ -85,7 +85,7 @@ def moves_of(tree: Tree, symbols: Read, alone: Container[str]) -> Iterator[Move]
 
 
 @dataclass
-class _Mover(Step):
+class _Mover(OpenStep):
     """A step that stops after one move; a condition only says which branch an action takes."""
 
     remembered: list[str | None] = field(default_factory=list)
@@ -104,10 +104,10 @@ class _Mover(Step):
             elif isinstance(action, If):
                 self.merge(action)
 
-    def move(self, before: Place | None, condition: Term, path: Path) -> Move:
+    def move(self, before: Position | None, condition: Term, path: Path) -> ChartMove:
         """What has been done so far."""
-        place = Place(self.tree.ordered(self.active), tuple(sorted(self.arrivals)))
-        return Move(before, condition, self.store, place, path)
+        place = Position(self.tree.ordered(self.active), tuple(sorted(self.arrivals)))
+        return ChartMove(before, condition, self.store, place, path)
 
     def _recalled(self, slot: Slot) -> str | None:
         self.asked.append(slot)
@@ -117,7 +117,7 @@ class _Mover(Step):
 
 
 def _mover(
-    tree: Tree, place: Place, questions: Questions, remembered: tuple[str | None, ...] = ()
+    tree: RegionTree, place: Position, questions: Questions, remembered: tuple[str | None, ...] = ()
 ) -> _Mover:
     made = _Mover(
         tree,
@@ -131,7 +131,9 @@ def _mover(
     return made
 
 
-def _from(tree: Tree, place: Place, questions: Questions, alone: Container[str]) -> Iterator[Move]:
+def _from(
+    tree: RegionTree, place: Position, questions: Questions, alone: Container[str]
+) -> Iterator[ChartMove]:
     if place.passing:
         yield from _passed(tree, place, questions)
         return
@@ -144,15 +146,15 @@ def _from(tree: Tree, place: Place, questions: Questions, alone: Container[str])
                     yield _fired(tree, place, questions, path, known=sure)
 
 
-def _passed(tree: Tree, place: Place, questions: Questions) -> Iterator[Move]:
+def _passed(tree: RegionTree, place: Position, questions: Questions) -> Iterator[ChartMove]:
     """The moves from the first pseudostate on the way."""
     vertex = next(_mover(tree, place, questions).passing(TOP))
-    rest = Place(place.active, tuple(n for n in place.passing if n != vertex))
+    rest = Position(place.active, tuple(n for n in place.passing if n != vertex))
     if tree.kinds[vertex] is PseudoKind.CHOICE:
         for transition in tree.outgoing[vertex]:
             for path in _ways(tree, place, transition):
                 fired = _fired(tree, rest, questions, path, known=True)
-                yield Move(place, fired.condition, fired.updates, fired.after, fired.path)
+                yield ChartMove(place, fired.condition, fired.updates, fired.after, fired.path)
         return
     waiting: list[tuple[str | None, ...]] = [()]
     while waiting:
@@ -166,7 +168,7 @@ def _passed(tree: Tree, place: Place, questions: Questions) -> Iterator[Move]:
             waiting += [(*remembered, *unknown, leaf) for leaf in leaves]
 
 
-def _leaves(tree: Tree, slot: Slot) -> list[str]:
+def _leaves(tree: RegionTree, slot: Slot) -> list[str]:
     """What a region inside may remember."""
     return [
         name
@@ -175,7 +177,7 @@ def _leaves(tree: Tree, slot: Slot) -> list[str]:
     ]
 
 
-def _ways(tree: Tree, place: Place, transition: Transition) -> Iterator[Path]:
+def _ways(tree: RegionTree, place: Position, transition: Transition) -> Iterator[Path]:
     """A transition with each way through junctions; a join only where all its sources are."""
     kind = tree.kinds.get(transition.target)
     if kind is PseudoKind.JUNCTION:
@@ -190,7 +192,9 @@ def _ways(tree: Tree, place: Place, transition: Transition) -> Iterator[Path]:
         yield (transition,)
 
 
-def _fired(tree: Tree, place: Place, questions: Questions, path: Path, *, known: bool) -> Move:
+def _fired(
+    tree: RegionTree, place: Position, questions: Questions, path: Path, *, known: bool
+) -> ChartMove:
     mover = _mover(tree, place, questions)
     mover.fire(path)
     return mover.move(place, guard_of(path, questions.read) if known else z3.BoolVal(True), path)

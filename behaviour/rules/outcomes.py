@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import z3
 
 from .logic import Questions, Term, Variable, unknowns
-from .stepping import Beaten, Configuration, Rival, Step
-from .tree import Occurrence, Slot, Tree
+from .stepping import Beaten, Configuration, OpenStep, Rival
+from .tree import Occurrence, RegionTree, Slot
 
 Past = Mapping[Slot, set[str]]
 """Every leaf that each region has been seen to remember."""
@@ -49,7 +49,7 @@ class TooManyWays(Exception):  # noqa: N818
 
 
 def outcomes(
-    tree: Tree,
+    tree: RegionTree,
     before: Configuration,
     occurrence: Occurrence,
     questions: Questions,
@@ -112,7 +112,7 @@ def outcomes(
                 asked.append(condition if answer else z3.Not(condition))
             return answer
 
-        step = Step(tree, before, occurrence, questions, decide, recall, contested)
+        step = OpenStep(tree, before, occurrence, questions, decide, recall, contested)
         stuck = step.run()
         if stuck is not None and guessed:
             continue

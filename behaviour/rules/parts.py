@@ -5,11 +5,11 @@ those are too many, a region is looked at in *parts*: a leaf with the states aro
 of the regions beside it. A step is then made from each part as if the other regions selected
 nothing. What they do in the same step is found from their own parts, with three exceptions.
 
-A transition from inside an orthogonal state that leaves this state exits the other regions too. Its
-step is made with each of their parts besides (`Parts.meetings`). An orthogonal state completes when
-each of its regions is in a final state: it may, as soon as each of them was seen to be in one
-(`Parts.completed`). Data that other regions set may change between the selection of a step and its
-end (`Parts.contested`).
+A transition from inside an orthogonal state that leaves this state exits the other regions
+too. Its step is made with each of their parts besides (`RegionParts.meetings`). An orthogonal
+state completes when each of its regions is in a final state: it may, as soon as each of them
+was seen to be in one (`RegionParts.completed`). Data that other regions set may change between
+the selection of a step and its end (`RegionParts.contested`).
 
 So each leaf, transition and event that configurations lead to is found, and perhaps more.
 """
@@ -27,21 +27,21 @@ from .cells import every
 from .logic import Term, Variable
 from .outcomes import Outcome
 from .stepping import Configuration
-from .tree import TOP, Occurrence, Slot, Tree
+from .tree import TOP, Occurrence, RegionTree, Slot
 
 Met = tuple[Configuration, Configuration, Occurrence]
 """A part, its union with another one, and the occurrence that a step of both is made for."""
 
 
-Kept = tuple[str, ...]
+KeptParts = tuple[str, ...]
 """Some states, in tree order."""
 
 
 @dataclass
-class Parts:
+class RegionParts:
     """The parts of one region's configurations that were seen."""
 
-    tree: Tree
+    tree: RegionTree
     types: Mapping[Variable, ScalarType]
     seen: dict[str, list[Configuration]] = field(default_factory=dict)
     """By leaf, an orthogonal state being one."""
@@ -73,7 +73,7 @@ class Parts:
 
                 def kept(
                     names: Sequence[str], own: Lane = lane, mine: Sequence[str] = mine
-                ) -> Kept:
+                ) -> KeptParts:
                     return tuple(n for n in names if n in mine and self.tree.lane_of[n] == own)
 
                 yield Configuration(
@@ -148,7 +148,7 @@ class Parts:
         if self.tree.below(state, leaf) == self.tree.below(state, self.leaf(part)):
             return
 
-        def both(one: Kept, two: Kept) -> Kept:
+        def both(one: KeptParts, two: KeptParts) -> KeptParts:
             return self.tree.ordered({*one, *two})
 
         union = Configuration(
@@ -201,7 +201,7 @@ class Parts:
             yield region.lane(transition.source), transition.effect
 
 
-def determines(tree: Tree, active: tuple[str, ...], state: str) -> bool:
+def determines(tree: RegionTree, active: tuple[str, ...], state: str) -> bool:
     """Whether a configuration, or a part or union of parts, says if a state is active."""
     lane = tree.lane_of[state]
     if lane.owner is None or any(tree.lane_of[name] == lane for name in active):

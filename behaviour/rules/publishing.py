@@ -9,7 +9,7 @@ import z3
 from ravenchart.gen.model.statechart import Lane
 
 from .logic import Read, Term, Variable
-from .tree import Tree
+from .tree import RegionTree
 
 
 def is_in(asked: Sequence[Variable], found: Sequence[tuple[str, ...]], read: Read) -> Term:
@@ -19,14 +19,14 @@ def is_in(asked: Sequence[Variable], found: Sequence[tuple[str, ...]], read: Rea
 
 
 def is_in_parts(
-    tree: Tree, asked: Sequence[Variable], found: Sequence[tuple[str, ...]], read: Read
+    tree: RegionTree, asked: Sequence[Variable], found: Sequence[tuple[str, ...]], read: Read
 ) -> Term:
     """The same of a region whose configurations are known in parts: each lane is in one."""
     return z3.And([_lane(tree, lane, asked, found, read) for lane in tree.lanes])
 
 
 def _lane(
-    tree: Tree,
+    tree: RegionTree,
     lane: Lane,
     asked: Sequence[Variable],
     found: Sequence[tuple[str, ...]],

@@ -26,26 +26,26 @@ from ravenchart.gen.model.statechart import DONE, After, Every, When
 from ravenchart.gen.model.system import System
 
 from . import logic
+from .budget import Budget
 from .cells import actions, expressions, partition
-from .clock import Clock
 from .logic import Term, Variable
 from .outcomes import Outcome, outcomes
 from .outside import as_region, done_of, external_events, parameters_of
 from .publishing import is_in, is_in_parts
 from .stepping import Configuration
-from .threads import MOST_QUESTIONS, Cells, Edge, Node, Thread
-from .tree import CONDITIONS, START, Occurrence, Tree
+from .threads import MOST_QUESTIONS, Cells, Edge, Situation, Thread
+from .tree import CONDITIONS, START, Occurrence, RegionTree
 
-Task = tuple[Node, Configuration, Occurrence | None]
+PendingStep = tuple[Situation, Configuration, Occurrence | None]
 """A node, where its step starts, and what it is made for: None for all that may be."""
 
 
-class Reach:
+class Reachable:
     """The reachable nodes of every thread of a component."""
 
-    def __init__(self, component: Component, system: System, clock: Clock) -> None:
+    def __init__(self, component: Component, system: System, budget: Budget) -> None:
         self.component = component
-        self.clock = clock
+        self.budget = budget
         self.types = logic.readable(component)
         self.symbols: dict[Variable, Term] = {}
         self.constants = parameters_of(component, system)
@@ -77,8 +77,8 @@ class Reach:
     # --- set-up
 
     def _threads(self) -> list[Thread]:
-        regions = [Tree(r, frozenset(self._working(r.name))) for r in self.component.regions]
-        flows = [Tree(as_region(a)) for a in self.component.activities if a.flow is not None]
+        regions = [RegionTree(r, frozenset(self._working(r.name))) for r in self.component.regions]
+        flows = [RegionTree(as_region(a)) for a in self.component.activities if a.flow is not None]
         made = []
         for tree in (*regions, *flows):
             own = (v for v in self.cells if v[1] in tree.region.writes)
@@ -198,26 +198,26 @@ class Reach:
         others = self.of_others(thread)
         solver.add(*self.constants_over(self.symbol), *others)
         context = self._seen_of_others(thread)
-        start = Node(
+        start = Situation(
             Configuration(), tuple(self.cell_of(name, self.initial[name]) for name in thread.own)
         )
         thread.begin(start)
-        waiting: deque[Task] = deque([(start, start.configuration, None)])
+        waiting: deque[PendingStep] = deque([(start, start.configuration, None)])
         while waiting:
             node, at, only = waiting.popleft()
-            self.clock.count()
+            self.budget.count()
             for occurrence in self.occurrences(thread, at) if only is None else (only,):
                 for outcome in self._outcomes(thread, at, occurrence):
                     thread.remember(outcome)
                     for cells in self._successors(thread, node.cells, outcome, solver, context):
                         for place in thread.places(outcome.after):
-                            edge = Edge(node, outcome, Node(place, cells))
+                            edge = Edge(node, outcome, Situation(place, cells))
                             waiting.extend(self._arrive(thread, edge))
                         if thread.parts is not None and only is None:
                             met = thread.parts.left(at, outcome)
-                            waiting.extend((Node(p, cells), both, o) for p, both, o in met)
+                            waiting.extend((Situation(p, cells), both, o) for p, both, o in met)
 
-    def _arrive(self, thread: Thread, edge: Edge) -> Iterator[Task]:
+    def _arrive(self, thread: Thread, edge: Edge) -> Iterator[PendingStep]:
         """Note an edge; what is to be looked at when the node that it leads to is new."""
         after = edge.after
         thread.edges.append(edge)
@@ -234,7 +234,7 @@ class Reach:
                     thread, replace(edge, after=replace(after, configuration=place))
                 )
             for part, both, occurrence in thread.parts.meetings(after.configuration):
-                yield Node(part, after.cells), both, occurrence
+                yield Situation(part, after.cells), both, occurrence
 
     def _show(self, thread: Thread, edge: Edge) -> None:
         """What others may see of a step."""
@@ -386,7 +386,7 @@ class Reach:
             if activity.name == thread.name and activity.while_in and DONE in activity.raises:
                 yield activity.while_in.region, activity.while_in.state
 
-    def way(self, thread: Thread, node: Node) -> list[Edge]:
+    def way(self, thread: Thread, node: Situation) -> list[Edge]:
         """The shortest way to a node."""
         way: list[Edge] = []
         edge = thread.nodes[node]

@@ -10,10 +10,10 @@ from ravenchart.gen.origins import Origin
 
 from . import logic
 from .logic import Term
-from .reach import Reach
+from .reach import Reachable
 from .stepping import Beaten, Defeat
 from .threads import Edge, Thread
-from .tree import Tree, occurs
+from .tree import RegionTree, occurs
 
 MOST_GUARDED = 64
 """Steps at most in which the guard of one transition is looked at."""
@@ -23,7 +23,7 @@ Possible = Callable[[Edge, Term], bool]
 
 
 @dataclass(frozen=True, slots=True)
-class Reason:
+class Obstacle:
     """What keeps a transition from firing, as ``NAME is never taken: TEXT``."""
 
     text: str
@@ -36,38 +36,38 @@ class Reason:
     """Whether nothing comes before it: its guard, or what makes it due, is in its way."""
 
 
-def in_front(tree: Tree, transition: Transition, earlier: Sequence[str]) -> Reason:
+def in_front(tree: RegionTree, transition: Transition, earlier: Sequence[str]) -> Obstacle:
     """Transitions of the same source and trigger, one of which always fires."""
     found = [t for t in tree.region.transitions if t.name in earlier]
     notes = tuple((t.origin, f"{t.name} is earlier in the model") for t in found)
     text = f"{_and(t.name for t in found)} always comes before it"
-    return Reason(text, "change the order or the guards", f"remove {transition.name}", notes)
+    return Obstacle(text, "change the order or the guards", f"remove {transition.name}", notes)
 
 
-def beaten(tree: Tree, transition: Transition, found: Sequence[Beaten]) -> Reason:
+def beaten(tree: RegionTree, transition: Transition, found: Sequence[Beaten]) -> Obstacle:
     """What another region does instead of the transition, which is enabled."""
     name, source = transition.name, transition.source
     states = [b.by for b in found if b.why is Defeat.DEFERRAL]
     if states:
         notes = tuple((tree.states[state].origin, f"{state} is here") for state in states)
         text = f"while {source} is active, {' or '.join(states)} defers the event"
-        return Reason(text, f"remove `defer` from {_and(states)}", f"remove {name}", notes)
+        return Obstacle(text, f"remove `defer` from {_and(states)}", f"remove {name}", notes)
     winners = [_transition(tree, one) for one in dict.fromkeys(b.by for b in found)]
     notes = tuple((w.origin, f"{w.name} of an earlier region is taken") for w in winners)
     change = "change the order of the regions or the guards"
     if all(b.why is Defeat.END for b in found):
         text = f"{' or '.join(w.name for w in winners)} is taken before it and ends the region"
-        return Reason(text, change, f"remove {name}", notes)
+        return Obstacle(text, change, f"remove {name}", notes)
     removal = (
         f"where {name} is removed, the next transition of {source}, or of a state around it, "
         "takes its place and may be taken"
     )
-    return Reason(f"it conflicts with {_and(w.name for w in winners)}", change, removal, notes)
+    return Obstacle(f"it conflicts with {_and(w.name for w in winners)}", change, removal, notes)
 
 
 def taken_inside(
-    reach: Reach, thread: Thread, transition: Transition, possible: Possible
-) -> Reason | None:
+    reach: Reachable, thread: Thread, transition: Transition, possible: Possible
+) -> Obstacle | None:
     """What states inside the source always do before the transition is looked at."""
     tree, source = thread.tree, transition.source
     if source not in tree.states or not tree.states[source].regions:
@@ -107,8 +107,8 @@ def taken_inside(
 
 
 def _inside(
-    tree: Tree, transition: Transition, firing: Sequence[str], deferring: Sequence[str]
-) -> Reason:
+    tree: RegionTree, transition: Transition, firing: Sequence[str], deferring: Sequence[str]
+) -> Obstacle:
     """Transitions and deferrals of states inside the source take everything."""
     source = transition.source
     said, changes = [], []
@@ -123,10 +123,10 @@ def _inside(
         one = _transition(tree, name)
         notes.append((one.origin, f"{name} starts from {one.source}, inside {source}"))
     text = f"while {source} is active, {', or '.join(said)}"
-    return Reason(text, " or ".join(changes), f"remove {transition.name}", tuple(notes))
+    return Obstacle(text, " or ".join(changes), f"remove {transition.name}", tuple(notes))
 
 
-def _transition(tree: Tree, name: str) -> Transition:
+def _transition(tree: RegionTree, name: str) -> Transition:
     return next(t for t in tree.region.transitions if t.name == name)
 
 

@@ -22,7 +22,7 @@ PORTS = "ports"
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class RowReleases:
     """A row's first release, its period in ns, and its turn among those released at once."""
 
     first: int
@@ -39,7 +39,7 @@ class Row:
         return self.first + execution * self.period
 
 
-Rows = dict[str, Row]
+Rows = dict[str, RowReleases]
 
 
 def schedules(system: System, component: Component) -> Iterator[tuple[str, Rows]]:
@@ -54,7 +54,7 @@ def schedules(system: System, component: Component) -> Iterator[tuple[str, Rows]
             if slot.owner == instance.name and not slot.of_bus
         ]
         rows = {
-            slot.name: Row(
+            slot.name: RowReleases(
                 processor.offset + slot.phase * processor.period,
                 slot.divisor * processor.period,
                 turn,

@@ -24,11 +24,11 @@ from . import logic
 from .logic import Term, Variable
 from .outcomes import Outcome
 from .outside import external_events
-from .reach import Reach
+from .reach import Reachable
 from .schedule import Rows
 from .stepping import Configuration
 from .threads import Thread
-from .timing import Way
+from .timing import TimedWay
 from .tree import CONDITIONS, START, Occurrence
 from .words import label, where
 
@@ -54,12 +54,12 @@ class Point:
 
     status: Mapping[str, Status]
     store: Mapping[Variable, Term]
-    way: Way
+    way: TimedWay
     conditions: tuple[Term, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Move:
+class SearchMove:
     """A step of a thread, under a condition, and the situation that it leads to."""
 
     thread: str
@@ -79,10 +79,10 @@ class Violation:
 
 
 @dataclass
-class Search:
+class WaySearch:
     """A breadth-first search for a situation of one instance in which ``bad`` holds."""
 
-    reach: Reach
+    reach: Reachable
     system: System
     instance: str
     rows: Rows
@@ -121,7 +121,7 @@ class Search:
                 if key in seen:
                     continue
                 self.looked += 1
-                self.reach.clock.count()
+                self.reach.budget.count()
                 if self.looked > MOST_SITUATIONS:
                     return None
                 way = point.way.extended(point, move)
@@ -140,7 +140,7 @@ class Search:
             is_region = thread.name in self.reach.published
             active = () if is_region else ("working",)
             status[thread.name] = (Configuration(active), (), (), frozenset[str]())
-        return Point(status, dict(self.reach.initial), Way(self))
+        return Point(status, dict(self.reach.initial), TimedWay(self))
 
     # --- terms
 
@@ -211,7 +211,7 @@ class Search:
 
     # --- steps
 
-    def moves(self, point: Point) -> Iterator[Move]:
+    def moves(self, point: Point) -> Iterator[SearchMove]:
         """The situations one step further; their way is still that to the one before."""
         number = len(point.way.steps)
         for thread in self._turns(point):
@@ -221,7 +221,7 @@ class Search:
                     if outcome.stuck is None and not z3.is_false(condition):
                         after = self._after(point, thread, outcome, condition, carried)
                         rows = self._raisers(occurrence, carried)
-                        yield Move(thread.name, outcome, condition, after, rows)
+                        yield SearchMove(thread.name, outcome, condition, after, rows)
 
     def _raisers(self, occurrence: Occurrence, carried: Mapping[Variable, Term]) -> tuple[str, ...]:
         """The rows that an event from outside comes by; none when it comes at any time."""
@@ -370,7 +370,7 @@ class Search:
 
     # --- words
 
-    def told(self, way: Way) -> str:
+    def told(self, way: TimedWay) -> str:
         """A way: each step with its region when there are several."""
         several = len({made.thread for made in way.steps}) > 1
         parts: list[str] = []
@@ -423,7 +423,7 @@ def _key(point: Point) -> str:
     return f"{control}\n{text}"
 
 
-def _cone(reach: Reach, bad: Term) -> list[Thread]:
+def _cone(reach: Reachable, bad: Term) -> list[Thread]:
     """The threads that what a term asks for may depend on."""
     wanted: set[str] = set()
     asked = [bad]

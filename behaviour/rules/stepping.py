@@ -1,6 +1,6 @@
 """One step of a region, with data as terms: what can come of it, and when.
 
-A `Step` follows docs/semantics.md like an interpreter does. Where it has to know
+A `OpenStep` follows docs/semantics.md like an interpreter does. Where it has to know
 whether a condition holds, it asks; `outcomes` runs it once for each series of
 answers that some data allow.
 """
@@ -17,7 +17,7 @@ from ravenchart.gen.language.terms import Expression, Flow, If, Raise, Reading, 
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Transition, TransitionKind, When
 
 from .logic import Questions, Term, Variable, term, variable
-from .tree import TOP, Occurrence, Slot, Tree
+from .tree import TOP, Occurrence, RegionTree, Slot
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class Rival:
 
 
 @dataclass(frozen=True, slots=True)
-class Deferral:
+class DeferredStep:
     """A state keeps the event for later."""
 
     state: str
@@ -56,7 +56,7 @@ Path = tuple[Transition, ...]
 """A compound transition: through junctions, to a vertex that is none."""
 
 
-class Stuck(Exception):  # noqa: N818
+class StuckStep(Exception):  # noqa: N818
     """A pseudostate that no enabled segment leaves."""
 
 
@@ -81,10 +81,10 @@ class Beaten:
 
 
 @dataclass
-class Step:
+class OpenStep:
     """One step that is being made."""
 
-    tree: Tree
+    tree: RegionTree
     before: Configuration
     occurrence: Occurrence
     questions: Questions
@@ -120,7 +120,7 @@ class Step:
                 self.settle()
             elif self.occurrence.kind != "done":
                 self.fire_all(self.select())
-        except Stuck as found:
+        except StuckStep as found:
             return str(found)
         return None
 
@@ -184,7 +184,7 @@ class Step:
             if any(name in busy for name in chain):
                 continue
             found = self.select_in(chain)
-            if isinstance(found, Deferral):
+            if isinstance(found, DeferredStep):
                 self.deferred = True
                 deferring.append(found.state)
             elif found is not None:
@@ -196,7 +196,7 @@ class Step:
         ]
         return [] if self.deferred else chosen
 
-    def select_in(self, chain: Sequence[str]) -> Path | Deferral | None:
+    def select_in(self, chain: Sequence[str]) -> Path | DeferredStep | None:
         """The first enabled transition of the states of a lane, innermost first."""
         for name in chain:
             path = self.first_of(self.tree.triggered(name, self.occurrence))
@@ -205,7 +205,7 @@ class Step:
             if self.occurrence.kind == "event" and (
                 self.occurrence.subject in self.tree.states[name].defers
             ):
-                return Deferral(name)
+                return DeferredStep(name)
         return None
 
     def through(self, transition: Transition) -> Path | None:
@@ -343,7 +343,7 @@ class Step:
         else:
             path = self.way_out(vertex)
             if path is None:
-                raise Stuck(vertex)
+                raise StuckStep(vertex)
             self.fire(path)
 
     def passing(self, slot: Slot) -> Iterator[str]:

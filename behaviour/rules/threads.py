@@ -9,9 +9,9 @@ from ravenchart.gen.language.terms import ScalarType
 
 from .logic import Term, Variable
 from .outcomes import Outcome
-from .parts import Parts
+from .parts import RegionParts
 from .stepping import Configuration
-from .tree import Occurrence, Slot, Tree
+from .tree import Occurrence, RegionTree, Slot
 
 Steps = dict[tuple[Configuration, Occurrence], tuple[Outcome, ...]]
 """The outcomes of steps, data aside."""
@@ -27,7 +27,7 @@ MOST_CONFIGURATIONS = 3_000
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class Situation:
     """A situation of one region: its control, and the cells of its own data."""
 
     configuration: Configuration
@@ -38,19 +38,19 @@ class Node:
 class Edge:
     """A step from one node to another."""
 
-    before: Node
+    before: Situation
     outcome: Outcome
-    after: Node
+    after: Situation
 
 
 @dataclass
 class Thread:
     """A region, or an activity with a flow (a region of one state), and what it was seen to do."""
 
-    tree: Tree
+    tree: RegionTree
     own: tuple[Variable, ...]
     types: Mapping[Variable, ScalarType]
-    nodes: dict[Node, Edge | None] = field(default_factory=dict)
+    nodes: dict[Situation, Edge | None] = field(default_factory=dict)
     """Each with the edge that leads to it on a shortest way."""
     edges: list[Edge] = field(default_factory=list)
     questions: int = 0
@@ -62,7 +62,7 @@ class Thread:
     known: dict[tuple[object, ...], tuple[Cells, ...]] = field(default_factory=dict)
     answers: dict[tuple[object, ...], tuple[Term, bool]] = field(default_factory=dict)
     """Whether a condition can be met, with the condition, which keeps its number."""
-    parts: Parts | None = None
+    parts: RegionParts | None = None
     """Where configurations are looked at in parts."""
 
     @property
@@ -70,7 +70,7 @@ class Thread:
         """The name of the region or activity."""
         return self.tree.region.name
 
-    def begin(self, start: Node) -> None:
+    def begin(self, start: Situation) -> None:
         """Forget what was seen, but for what steps come to."""
         self.nodes, self.edges = {start: None}, []
         if self.parts is not None:
@@ -96,7 +96,7 @@ class Thread:
             self.own = ()
         else:
             self.exact = self.steps if self.past is None else self.exact
-            self.parts, self.steps = Parts(self.tree, self.types), {}
+            self.parts, self.steps = RegionParts(self.tree, self.types), {}
         self.questions = 0
         self.known.clear()
         self.answers.clear()

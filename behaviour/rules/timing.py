@@ -18,21 +18,21 @@ from ravenchart.gen.model.statechart import After, Every
 from . import logic
 from .logic import PORT_STATES, Term, Variable
 from .outcomes import Outcome
-from .schedule import PORTS, Row
+from .schedule import PORTS, RowReleases
 from .stepping import Configuration
 from .tree import CONDITIONS, START, Occurrence
 
 if TYPE_CHECKING:
-    from .search import Move, Point, Search
+    from .search import Point, SearchMove, WaySearch
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Made:
+class TimedStep:
     """A step on a way, and the execution of its row in which it is made."""
 
     thread: str
     outcome: Outcome
-    row: Row
+    row: RowReleases
     execution: Term
     moment: Term
     """When it is made, in ns."""
@@ -40,11 +40,11 @@ class Made:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Way:
+class TimedWay:
     """Steps from the start, and what a schedule must meet to make them."""
 
-    search: Search
-    steps: tuple[Made, ...] = ()
+    search: WaySearch
+    steps: tuple[TimedStep, ...] = ()
     terms: tuple[Term, ...] = ()
     added: tuple[Term, ...] = ()
     """Those of them that the last step has added."""
@@ -55,12 +55,12 @@ class Way:
     reads: tuple[tuple[Variable, Term, Term], ...] = ()
     """Values from outside, each with how often its writer has run before."""
 
-    def extended(self, before: Point, move: Move) -> Way:
+    def extended(self, before: Point, move: SearchMove) -> TimedWay:
         """The way with one step more, made in a situation."""
         thread, outcome, condition = move.thread, move.outcome, move.condition
         index = len(self.steps)
         row, execution = self.search.rows[thread], z3.Int(f"execution#{index}")
-        made = Made(thread, outcome, row, execution, row.moment(execution), index)
+        made = TimedStep(thread, outcome, row, execution, row.moment(execution), index)
         steps = (*self.steps, made)
         new = [made.execution >= 0, condition]
         if outcome.occurrence == START:
@@ -80,7 +80,7 @@ class Way:
             new += self.search.typed(name, symbol)
             new += self._read(reads, name, symbol, made.moment, made.row.turn)
         added = tuple(term for term in new if not z3.is_true(term))
-        return Way(
+        return TimedWay(
             self.search,
             steps,
             (*self.terms, *added),
@@ -130,7 +130,7 @@ class Way:
 
     # --- executions without a step
 
-    def _before(self, name: str, made: Made) -> Term:
+    def _before(self, name: str, made: TimedStep) -> Term:
         """How many executions of a row come before that of a step."""
         if made.thread == name:
             return made.execution
@@ -140,7 +140,7 @@ class Way:
             self.search.counts[key] = row.executions_before(made.moment, made.row.turn)
         return self.search.counts[key]
 
-    def _just_raised(self, made: Made, name: str) -> Term:
+    def _just_raised(self, made: TimedStep, name: str) -> Term:
         """That a row has run since the execution before a step, so that it may have raised."""
         raiser = self.search.rows[name]
         moment = made.row.moment(made.execution - 1)
@@ -148,7 +148,7 @@ class Way:
         return self._before(name, made) > earlier
 
     def _waits(
-        self, here: Point, name: str, made: Made, reads: list[tuple[Variable, Term, Term]]
+        self, here: Point, name: str, made: TimedStep, reads: list[tuple[Variable, Term, Term]]
     ) -> list[Term]:
         """Where a row runs between the last step and the next, it has nothing to do."""
         number = 1_000 * (len(self.steps) + 1) + list(self.search.rows).index(name)
@@ -191,7 +191,7 @@ class Way:
 
     # --- time-outs
 
-    def _timers(self, made: Made, index: int) -> tuple[list[Term], dict[str, Term]]:
+    def _timers(self, made: TimedStep, index: int) -> tuple[list[Term], dict[str, Term]]:
         """Each time-out comes in its execution, and nothing of lower rank before it."""
         search, outcome = self.search, made.outcome
         due = dict(self.due.get(made.thread, {}))

@@ -43,7 +43,7 @@ CONDITIONS = Occurrence("conditions")
 
 
 @dataclass(frozen=True)
-class Tree:
+class RegionTree:
     """A region; ``working`` are the states with a do activity."""
 
     region: Region

@@ -12,16 +12,16 @@ from ravenchart.gen.model.statechart import After, Every
 from . import logic
 from .logic import Term, Variable
 from .outcomes import Outcome
-from .reach import Reach
+from .reach import Reachable
 from .stepping import Configuration
 from .threads import Edge, Thread
-from .tree import Tree
+from .tree import RegionTree
 
 LONGEST = 12
 """Steps of a trace that are shown; of a longer one, the last of them."""
 
 
-def where(tree: Tree, configuration: Configuration) -> str:
+def where(tree: RegionTree, configuration: Configuration) -> str:
     """The active leaves of a configuration."""
     if configuration.stopped:
         return "the end"
@@ -29,7 +29,7 @@ def where(tree: Tree, configuration: Configuration) -> str:
     return " + ".join(leaves) if leaves else "the start"
 
 
-def label(tree: Tree, outcome: Outcome) -> str:
+def label(tree: RegionTree, outcome: Outcome) -> str:
     """What a step is made for: an event, a time, or the transition that nothing triggers."""
     kind, subject = outcome.occurrence.kind, outcome.occurrence.subject
     if kind == "event":
@@ -44,7 +44,7 @@ def label(tree: Tree, outcome: Outcome) -> str:
     return ", ".join(outcome.fired[:1]) or "completion"
 
 
-def trace(tree: Tree, steps: Sequence[Edge]) -> str:
+def trace(tree: RegionTree, steps: Sequence[Edge]) -> str:
     """A way of a region: ``Idle -go-> Moving -done-> Idle``."""
     if not steps:
         return "the start"
@@ -70,7 +70,7 @@ def variables(term: Term, symbols: dict[Variable, Term]) -> list[Variable]:
     return [name for name in symbols if str(name) in used]
 
 
-def valuation(reach: Reach, model: Term, terms: Iterable[Term]) -> str:
+def valuation(reach: Reachable, model: Term, terms: Iterable[Term]) -> str:
     """What the variables of some terms are in a model: ``speed = 11, in(Motion.Moving)``."""
     shown_: list[str] = []
     conjunction = z3.And([*terms, z3.BoolVal(True)])
@@ -86,7 +86,7 @@ def valuation(reach: Reach, model: Term, terms: Iterable[Term]) -> str:
     return ", ".join(shown_)
 
 
-def reached(reach: Reach, thread: Thread, edge: Edge) -> str:
+def reached(reach: Reachable, thread: Thread, edge: Edge) -> str:
     """The shortest way to where a step begins, as a note."""
     way = reach.way(thread, edge.before)
     text = trace(thread.tree, way)

@@ -119,6 +119,7 @@ def tasks_of(system: System) -> tuple[Task, ...]:
                 priority=top + 1,
                 released_by=releaser,
                 core=driver_core(system, bus, node),
+                driver_of=bus.name,
             )
             for driver, node, releaser in ways
         ]

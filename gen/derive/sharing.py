@@ -261,7 +261,7 @@ def objects_on_node(system: System) -> tuple[SharedObject, ...]:
         ]
         senders += sharing.requesting(bus)
         receivers = [p.name for p in system.processors if p.released_by == bus.name]
-        drivers = [t.element for t in tasks if t.element.startswith(f"{bus.name}.driver_")]
+        drivers = [t.element for t in tasks if t.driver_of == bus.name]
         objects.append(sharing.made(f"{bus.name}.transmit", [*senders, *drivers]))
         objects.append(sharing.made(f"{bus.name}.receive", [*drivers, *receivers]))
         for message in system.messages:
@@ -273,11 +273,12 @@ def objects_on_node(system: System) -> tuple[SharedObject, ...]:
         watched_by = sharing.supervisor(processor)
         users = [processor.name, *([] if watched_by is None else [watched_by])]
         objects.append(sharing.made(f"{processor.name}.monitor", users))
+    supervisors = {f"{node.name}.{SUPERVISOR}" for node in system.nodes}
     kept = ["health", *(["trace"] if any(node.trace_depth for node in system.nodes) else [])]
     for core in sorted({1, *(processor.core for processor in system.processors)}):
         here = [processor.name for processor in system.processors if processor.core == core]
         if core == 1:
-            here += [t.element for t in tasks if t.element.endswith(f".{SUPERVISOR}")]
+            here += [t.element for t in tasks if t.element in supervisors]
         for name in kept:
             #  The main program runs on the first core, and looks at the others' at the end.
             own, users = (name, [*here, MAIN]) if core == 1 else (f"{name}_{core}", here)

@@ -1,6 +1,6 @@
 """The ways that values take through messages, ports, rows and data, for chains.
 
-Places are ``message name`` and ``owner.name``. A row leads to what it writes, to the
+A row leads to what it writes, to the
 ports that it sends on and, where it is a region, to what asks for its state; of several
 shortest ways the one is meant whose places come first in the model.
 """
@@ -14,17 +14,17 @@ from itertools import pairwise
 
 from ravenchart.gen.model.commands import Server
 from ravenchart.gen.model.statechart import OnEvent
-from ravenchart.gen.model.system import Chain, System
+from ravenchart.gen.model.system import Carried, Chain, Stop, System
 
 from .calls import published_by, rows_of
 
-Flow = Mapping[str, Sequence[str]]
+Flow = Mapping[Stop, Sequence[Stop]]
 """What values go to from each place, in model order."""
 
 
 def flow_of(system: System) -> Flow:
     """Where values go from each place of a system."""
-    flow: defaultdict[str, list[str]] = defaultdict(list)
+    flow: defaultdict[Stop, list[Stop]] = defaultdict(list)
     for instance in system.instances:
         component = instance.component
         known = {port.name for port in component.ports}
@@ -52,8 +52,8 @@ def flow_of(system: System) -> Flow:
         flow[str(connection.source)].append(str(connection.target))
     for message in (m for m in system.messages if not m.controls):
         if message.source is not None:
-            flow[str(message.source)].append(f"message {message.name}")
-        flow[f"message {message.name}"] += map(str, message.targets)
+            flow[str(message.source)].append(Carried(message.name))
+        flow[Carried(message.name)] += map(str, message.targets)
         if message.call is not None:
             served = message.call.served
             way = (served, message.source) if message.is_reply else (message.targets[0], served)
@@ -66,7 +66,7 @@ def _event_over(system: System, flow: Flow, gap: tuple[str, str]) -> tuple[str, 
 
     Places are as chains name them. None where no single event joins both sides.
     """
-    before, after = (p if "." in p else f"message {p}" for p in gap)
+    before, after = map(_stop, gap)
     for instance in system.instances:
         component = instance.component
         taken = [
@@ -104,25 +104,29 @@ def routed(system: System) -> System:
     return replace(system, chains=tuple(told))
 
 
+def _stop(place: str) -> Stop:
+    """A place as the path of a chain names it: elements have a dot, messages none."""
+    return place if "." in place else Carried(place)
+
+
 def _routed(chain: Chain, flow: Flow) -> Chain:
     """A chain with its way, or the gap in it."""
-    nodes = [place if "." in place else f"message {place}" for place in chain.path]
+    nodes = [_stop(place) for place in chain.path]
     way = nodes[:1]
     for before, after in pairwise(nodes):
         part = _shortest(flow, before, after)
         if not part:
-            gap = before.removeprefix("message "), after.removeprefix("message ")
-            return replace(chain, way=(), gap=gap)
+            return replace(chain, way=(), gap=(str(before), str(after)))
         way += part[1:]
     return replace(chain, way=tuple(way), gap=None)
 
 
-def _shortest(flow: Flow, first: str, last: str) -> list[str]:
+def _shortest(flow: Flow, first: Stop, last: Stop) -> list[Stop]:
     """The shortest way between two places, both included; nothing where there is none."""
     came_from = {first: first}
     ahead = [first]
     while ahead and last not in came_from:
-        further = []
+        further: list[Stop] = []
         for place in ahead:
             for following in flow.get(place, ()):
                 if following not in came_from:

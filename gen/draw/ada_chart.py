@@ -13,7 +13,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from .ada_text import Declared, NotDeclaredError, declared
-from .picture import Area, Arrow, Label, Picture, Shape, Vertex
+from .picture import Area, Arrow, DrawnVertex, Label, Picture, Shape
 
 _TRIGGERS = (("On_", ""), ("Expiry_Of_", "time-out "), ("Completion_Of_", ""))
 """How an occurrence begins, and what is said instead."""
@@ -41,7 +41,7 @@ class _Chart:
         self.sources = {name: self._sources(tests) for name, tests in form.conditions.items()}
         self.inner = self._inner_lanes()
         self.shapes: dict[str, Shape] = {}
-        self.bars: list[Vertex] = []
+        self.bars: list[DrawnVertex] = []
         self.inside: dict[str, list[Label]] = {}
         self.arrows: list[Arrow] = []
         for name, move in form.moves.items():
@@ -70,7 +70,7 @@ class _Chart:
 
     def _area(self, name: str, within: str, initial: str | None) -> Area:
         """What stands in a lane's type or in a composite."""
-        vertices: list[Vertex] = []
+        vertices: list[DrawnVertex] = []
         seen: set[str] = set()
         inner = {c.first: c for c in reversed(self.form.composites) if c.outer == within}
         for leaf in self._leaves(within):
@@ -79,7 +79,7 @@ class _Chart:
                 seen.update(self._leaves(composite.name))
                 area = self._area("", composite.name, None)
                 behaviours = tuple(self.inside.get(composite.name, ()))
-                vertices.append(Vertex(composite.name, Shape.STATE, behaviours, (area,)))
+                vertices.append(DrawnVertex(composite.name, Shape.STATE, behaviours, (area,)))
             elif leaf not in seen:
                 vertices.append(self._leaf(leaf))
         return Area(name, initial, Label(), tuple(vertices))
@@ -91,14 +91,14 @@ class _Chart:
         leaves = self.form.leaves[self.lane_of[one.first]]
         return leaves[leaves.index(one.first) : leaves.index(one.last) + 1]
 
-    def _leaf(self, name: str) -> Vertex:
+    def _leaf(self, name: str) -> DrawnVertex:
         areas = tuple(
             self._area(lane.component.removeprefix("In_"), lane.type, lane.default)
             for lane in self.form.lanes
             if lane.type in self.inner.get(name, ())
         )
         shape = self.shapes.get(name, Shape.STATE)
-        return Vertex(name, shape, tuple(self.inside.get(name, ())), areas)
+        return DrawnVertex(name, shape, tuple(self.inside.get(name, ())), areas)
 
     # --- transitions
 
@@ -148,14 +148,14 @@ class _Chart:
     def _joined(self, name: str, sources: tuple[str, ...]) -> str:
         if len(sources) == 1:
             return sources[0]
-        self.bars.append(Vertex(f"{name}_Join", Shape.JOIN))
+        self.bars.append(DrawnVertex(f"{name}_Join", Shape.JOIN))
         self.arrows += [Arrow(source, f"{name}_Join", Label()) for source in sources]
         return f"{name}_Join"
 
     def _forked(self, name: str, targets: list[str]) -> str:
         if len(targets) == 1:
             return targets[0]
-        self.bars.append(Vertex(f"{name}_Fork", Shape.FORK))
+        self.bars.append(DrawnVertex(f"{name}_Fork", Shape.FORK))
         self.arrows += [Arrow(f"{name}_Fork", target, Label()) for target in targets]
         return f"{name}_Fork"
 

@@ -62,7 +62,7 @@ class Composite:
 
 
 @dataclass(frozen=True, slots=True)
-class Lane:
+class DrawnLane:
     """A component of the configuration: the type of its leaves, the leaf it starts with."""
 
     component: str
@@ -80,7 +80,7 @@ class Declared:
     title: str
     leaves: dict[str, tuple[str, ...]]
     composites: tuple[Composite, ...]
-    lanes: tuple[Lane, ...]
+    lanes: tuple[DrawnLane, ...]
     conditions: dict[str, tuple[str, ...]]
     moves: dict[str, str | Leaves]
 
@@ -105,9 +105,9 @@ class _Reader(Transformer[Token, object]):
         """A range of leaves."""
         return Composite(*map(str, names))
 
-    def lane(self, _: Meta, names: Sequence[Token]) -> Lane:
+    def lane(self, _: Meta, names: Sequence[Token]) -> DrawnLane:
         """A component of a configuration."""
-        return Lane(*map(str, names))
+        return DrawnLane(*map(str, names))
 
     def condition(self, _: Meta, parts: Sequence[str]) -> tuple[str, tuple[str, ...]]:
         """A transition and its conjuncts."""

@@ -11,10 +11,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from .dot import Attributes, Defaults, Edge, Group, Html, Item, Node, cluster, digraph, html
+from .dot import (
+    Attributes,
+    Defaults,
+    DotEdge,
+    DotItem,
+    DotNode,
+    Group,
+    Html,
+    cluster,
+    digraph,
+    html,
+)
 from .look import FONT, INK, LEFT, PAPER, ROOM, SHADES, SMALL
-from .order import Reading
-from .picture import Area, Arrow, Picture, Place, Shape, Vertex
+from .order import Arrangement
+from .picture import Area, Arrow, DrawnVertex, Picture, RegionKey, Shape
 from .wrapping import wrapped
 
 BACKWARD = {"dir": "back", "arrowtail": "vee"}
@@ -52,12 +63,12 @@ class _Drawing:
 
     def __init__(self, picture: Picture) -> None:
         self.picture = picture
-        self.reading = Reading(picture)
+        self.reading = Arrangement(picture)
         self.vertex = {vertex.name: vertex for vertex, _ in picture.vertices()}
-        self.labels: dict[Place, list[Node]] = {place: [] for place, _ in picture.areas()}
+        self.labels: dict[RegionKey, list[DotNode]] = {place: [] for place, _ in picture.areas()}
         self.edges = [*self._defaults(), *self._arrows()]
 
-    def items(self) -> Iterator[Item]:
+    def items(self) -> Iterator[DotItem]:
         """The whole graph."""
         title = html(self.picture.title, "b") + LEFT
         remark = f'<font point-size="{SMALL}">{html(self.picture.remark)}{LEFT}</font>'
@@ -73,28 +84,28 @@ class _Drawing:
 
     # --- vertices
 
-    def _area(self, area: Area, owner: str | None, depth: int) -> Iterator[Item]:
+    def _area(self, area: Area, owner: str | None, depth: int) -> Iterator[DotItem]:
         if area.initial is not None:
-            yield Node(_initial((owner, area.name)), _INITIAL)
+            yield DotNode(_initial((owner, area.name)), _INITIAL)
         for vertex in sorted(area.vertices, key=lambda v: self.reading.position[v.name]):
             yield self._drawn(vertex, depth)
         yield from self.labels[owner, area.name]
 
-    def _drawn(self, vertex: Vertex, depth: int) -> Item:
+    def _drawn(self, vertex: DrawnVertex, depth: int) -> DotItem:
         if vertex.is_composite:
             return self._composite(vertex, depth)
         if vertex.shape is Shape.STATE:
-            return Node(vertex.name, {"shape": "plain", "label": _box(vertex)})
+            return DotNode(vertex.name, {"shape": "plain", "label": _box(vertex)})
         style = {"style": "filled", "fillcolor": PAPER, "fixedsize": "true", "label": ""}
-        return Node(vertex.name, style | _SYMBOLS[vertex.shape])
+        return DotNode(vertex.name, style | _SYMBOLS[vertex.shape])
 
-    def _composite(self, vertex: Vertex, depth: int) -> Group:
+    def _composite(self, vertex: DrawnVertex, depth: int) -> Group:
         look = {
             "label": "", "style": "rounded,filled", "fillcolor": SHADES[depth % len(SHADES)],
             "margin": "8",
         }  # fmt: skip
-        header = Node(_header(vertex.name), {"shape": "plain", "label": _top(vertex)})
-        inside: list[Item] = [Defaults("graph", look), header]
+        header = DotNode(_header(vertex.name), {"shape": "plain", "label": _top(vertex)})
+        inside: list[DotItem] = [Defaults("graph", look), header]
         for area in vertex.areas:
             parts = tuple(self._area(area, vertex.name, depth + 1))
             if len(vertex.areas) == 1:
@@ -106,29 +117,29 @@ class _Drawing:
                 inside.append(Group(cluster(f"{vertex.name} {area.name}"), group))
             if area.initial is not None:
                 first = _initial((vertex.name, area.name))
-                inside.append(Edge(header.name, first, {"style": "invis", "weight": "8"}))
+                inside.append(DotEdge(header.name, first, {"style": "invis", "weight": "8"}))
         inside += self._foot(vertex)
         return Group(cluster(vertex.name), tuple(inside))
 
-    def _foot(self, vertex: Vertex) -> Iterator[Item]:
+    def _foot(self, vertex: DrawnVertex) -> Iterator[DotItem]:
         """Below all that is in a composite state: where the edges that leave it end."""
-        yield Node(_foot(vertex.name), {"shape": "point", "style": "invis", "width": "0.01"})
+        yield DotNode(_foot(vertex.name), {"shape": "point", "style": "invis", "width": "0.01"})
         for area in vertex.areas:
             for inner in area.vertices:
                 above = _foot(inner.name) if inner.is_composite else inner.name
-                yield Edge(above, _foot(vertex.name), {"style": "invis", "minlen": "0"})
+                yield DotEdge(above, _foot(vertex.name), {"style": "invis", "minlen": "0"})
                 below = _header(inner.name) if inner.is_composite else inner.name
-                yield Edge(_header(vertex.name), below, {"style": "invis", "weight": "0"})
+                yield DotEdge(_header(vertex.name), below, {"style": "invis", "weight": "0"})
 
     # --- edges
 
-    def _defaults(self) -> Iterator[Edge]:
+    def _defaults(self) -> Iterator[DotEdge]:
         for place, area in self.picture.areas():
             if area.initial is not None:
                 text = wrapped(area.effect)
                 yield from self._forward(_initial(place), area.initial, text, place)
 
-    def _arrows(self) -> Iterator[Edge]:
+    def _arrows(self) -> Iterator[DotEdge]:
         bundles: dict[tuple[str, str, bool], list[Arrow]] = {}
         for arrow in self.picture.arrows:
             bundles.setdefault((arrow.source, arrow.target, arrow.local), []).append(arrow)
@@ -138,13 +149,13 @@ class _Drawing:
 
     def _arrow(
         self, source: str, target: str, text: tuple[str, ...], local: bool
-    ) -> Iterator[Edge]:
+    ) -> Iterator[DotEdge]:
         inner = source in self.reading.chain(target)[1:]
         within = inner or target in self.reading.chain(source)
         if inner and local:
             place = next(p for p in self.reading.places[target] if p[0] == source)
             label = self._label(source, target, text, place)
-            yield Edge(_header(source), label, {"arrowhead": "none"})
+            yield DotEdge(_header(source), label, {"arrowhead": "none"})
             yield from self._edge(label, target, place)
             return
         place = self.reading.common(source, target)
@@ -162,8 +173,8 @@ class _Drawing:
             yield from self._edge(target, source, place, **BACKWARD)
 
     def _forward(
-        self, source: str, target: str, text: tuple[str, ...], place: Place
-    ) -> Iterator[Edge]:
+        self, source: str, target: str, text: tuple[str, ...], place: RegionKey
+    ) -> Iterator[DotEdge]:
         if not text:
             yield from self._edge(source, target, place)
             return
@@ -171,7 +182,7 @@ class _Drawing:
         yield from self._edge(source, label, place, arrowhead="none")
         yield from self._edge(label, target, place)
 
-    def _label(self, source: str, target: str, text: tuple[str, ...], place: Place) -> str:
+    def _label(self, source: str, target: str, text: tuple[str, ...], place: RegionKey) -> str:
         """The node of a label, drawn in ``place``; its name. Without text, a bend of the line."""
         name = f"{source} to {target}" + (" inside" if place[0] == source else "")
         look: Attributes = {"shape": "point", "width": "0.01"}
@@ -180,10 +191,10 @@ class _Drawing:
             table = '<table border="0" cellborder="0" cellspacing="0" cellpadding="2">'
             row = Html(f'{table}<tr><td align="left">{inside}</td></tr></table>')
             look = {"shape": "plain", "label": row}
-        self.labels[place].append(Node(name, look))
+        self.labels[place].append(DotNode(name, look))
         return name
 
-    def _edge(self, tail: str, head: str, place: Place, **look: str) -> Iterator[Edge]:
+    def _edge(self, tail: str, head: str, place: RegionKey, **look: str) -> Iterator[DotEdge]:
         """An edge between nodes or composite states, these clipped at their border.
 
         A second edge, not seen, keeps what stands in ``place`` around one end
@@ -195,17 +206,17 @@ class _Drawing:
             attributes["ltail"], above = cluster(tail), _foot(tail)
         if self._is_composite(head):
             attributes["lhead"], below = cluster(head), _header(head)
-        yield Edge(above, below, attributes)
+        yield DotEdge(above, below, attributes)
         outer, lower = self._standing(tail, place), self._standing(head, place)
         if (outer, lower) != (tail, head):
             above = _foot(outer) if self._is_composite(outer) else outer
             below = _header(lower) if self._is_composite(lower) else lower
-            yield Edge(above, below, {"style": "invis", "weight": "0"})
+            yield DotEdge(above, below, {"style": "invis", "weight": "0"})
 
     def _is_composite(self, name: str) -> bool:
         return name in self.vertex and self.vertex[name].is_composite
 
-    def _standing(self, name: str, place: Place) -> str:
+    def _standing(self, name: str, place: RegionKey) -> str:
         """The node, or the state around it, that stands in ``place`` itself."""
         if name not in self.vertex:
             return name
@@ -221,7 +232,7 @@ def _foot(name: str) -> str:
     return f"foot {name}"
 
 
-def _initial(place: Place) -> str:
+def _initial(place: RegionKey) -> str:
     return f"initial {place[0] or ''} {place[1]}"
 
 
@@ -230,13 +241,13 @@ def _left(lines: Iterable[str]) -> str:
     return "".join(f"{html(line)}{ROOM}{LEFT}" for line in lines)
 
 
-def _behaviours(vertex: Vertex) -> str:
+def _behaviours(vertex: DrawnVertex) -> str:
     """The lines of a state's compartment, as HTML."""
     lines = [line for behaviour in vertex.behaviours for line in wrapped(behaviour)]
     return f'<font point-size="{SMALL}">{_left(lines)}</font>'
 
 
-def _box(vertex: Vertex) -> Html:
+def _box(vertex: DrawnVertex) -> Html:
     """A simple state: its name, and its behaviours below a line."""
     rows = f'<tr><td cellpadding="5">{html(vertex.name, "b")}</td></tr>'
     if vertex.behaviours:
@@ -245,7 +256,7 @@ def _box(vertex: Vertex) -> Html:
     return Html(f"{table}>{rows}</table>")
 
 
-def _top(vertex: Vertex) -> Html:
+def _top(vertex: DrawnVertex) -> Html:
     """The top of a composite state."""
     rows = f"<tr><td>{html(vertex.name, 'b')}</td></tr>"
     if vertex.behaviours:

@@ -11,8 +11,8 @@ from ravenchart.gen.model.commands import Device, Server
 from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.system import System
 
-from .dot import Attributes, Edge, Html, html
-from .dot import Node as Drawn
+from .dot import Attributes, DotEdge, Html, html
+from .dot import DotNode as Drawn
 from .look import PAPER, SHADES
 
 DASHED: Attributes = {"style": "dashed"}
@@ -20,7 +20,7 @@ DASHED: Attributes = {"style": "dashed"}
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class DeviceLink:
     """A required interface, and the device or provided interface that something of it is bound to.
 
     ``interface`` None: of a device. What is on another node comes by messages.
@@ -32,15 +32,15 @@ class Link:
     interface: str | None
 
 
-def links(system: System) -> tuple[Link, ...]:
+def links(system: System) -> tuple[DeviceLink, ...]:
     """What bindings lead to, each once, in model order."""
-    found: dict[Link, None] = {}
+    found: dict[DeviceLink, None] = {}
     for binding in system.bindings:
         provider, own = binding.provider, (binding.instance, binding.need.interface)
         if isinstance(provider, Device):
-            found[Link(*own, provider.name, None)] = None
+            found[DeviceLink(*own, provider.name, None)] = None
         elif isinstance(provider, Server):
-            found[Link(*own, provider.instance, provider.interface.name)] = None
+            found[DeviceLink(*own, provider.instance, provider.interface.name)] = None
     return tuple(found)
 
 
@@ -119,9 +119,9 @@ def _within(device: Device) -> Iterator[Device]:
         yield from _within(member)
 
 
-def parts(system: System) -> Iterator[Edge]:
+def parts(system: System) -> Iterator[DotEdge]:
     """From each array to what it is made of."""
     for device in system.devices:
         for member in device.members:
             look: Attributes = {"dir": "back", "arrowtail": "odiamond", "arrowsize": "0.9"}
-            yield Edge(device_name(device.name), device_name(member.name), look)
+            yield DotEdge(device_name(device.name), device_name(member.name), look)

@@ -25,7 +25,7 @@ class Defaults:
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class DotNode:
     """A node."""
 
     name: str
@@ -33,7 +33,7 @@ class Node:
 
 
 @dataclass(frozen=True, slots=True)
-class Edge:
+class DotEdge:
     """An edge."""
 
     tail: str
@@ -46,10 +46,10 @@ class Group:
     """A graph inside another; a cluster has a border and a name of its own."""
 
     name: str
-    items: tuple[Item, ...]
+    items: tuple[DotItem, ...]
 
 
-Item = Defaults | Node | Edge | Group
+DotItem = Defaults | DotNode | DotEdge | Group
 
 
 def cluster(name: str) -> str:
@@ -57,24 +57,24 @@ def cluster(name: str) -> str:
     return f"cluster {name}"
 
 
-def digraph(name: str, items: Iterable[Item]) -> str:
+def digraph(name: str, items: Iterable[DotItem]) -> str:
     """The text of a directed graph."""
     return "".join(f"{line}\n" for line in (f"digraph {_quoted(name)} {{", *_body(items), "}"))
 
 
-def _body(items: Iterable[Item]) -> Iterator[str]:
+def _body(items: Iterable[DotItem]) -> Iterator[str]:
     for item in items:
         for line in _lines(item):
             yield f"  {line}"
 
 
-def _lines(item: Item) -> Iterator[str]:
+def _lines(item: DotItem) -> Iterator[str]:
     match item:
         case Defaults(kind, attributes):
             yield f"{kind}{_bracketed(attributes)};"
-        case Node(name, attributes):
+        case DotNode(name, attributes):
             yield f"{_quoted(name)}{_bracketed(attributes)};"
-        case Edge(tail, head, attributes):
+        case DotEdge(tail, head, attributes):
             yield f"{_quoted(tail)} -> {_quoted(head)}{_bracketed(attributes)};"
         case Group(name, items):
             yield f"subgraph {_quoted(name)} {{"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from .order import Reading
-from .picture import Area, Arrow, Picture, Place, Shape, Vertex
+from .order import Arrangement
+from .picture import Area, Arrow, DrawnVertex, Picture, RegionKey, Shape
 
 _STEREOTYPES: Mapping[Shape, str] = {
     Shape.CHOICE: "choice",
@@ -67,8 +67,8 @@ class _Drawing:
 
     def __init__(self, picture: Picture) -> None:
         self.picture = picture
-        self.arrows: dict[Place, list[Arrow]] = {place: [] for place, _ in picture.areas()}
-        reading = Reading(picture)
+        self.arrows: dict[RegionKey, list[Arrow]] = {place: [] for place, _ in picture.areas()}
+        reading = Arrangement(picture)
         for arrow in picture.arrows:
             self.arrows[reading.common(arrow.source, arrow.target)].append(arrow)
 
@@ -87,7 +87,7 @@ class _Drawing:
             label = ("local: " if arrow.local else "") + arrow.label.text
             yield f"{_id(arrow.source)} --> {target}{_after_colon(label)}"
 
-    def _vertex(self, vertex: Vertex) -> Iterator[str]:
+    def _vertex(self, vertex: DrawnVertex) -> Iterator[str]:
         name = _id(vertex.name)
         if vertex.is_composite:
             yield f"state {name} {{"

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import networkx as nx
 
-from .picture import Area, Picture, Place
+from .picture import Area, Picture, RegionKey
 
 
-class Reading:
+class Arrangement:
     """Where each vertex stands: what is around it, and its position in its area."""
 
     def __init__(self, picture: Picture) -> None:
@@ -26,7 +26,7 @@ class Reading:
             for index, name in enumerate(self._in_order(area)):
                 self.position[name] = index
 
-    def common(self, one: str, other: str) -> Place:
+    def common(self, one: str, other: str) -> RegionKey:
         """The innermost area around both."""
         return next(place for place in self.places[one] if place in self.places[other])
 

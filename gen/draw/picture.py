@@ -16,7 +16,7 @@ from ravenchart.gen.model.statechart import Initial, Region, State, Transition, 
 
 from . import words
 
-Place = tuple[str | None, str]
+RegionKey = tuple[str | None, str]
 """An area by its composite state (None: the top) and its name."""
 
 
@@ -61,7 +61,7 @@ class Arrow:
 
 
 @dataclass(frozen=True, slots=True)
-class Vertex:
+class DrawnVertex:
     """A state or pseudostate; a composite state has areas.
 
     ``behaviours`` are entry, exit and do activities, internal transitions (with
@@ -86,7 +86,7 @@ class Area:
     name: str
     initial: str | None
     effect: Label
-    vertices: tuple[Vertex, ...]
+    vertices: tuple[DrawnVertex, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,12 +98,12 @@ class Picture:
     area: Area
     arrows: tuple[Arrow, ...]
 
-    def vertices(self) -> Iterator[tuple[Vertex, tuple[Place, ...]]]:
+    def vertices(self) -> Iterator[tuple[DrawnVertex, tuple[RegionKey, ...]]]:
         """Every vertex, outer before inner, with where it stands, innermost first."""
 
         def inside(
-            area: Area, owner: str | None, around: tuple[Place, ...]
-        ) -> Iterator[tuple[Vertex, tuple[Place, ...]]]:
+            area: Area, owner: str | None, around: tuple[RegionKey, ...]
+        ) -> Iterator[tuple[DrawnVertex, tuple[RegionKey, ...]]]:
             places = ((owner, area.name), *around)
             for vertex in area.vertices:
                 yield vertex, places
@@ -112,7 +112,7 @@ class Picture:
 
         return inside(self.area, None, ())
 
-    def areas(self) -> Iterator[tuple[Place, Area]]:
+    def areas(self) -> Iterator[tuple[RegionKey, Area]]:
         """Every area, outer before inner."""
         yield (None, self.area.name), self.area
         for vertex, _ in self.vertices():
@@ -140,7 +140,7 @@ def _area(
     nested = "" if owner is None else name
     states = [_state(component, region, s) for s in region.children(owner, nested)]
     pseudostates = [
-        Vertex(p.name, Shape(p.kind.value))
+        DrawnVertex(p.name, Shape(p.kind.value))
         for p in region.pseudostates
         if (p.parent, p.region) == (owner, nested)
     ]
@@ -148,10 +148,10 @@ def _area(
     return Area(name, initial.target, effect, (*states, *pseudostates))
 
 
-def _state(component: Component, region: Region, state: State) -> Vertex:
+def _state(component: Component, region: Region, state: State) -> DrawnVertex:
     areas = tuple(_area(component, region, state.name, r.name, r.initial) for r in state.regions)
     shape = Shape.FINAL if state.final else Shape.STATE
-    return Vertex(state.name, shape, tuple(_behaviours(component, region, state)), areas)
+    return DrawnVertex(state.name, shape, tuple(_behaviours(component, region, state)), areas)
 
 
 def _behaviours(component: Component, region: Region, state: State) -> Iterator[Label]:

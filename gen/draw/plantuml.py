@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from .picture import Area, Picture, Shape, Vertex
+from .picture import Area, DrawnVertex, Picture, Shape
 
 _STEREOTYPES: Mapping[Shape, str] = {
     Shape.FINAL: "end",
@@ -45,7 +45,7 @@ def _area(area: Area) -> Iterator[str]:
         yield f"[*] --> {area.initial}{_after_colon(area.effect.text)}"
 
 
-def _vertex(vertex: Vertex) -> Iterator[str]:
+def _vertex(vertex: DrawnVertex) -> Iterator[str]:
     stereotype = _STEREOTYPES.get(vertex.shape)
     head = f"state {vertex.name}" + (f" <<{stereotype}>>" if stereotype else "")
     if not vertex.is_composite:

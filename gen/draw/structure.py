@@ -25,7 +25,7 @@ from ravenchart.gen.model.system import Processor, System
 
 from .devices import (
     DASHED,
-    Link,
+    DeviceLink,
     device_name,
     devices,
     end_port,
@@ -36,8 +36,8 @@ from .devices import (
     required,
     required_port,
 )
-from .dot import Attributes, Defaults, Edge, Group, Html, Item, cluster, digraph, html
-from .dot import Node as Drawn
+from .dot import Attributes, Defaults, DotEdge, DotItem, Group, Html, cluster, digraph, html
+from .dot import DotNode as Drawn
 from .look import FONT, INK, LEFT, PAPER, ROOM, SHADES, SMALL
 
 IN_A_ROW = 2
@@ -75,7 +75,7 @@ class _Drawing:
                 if end is not None:
                     self.on_right[end.instance, end_port(system, message, end)] = True
 
-    def items(self) -> Iterator[Item]:
+    def items(self) -> Iterator[DotItem]:
         """The whole graph."""
         yield Defaults("graph", {
             "label": Html(html(self.system.name, "b") + LEFT), "labelloc": "t", "labeljust": "l",
@@ -91,7 +91,7 @@ class _Drawing:
         for bus in self.system.buses:
             yield self._bus(bus)
         for node, message in product(self.system.nodes, self.system.messages):
-            yield Edge(_rim(node), _message_name(message), _HIDDEN)
+            yield DotEdge(_rim(node), _message_name(message), _HIDDEN)
         for wire in self.system.connections:
             yield self._wire(wire.source, wire.target)
         yield from map(self._bound, links(self.system))
@@ -103,13 +103,13 @@ class _Drawing:
 
     def _node(self, node: Node) -> Group:
         here = [i for i in self.system.instances if i.node == node.name]
-        items: list[Item] = [
+        items: list[DotItem] = [
             Drawn(i.name, {"label": self._instance(i)})
             for i in sorted(here, key=lambda i: self.position[i.name])
         ]
         items += devices(self.system, node.name)
         items.append(Drawn(_rim(node), {"shape": "point", "width": "0.01", "style": "invis"}))
-        items += (Edge(i.name, _rim(node), _HIDDEN) for i in here)
+        items += (DotEdge(i.name, _rim(node), _HIDDEN) for i in here)
         processors = [p for p in self.system.processors if p.node == node.name]
         for processor in processors:
             look = {"style": "filled", "fillcolor": PAPER}
@@ -117,7 +117,7 @@ class _Drawing:
             items.append(_framed(f"processor {processor.name}", _title(processor), look, [table]))
         for start in range(0, len(processors), IN_A_ROW):
             row = [_table_name(p) for p in processors[start : start + IN_A_ROW]]
-            items += (Edge(a, b, _HIDDEN) for a, b in pairwise((*row, _rim(node))))
+            items += (DotEdge(a, b, _HIDDEN) for a, b in pairwise((*row, _rim(node))))
         look = {"style": "rounded,filled", "fillcolor": SHADES[0]}
         return _framed(f"node {node.name}", f"node {html(node.name, 'b')}{LEFT}", look, items)
 
@@ -157,40 +157,40 @@ class _Drawing:
 
     # --- wires
 
-    def _wire(self, source: End, target: End) -> Edge:
+    def _wire(self, source: End, target: End) -> DotEdge:
         if self.position[source.instance] <= self.position[target.instance]:
-            return Edge(source.instance, target.instance, {
+            return DotEdge(source.instance, target.instance, {
                 "tailport": self._port(source), "headport": self._port(target),
             })  # fmt: skip
-        return Edge(target.instance, source.instance, {
+        return DotEdge(target.instance, source.instance, {
             "tailport": self._port(target), "headport": self._port(source), **_BACKWARD,
         })  # fmt: skip
 
-    def _bound(self, link: Link) -> Edge:
+    def _bound(self, link: DeviceLink) -> DotEdge:
         """From a required interface to what provides it; devices stand on the right."""
         tail = f"{required_port(link.required)}:{self._side(link.instance, link.required)}"
         if link.interface is None:
-            return Edge(link.instance, device_name(link.provider), {"tailport": tail, **DASHED})
+            return DotEdge(link.instance, device_name(link.provider), {"tailport": tail, **DASHED})
         port = provided_port(link.interface)
         head = f"{port}:{'e' if self.on_right[link.provider, port] else 'w'}"
         if self.position[link.instance] <= self.position[link.provider]:
             look = {"tailport": tail, "headport": head, **DASHED}
-            return Edge(link.instance, link.provider, look)
+            return DotEdge(link.instance, link.provider, look)
         look = {"tailport": head, "headport": tail, **DASHED, **_BACKWARD}
-        return Edge(link.provider, link.instance, look)
+        return DotEdge(link.provider, link.instance, look)
 
     def _side(self, instance: str, name: str) -> str:
         return "e" if self.on_right[instance, required_port(name)] else "w"
 
-    def _carried(self, message: Message) -> Iterator[Edge]:
+    def _carried(self, message: Message) -> Iterator[DotEdge]:
         """From the port that sends a message, and to those that receive it."""
         name = _message_name(message)
         if message.source is not None:
             ports = {"tailport": self._end(message, message.source), "headport": "w"}
-            yield Edge(message.source.instance, name, dict(ports))
+            yield DotEdge(message.source.instance, name, dict(ports))
         for target in message.targets:
             ports = {"tailport": self._end(message, target), "headport": "w"}
-            yield Edge(target.instance, name, ports | _BACKWARD)
+            yield DotEdge(target.instance, name, ports | _BACKWARD)
 
     def _port(self, end: End) -> str:
         """A port and its side."""
@@ -223,7 +223,7 @@ def _order(system: System) -> list[str]:
     return found
 
 
-def _framed(name: str, label: str, look: Attributes, items: Sequence[Item]) -> Group:
+def _framed(name: str, label: str, look: Attributes, items: Sequence[DotItem]) -> Group:
     frame: Attributes = {"label": Html(label), "fontsize": "11", "labeljust": "l", "margin": "10"}
     return Group(cluster(name), (Defaults("graph", frame | look), *items))
 

@@ -25,7 +25,7 @@ from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
-from .program import Made, program, simulated_units
+from .program import MadeUnit, program, simulated_units
 
 OF_DEVICE_TYPE = re.compile("_(states|units|registers)$")
 """Endings of the units that belong to a device type."""
@@ -34,7 +34,7 @@ PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"}
 """Words that no GNAT project can have as its name, beside those of Ada."""
 
 
-def _units(system: System) -> tuple[Made, ...]:
+def _units(system: System) -> tuple[MadeUnit, ...]:
     """The units of the program and its simulated devices; claims are numbers, not names."""
     return (*program(system, Claims(), system), *simulated_units(system))
 

@@ -10,7 +10,7 @@ from typing import TypeVar
 from ravenchart.gen.derive.calls import device_types
 from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.emit.ada.naming import ada_case, root_package
-from ravenchart.gen.emit.ada.readings import Reading, readings
+from ravenchart.gen.emit.ada.readings import UnitReading, readings
 from ravenchart.gen.emit.ada.syntax import Package, Unit, units_named_in
 from ravenchart.gen.emit.ada.text import print_item, print_unit
 from ravenchart.gen.emit.buses.authentication import (
@@ -37,9 +37,10 @@ from ravenchart.gen.emit.components.packages import (
 )
 from ravenchart.gen.emit.instances.glue import emit_instances
 from ravenchart.gen.emit.language.quiet import (
-    has_computed_conditions,
-    has_decided_conditions,
+    OfComponent,
     quiet,
+    words_of_system,
+    words_of_types,
 )
 from ravenchart.gen.emit.language.types import emit_root
 from ravenchart.gen.emit.nodes.deployment import emit_deployment, emit_without_tasks
@@ -72,7 +73,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class MadeUnit:
     """A unit of the program: its context, the text of its item, and what was read in it.
 
     The declarations themselves are dropped: there are millions in a large program.
@@ -80,7 +81,7 @@ class Made:
 
     unit: Unit
     text: str
-    reading: Reading
+    reading: UnitReading
 
 
 class _Maker:
@@ -93,12 +94,12 @@ class _Maker:
         #  without such a type the root has no need of the runtime, and its children
         #  cannot see it through the root
         self.blind = not any(isinstance(t, IntegerType) for t in system.types)
-        self.decided = has_decided_conditions(system)
-        self.computed = has_computed_conditions(system)
+        self.words = words_of_system(system)
+        self.words_of_types = words_of_types(system)
         used = {i.component.name for i in system.instances}
         self.components = [c for c in system.components if c.name in used]
 
-    def logic(self, meanwhile: Callable[[], T]) -> tuple[list[Made], T]:
+    def logic(self, meanwhile: Callable[[], T]) -> tuple[list[MadeUnit], T]:
         """The root and the components (no state, no tasks), and what is made ``meanwhile``."""
         root = self.made([emit_root(self.system, self.header)])
         parts, besides = made_by_all(
@@ -109,27 +110,31 @@ class _Maker:
         )
         return [*root, *(made for part in parts for made in part)], besides
 
-    def _of_component(self, component: Component) -> list[Made]:
+    def _of_component(self, component: Component) -> list[MadeUnit]:
         system, header = self.system, self.header
+        words = OfComponent(component, self.words_of_types)
         found = [emit_component(system, component, header)]
         for region in component.regions:
-            found += emit_region(system, component, region, header, noted=self.noted)
-        found += emit_activities(system, component, header)
-        return self.made(found)
+            own = emit_region(system, component, region, header, noted=self.noted)
+            found += [quiet(unit, words.region(region)) for unit in own]
+        own = emit_activities(system, component, header)
+        found += [quiet(unit, words.activities()) for unit in own]
+        return self._read(found)
 
-    def made(self, found: Sequence[Unit]) -> list[Made]:
-        """Units with their texts and readings."""
+    def made(self, found: Sequence[Unit]) -> list[MadeUnit]:
+        """Units that belong to no component, with their texts and readings."""
+        return self._read([quiet(unit, self.words) for unit in found])
+
+    def _read(self, found: Sequence[Unit]) -> list[MadeUnit]:
         if self.blind:
             found = [_seeing_runtime(unit) for unit in found]
-        if self.decided:
-            found = [quiet(unit, computed=self.computed) for unit in found]
         texts = [print_item(unit) for unit in found]
         read = readings(found, root_package(self.system))
         context = [_context(_pruned(unit, root_package(self.system))) for unit in found]
-        return [Made(u, t, r) for u, t, r in zip(context, texts, read, strict=True)]
+        return [MadeUnit(u, t, r) for u, t, r in zip(context, texts, read, strict=True)]
 
 
-def program(system: System, claims: Claims, whole: System) -> tuple[Made, ...]:
+def program(system: System, claims: Claims, whole: System) -> tuple[MadeUnit, ...]:
     """Every Ada unit of a program; ``claims`` are what the certificate of the ``whole`` shows.
 
     ``whole`` is the system whose part this program is, or this system itself.
@@ -142,14 +147,14 @@ def program(system: System, claims: Claims, whole: System) -> tuple[Made, ...]:
 
 
 @lru_cache(maxsize=8)
-def _without_claims(system: System) -> tuple[_Maker, tuple[Made, ...], tuple[Made, ...]]:
+def _without_claims(system: System) -> tuple[_Maker, tuple[MadeUnit, ...], tuple[MadeUnit, ...]]:
     """What makes the units, and those before and behind the timing certificate.
 
     Made once, checked and then written.
     """
     maker = _Maker(system)
 
-    def others() -> tuple[list[Made], list[Made]]:
+    def others() -> tuple[list[MadeUnit], list[MadeUnit]]:
         before = [
             *emit_codecs(system, maker.header),
             *emit_devices(system, maker.header),
@@ -166,7 +171,7 @@ def simulation(system: System) -> dict[str, str]:
     reduced = simulated(system)
     maker = _Maker(reduced, noted=True)
 
-    def others() -> list[Made]:
+    def others() -> list[MadeUnit]:
         found = [
             *emit_devices(reduced, maker.header),
             *emit_instances(reduced, maker.header, noted=True),
@@ -215,7 +220,7 @@ def _without_repeats(found: list[Unit]) -> list[Unit]:
     return out
 
 
-def _printed(found: Sequence[Made]) -> dict[str, str]:
+def _printed(found: Sequence[MadeUnit]) -> dict[str, str]:
     pruned = _without_repeats([made.unit for made in found])
     pairs = zip(pruned, found, strict=True)
     return {unit.file_name: print_unit(unit, made.text) for unit, made in pairs}
@@ -328,7 +333,7 @@ def simulated_drivers(system: System) -> dict[str, str]:
     }
 
 
-def simulated_units(system: System) -> tuple[Made, ...]:
+def simulated_units(system: System) -> tuple[MadeUnit, ...]:
     """The same as units that are read."""
     return tuple(_Maker(system).made([unit for _, unit in _simulated(system)]))
 

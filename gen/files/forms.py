@@ -66,7 +66,7 @@ def check(tree: Map) -> tuple[ModelFile | None, list[Diagnostic]]:
             return read, found
         paths: set[Path] = set()
         for item in read:
-            place = Place(tree, item["loc"])
+            place = ErrorPlace(tree, item["loc"])
             if not place.follows_from(removed, item["type"]):
                 found.append(place.diagnostic(item))
             paths.add(place.path)
@@ -89,7 +89,7 @@ def _holds(value: object, step: str | int) -> bool:
     return isinstance(value, Seq) and isinstance(step, int) and step < len(value)
 
 
-class Place:
+class ErrorPlace:
     """Where in a tree one of pydantic's errors is, given its ``loc``."""
 
     def __init__(self, tree: Map, loc: tuple[int | str, ...]) -> None:
@@ -229,7 +229,7 @@ def keys_beside(tree: Map, key: str) -> dict[str, str]:
         if item["type"] == "extra_forbidden" and item["loc"][-1] == key:
             found |= _meanings(item["loc"][:-1])
         elif item["type"] == "choice":
-            value = Place(tree, item["loc"]).value
+            value = ErrorPlace(tree, item["loc"]).value
             if isinstance(value, Map) and key in value:
                 found |= dict.fromkeys(re.findall(r"`(\w+)`", item["msg"]), "")
     return found

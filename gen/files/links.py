@@ -14,7 +14,7 @@ from .reference import TITLES
 from .schema import ModelFile
 from .schema_base import REQUIREMENTS, Element
 
-Step = str | int
+PathPart = str | int
 """A key of a mapping, or the number of an item of a list."""
 
 
@@ -26,7 +26,7 @@ class Link:
     """Its name from the outside to the inside: `Pump.Infusion.Alarm`."""
     kind: str
     """What it is, as the headings of the model reference call it."""
-    path: tuple[Step, ...]
+    path: tuple[PathPart, ...]
     """From the root of the file: `components`, `Pump`, `regions`, ..."""
     ids: tuple[str, ...]
     origin: Origin
@@ -42,7 +42,9 @@ def links(forms: Iterable[ModelFile]) -> tuple[Link, ...]:
     return tuple(link for form in forms for link in _of_element(form, (), ()))
 
 
-def _of_element(form: Element, path: tuple[Step, ...], names: tuple[str, ...]) -> Iterator[Link]:
+def _of_element(
+    form: Element, path: tuple[PathPart, ...], names: tuple[str, ...]
+) -> Iterator[Link]:
     """The links of an element and of all that is inside it."""
     if form.req:
         kind = TITLES[type(form).__name__].lower() if path else "model"
@@ -55,7 +57,7 @@ def _of_element(form: Element, path: tuple[Step, ...], names: tuple[str, ...]) -
 
 
 def _of_value(
-    value: object, path: tuple[Step, ...], names: tuple[str, ...], key: str
+    value: object, path: tuple[PathPart, ...], names: tuple[str, ...], key: str
 ) -> Iterator[Link]:
     """The links in the value of a key: in a mapping the entries have names, in a list numbers."""
     if isinstance(value, Element):

@@ -38,7 +38,7 @@ UNLIKE = re.compile("[?!\ufeff]|[|>][-+0-9]*#")
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class TextPlace:
     """Where a key or value begins; ``exact`` when the text stands there as it is, in one line."""
 
     origin: Origin
@@ -57,7 +57,7 @@ class Map(dict[str, object]):
         super().__init__()
         self.origin = origin
         self.keys_at: dict[str, Origin] = {}
-        self.values_at: dict[str, Place] = {}
+        self.values_at: dict[str, TextPlace] = {}
         self.dropped: dict[str, None] = {}
         self.damaged = False
 
@@ -69,7 +69,7 @@ class Seq(list[object]):
         """An empty list at ``origin``."""
         super().__init__()
         self.origin = origin
-        self.items_at: list[Place] = []
+        self.items_at: list[TextPlace] = []
         self.damaged = False
 
 
@@ -135,7 +135,7 @@ class Builder:
                 raise self.refuse("RV-0113", event, message, "put quotes around text with { or [")
             origin = waiting[1]
         begun = Map(origin) if isinstance(event, MappingStartEvent) else Seq(origin)
-        self._put(begun, Place(self.at(event)))
+        self._put(begun, TextPlace(self.at(event)))
         self.open.append(begun)
         self.keys.append(None)
 
@@ -167,9 +167,9 @@ class Builder:
         origin = self.at(event)
         if exact:
             origin = replace(origin, column=origin.column + quoted)
-        self._put(event.value if quoted else scalar(event.value), Place(origin, exact))
+        self._put(event.value if quoted else scalar(event.value), TextPlace(origin, exact))
 
-    def _put(self, value: object, place: Place) -> None:
+    def _put(self, value: object, place: TextPlace) -> None:
         if not self.open:
             self.root, self.root_at = value, place.origin
             return

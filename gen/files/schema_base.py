@@ -46,7 +46,7 @@ from ravenchart.gen.language.quantities import (
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.origins import Origin
 
-from .located import Map, Place, Seq
+from .located import Map, Seq, TextPlace
 
 
 def key(description: str, **limits: Any) -> Any:
@@ -209,14 +209,14 @@ def _scalar(value: object) -> int | bool | str:
     return value
 
 
-Scalar = Annotated[
+ScalarValue = Annotated[
     int | bool | str,
     PlainValidator(_scalar),
     WithJsonSchema({"type": ["integer", "boolean", "string"]}),
 ]
-Constant = Scalar
+Constant = ScalarValue
 """A number, ``true`` or ``false``, or an enumeration literal."""
-ExpressionText = Scalar
+ExpressionText = ScalarValue
 """An expression as text; a number or Boolean may stand alone."""
 
 
@@ -245,7 +245,7 @@ E = TypeVar("E", bound="Element")
 class Element(BaseModel):
     """A mapping of the file format, which remembers where it and its parts were read."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
+    model_config = ConfigDict(extra="forbid", strict=True, defer_build=True)
     _raw: Map = PrivateAttr(default_factory=lambda: Map(Origin("", 1, 1)))
 
     req: Annotated[list[RequirementId], AfterValidator(_each_once)] | None = optional(
@@ -291,12 +291,12 @@ class Element(BaseModel):
         """Where the key itself stands; where the element begins, without it."""
         return self.tree.keys_at.get(name, self.origin)
 
-    def place(self, name: str, inside: str | None = None) -> Place:
+    def place(self, name: str, inside: str | None = None) -> TextPlace:
         """The place of the key's value, or of an entry of the mapping that it holds."""
         value = self.tree.get(name)
         if inside is not None and isinstance(value, Map):
-            return value.values_at.get(inside, Place(value.origin))
-        return self.tree.values_at.get(name, Place(self.origin))
+            return value.values_at.get(inside, TextPlace(value.origin))
+        return self.tree.values_at.get(name, TextPlace(self.origin))
 
     def item_at(self, name: str, index: int) -> Origin:
         """Where an item of the list under the key stands."""

@@ -25,7 +25,7 @@ from .located import DEEPEST, parsed
 
 
 @dataclass(slots=True, eq=False)
-class Scalar:
+class YamlScalar:
     """A scalar: its value as text, and its characters ``text[start:end]``, quotes included."""
 
     start: int
@@ -34,73 +34,73 @@ class Scalar:
 
 
 @dataclass(slots=True, eq=False)
-class Mapping:
+class YamlMapping:
     """A mapping; ``end`` is behind its bracket (flow style) or its last scalar (block style)."""
 
     start: int
     end: int
     flow: bool
-    entries: list[tuple[Scalar, Node]] = field(default_factory=list)
+    entries: list[tuple[YamlScalar, YamlNode]] = field(default_factory=list)
 
-    def entry(self, name: str) -> tuple[Scalar, Node] | None:
+    def entry(self, name: str) -> tuple[YamlScalar, YamlNode] | None:
         """The entry of that name, without regard to case."""
         wanted = name.lower()
         return next((one for one in self.entries if one[0].value.lower() == wanted), None)
 
-    def get(self, name: str) -> Node | None:
+    def get(self, name: str) -> YamlNode | None:
         """The value of that name, without regard to case."""
         found = self.entry(name)
         return None if found is None else found[1]
 
-    def mapping(self, name: str) -> Mapping | None:
+    def mapping(self, name: str) -> YamlMapping | None:
         """The same where it is a mapping."""
         found = self.get(name)
-        return found if isinstance(found, Mapping) else None
+        return found if isinstance(found, YamlMapping) else None
 
-    def scalar(self, name: str) -> Scalar | None:
+    def scalar(self, name: str) -> YamlScalar | None:
         """The same where it is a scalar."""
         found = self.get(name)
-        return found if isinstance(found, Scalar) else None
+        return found if isinstance(found, YamlScalar) else None
 
-    def mappings(self) -> Iterator[tuple[Scalar, Mapping]]:
+    def mappings(self) -> Iterator[tuple[YamlScalar, YamlMapping]]:
         """The entries whose value is a mapping."""
-        yield from ((key, value) for key, value in self.entries if isinstance(value, Mapping))
+        yield from ((key, value) for key, value in self.entries if isinstance(value, YamlMapping))
 
 
 @dataclass(slots=True, eq=False)
 class Sequence:
-    """A list; ``end`` as in `Mapping`."""
+    """A list; ``end`` as in `YamlMapping`."""
 
     start: int
     end: int
     flow: bool
-    items: list[Node] = field(default_factory=list)
+    items: list[YamlNode] = field(default_factory=list)
 
 
-Node = Scalar | Mapping | Sequence
+YamlNode = YamlScalar | YamlMapping | Sequence
 
 Plain = str | dict[str, "Plain"] | list["Plain"]
 """What a tree says, without where: scalars as text."""
 
 
-def plain(node: Node) -> Plain:
+def plain(node: YamlNode) -> Plain:
     """What a tree says."""
     match node:
-        case Scalar():
+        case YamlScalar():
             return node.value
-        case Mapping():
+        case YamlMapping():
             return {key.value: plain(value) for key, value in node.entries}
         case Sequence():
             return [plain(item) for item in node.items]
 
 
-def spans(text: str) -> Mapping | None:
+def spans(text: str) -> YamlMapping | None:
     """The tree of a text that is one mapping; None where it is not, or no model could be."""
     try:
         root = _Building().of(parsed(text))
     except (yaml.YAMLError, ValueError, OverflowError, _NotAModelError):
         return None
-    return root if isinstance(root, Mapping) else None
+    return root if isinstance(root, YamlMapping) else None
 
 
 class _NotAModelError(Exception):
@@ -111,11 +111,11 @@ class _Building:
     """A tree under construction: what is open, and the key that waits in each mapping."""
 
     def __init__(self) -> None:
-        self.root: Node | None = None
-        self.open: list[Mapping | Sequence] = []
-        self.keys: list[Scalar | None] = []
+        self.root: YamlNode | None = None
+        self.open: list[YamlMapping | Sequence] = []
+        self.keys: list[YamlScalar | None] = []
 
-    def of(self, events: Iterable[Event]) -> Node | None:
+    def of(self, events: Iterable[Event]) -> YamlNode | None:
         """The tree of these events."""
         for event in events:
             self._take(event)
@@ -127,11 +127,11 @@ class _Building:
                 raise _NotAModelError
             case ScalarEvent():
                 start, end = _place(event.start_mark), _place(event.end_mark)
-                self._put(Scalar(start, end, event.value))
+                self._put(YamlScalar(start, end, event.value))
             case MappingStartEvent() | SequenceStartEvent():
                 if len(self.open) == DEEPEST:
                     raise _NotAModelError
-                kind = Mapping if isinstance(event, MappingStartEvent) else Sequence
+                kind = YamlMapping if isinstance(event, MappingStartEvent) else Sequence
                 start = _place(event.start_mark)
                 begun = kind(start, start, bool(event.flow_style))
                 self._put(begun)
@@ -141,14 +141,14 @@ class _Building:
                 self.keys.pop()
                 self._close(self.open.pop(), _place(event.end_mark))
 
-    def _close(self, ended: Mapping | Sequence, behind: int) -> None:
+    def _close(self, ended: YamlMapping | Sequence, behind: int) -> None:
         if ended.flow:
             ended.end = behind
             return
         inside = ended.items if isinstance(ended, Sequence) else [v for _, v in ended.entries]
         ended.end = max((node.end for node in inside), default=ended.start)
 
-    def _put(self, node: Node) -> None:
+    def _put(self, node: YamlNode) -> None:
         if not self.open:
             self.root = node
             return
@@ -160,7 +160,7 @@ class _Building:
         if key is not None:
             around.entries.append((key, node))
             self.keys[-1] = None
-        elif isinstance(node, Scalar):
+        elif isinstance(node, YamlScalar):
             self.keys[-1] = node
         else:
             raise _NotAModelError

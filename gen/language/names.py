@@ -203,7 +203,7 @@ class Findings:
 
 
 @dataclass(slots=True)
-class Scope(Generic[T]):
+class NameScope(Generic[T]):
     """The names of one kind that can be used in one place, without regard to case.
 
     A name may be declared without an item: its declaration was wrong and

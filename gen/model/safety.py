@@ -25,7 +25,7 @@ from ravenchart.gen.language.terms import (
 from .component import Component
 from .statechart import Lane, Region
 
-Span = tuple[int, int]
+ValueRange = tuple[int, int]
 """First and last value; literals of an enumeration count by their position."""
 
 
@@ -36,7 +36,7 @@ class Fact:
     vertex: str
     data: str
     field: str | None
-    spans: tuple[Span, ...]
+    spans: tuple[ValueRange, ...]
     """In ascending order; none where the vertex is never active."""
 
     def condition(self, component: Component) -> Expression:
@@ -85,7 +85,7 @@ def _is_inside(region: Region, lane: Lane, outer: Lane) -> bool:
     return False
 
 
-def _within(item: Name, of_type: ScalarType, span: Span) -> Expression:
+def _within(item: Name, of_type: ScalarType, span: ValueRange) -> Expression:
     first, last = span
     if of_type == BOOLEAN:
         return item if first else Operation("not", (item,), BOOLEAN)

@@ -140,6 +140,8 @@ class Task:
     sporadic: bool = False
     timed: bool = False
     core: int = 1
+    driver_of: str | None = None
+    """The bus whose driver this is the work of."""
 
     @property
     def suspensions(self) -> int:
@@ -161,6 +163,21 @@ class SharedObject:
 
 
 @dataclass(frozen=True, slots=True)
+class Carried:
+    """A place on a way: the message that carries the value from node to node."""
+
+    message: str
+
+    def __str__(self) -> str:
+        """The message by its name."""
+        return self.message
+
+
+Stop = Carried | str
+"""A place on a way; rows, ports and data by their elements, ``owner.name``."""
+
+
+@dataclass(frozen=True, slots=True)
 class Chain:
     """A way that values take, and how long it may take them; None: no limit.
 
@@ -176,7 +193,7 @@ class Chain:
     """From an input until the first output that knows it."""
     age: Ns | None
     """From the sampling of an input until the output made of it."""
-    way: tuple[str, ...] = ()
+    way: tuple[Stop, ...] = ()
     gap: tuple[str, str] | None = None
     gap_event: tuple[str, str, str] | None = None
     """An event that leads over the gap: itself, what raises it, and the region it is for."""
@@ -268,7 +285,7 @@ class System:
         found = (one for m in self.messages if m.bus == bus for one in self.receptions(m))
         return tuple(one for one in found if one.node == node)
 
-    def reception(self, message: Message, place: str) -> Reception | None:
+    def reception(self, message: Message, place: Stop | None) -> Reception | None:
         """That of the node of a target port, ``instance.port``; of any other place, the first."""
         found = self.receptions(message)
         homes = (self.home(end) for end in message.targets if str(end) == place)

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from ravenchart.gen.derive.completion import table_period
 from ravenchart.gen.files.schema_devices import BindingForm
-from ravenchart.gen.language.names import Findings, Scope, meant
+from ravenchart.gen.language.names import Findings, NameScope, meant
 from ravenchart.gen.language.quantities import LONGEST
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.commands import (
@@ -60,7 +60,7 @@ def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
         provider = devices.provider(form.to, form.at("to"))
         if instance is None:
             continue
-        required: Scope[str] = Scope(f"required interface of {instance.component.name}")
+        required: NameScope[str] = NameScope(f"required interface of {instance.component.name}")
         required.open = instance.component.name in devices.damaged
         for need in instance.component.needs:
             required.declare(need.interface, None, need.interface)

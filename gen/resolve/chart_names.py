@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from ravenchart.gen.files.schema import NestedRegionForm, RegionForm, StateForm
-from ravenchart.gen.language.names import Findings, Scope
+from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.model.statechart import PseudoKind
 from ravenchart.gen.origins import Origin
 
 
-class Row(NamedTuple):
+class WrittenVertex(NamedTuple):
     """A vertex as it is written: its form, and the state and region that it stands in."""
 
     name: str
@@ -23,10 +23,10 @@ class Row(NamedTuple):
 
 def walk(
     states: Mapping[str, StateForm] | None, parent: str | None = None, region: str = ""
-) -> Iterator[Row]:
+) -> Iterator[WrittenVertex]:
     """Every state and pseudostate, in tree order."""
     for name, form in (states or {}).items():
-        yield Row(name, form, parent, region)
+        yield WrittenVertex(name, form, parent, region)
         yield from walk(form.states, name)
         for nested, at in (form.regions or {}).items():
             yield from walk(at.states, name, nested)
@@ -43,7 +43,7 @@ def concurrent_states(states: Mapping[str, StateForm] | None) -> frozenset[str]:
 
 
 @dataclass(frozen=True, slots=True)
-class Vertex:
+class NamedVertex:
     """What a name in a chart stands for, as far as its kind tells."""
 
     name: str
@@ -77,21 +77,21 @@ PSEUDO_WORDS = {
 }
 
 
-def vertex_of(name: str, form: StateForm) -> Vertex:
+def vertex_of(name: str, form: StateForm) -> NamedVertex:
     """What a form under ``states`` declares."""
     if form.kind == "final":
-        return Vertex(name, FINAL_STATE)
+        return NamedVertex(name, FINAL_STATE)
     if form.kind is not None:
         kind = PseudoKind(form.kind)
-        return Vertex(name, PSEUDO_WORDS[kind], kind, is_state=False)
-    return Vertex(name, "state", is_composite=bool(form.states or form.regions))
+        return NamedVertex(name, PSEUDO_WORDS[kind], kind, is_state=False)
+    return NamedVertex(name, "state", is_composite=bool(form.states or form.regions))
 
 
 @dataclass(slots=True)
-class States(Scope[str]):
+class States(NameScope[str]):
     """The states of a region; ``vertices`` holds pseudostates and nested regions too."""
 
-    vertices: Scope[Vertex] = field(default_factory=lambda: Scope("state"))
+    vertices: NameScope[NamedVertex] = field(default_factory=lambda: NameScope("state"))
     parents: dict[str, str | None] = field(default_factory=dict)
     """The state around each vertex, by its name in lower case."""
 
@@ -110,7 +110,7 @@ class States(Scope[str]):
         findings.error("RV-0514", origin, message, hint=hint)
         return None
 
-    def vertex(self, name: str, origin: Origin, findings: Findings) -> Vertex | None:
+    def vertex(self, name: str, origin: Origin, findings: Findings) -> NamedVertex | None:
         """The state or pseudostate of that name; reported when there is none."""
         found = self.vertices.look_up(name, origin, findings)
         if found is None or found.is_state or found.pseudo is not None:
@@ -123,7 +123,7 @@ class States(Scope[str]):
 def names_of(region: str, form: RegionForm, findings: Findings) -> States:
     """The names of a region's states; open when some were lost."""
     scope = States(f"state of {region}")
-    scope.vertices = Scope(f"state of {region}")
+    scope.vertices = NameScope(f"state of {region}")
     scope.open = _lost(form, "states", scope)
     for name, at, parent, _ in walk(form.states):
         vertex = vertex_of(name, at)
@@ -132,14 +132,14 @@ def names_of(region: str, form: RegionForm, findings: Findings) -> States:
         scope.open = _lost(at, "states", scope) or scope.open
         scope.open = at.lost("regions") or bool(at.dropped("regions")) or scope.open
         for nested, inner in (at.regions or {}).items():
-            around = Vertex(nested, "region", is_state=False)
+            around = NamedVertex(nested, "region", is_state=False)
             _declare(around, inner.origin, scope, findings)
             scope.open = _lost(inner, "states", scope) or scope.open
     scope.vertices.open = scope.open
     return scope
 
 
-def _declare(vertex: Vertex, origin: Origin, scope: States, findings: Findings) -> None:
+def _declare(vertex: NamedVertex, origin: Origin, scope: States, findings: Findings) -> None:
     known = scope.vertices.items.get(vertex.name.lower())
     first = None if known is None else known[2]
     if known is not None and first is not None and first.what != vertex.what:
@@ -149,7 +149,7 @@ def _declare(vertex: Vertex, origin: Origin, scope: States, findings: Findings) 
         findings.error("RV-0303", origin, message, notes=notes, hint=hint)
         return
     kind = scope.kind.replace("state", vertex.what, 1)
-    Scope(kind, scope.vertices.items).declare(vertex.name, origin, vertex, findings)
+    NameScope(kind, scope.vertices.items).declare(vertex.name, origin, vertex, findings)
     if vertex.is_state:
         scope.declare(vertex.name, origin, vertex.name)
 

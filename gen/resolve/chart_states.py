@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ravenchart.gen.files.schema import InitialForm, NestedRegionForm, RegionForm, StateForm
-from ravenchart.gen.language.names import Findings, Scope
+from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.terms import Flow, Ns
 from ravenchart.gen.model.component import Event
 from ravenchart.gen.model.statechart import Initial, NestedRegion, PseudoKind, Pseudostate, State
 
-from .chart_names import FINAL_STATE, Row, States, vertex_of, walk
+from .chart_names import FINAL_STATE, States, WrittenVertex, vertex_of, walk
 from .flows import Targets, flow_of
 from .vocabulary import Vocabulary
 
@@ -68,7 +68,7 @@ def vertices_of(form: RegionForm, setting: Setting) -> tuple[list[State], list[P
     return states, pseudostates
 
 
-def _refuse_keys(row: Row, setting: Setting) -> None:
+def _refuse_keys(row: WrittenVertex, setting: Setting) -> None:
     """A final state or pseudostate has nothing but its kind."""
     vertex = vertex_of(row.name, row.form)
     hints = INSTEAD_FINAL if vertex.what == FINAL_STATE else INSTEAD
@@ -78,7 +78,7 @@ def _refuse_keys(row: Row, setting: Setting) -> None:
             setting.findings.error("RV-0210", row.form.at_key(key), message, hint=hints[key])
 
 
-def _state(row: Row, setting: Setting) -> State:
+def _state(row: WrittenVertex, setting: Setting) -> State:
     name, form, parent, region = row
     if form.states and form.regions:
         message = f"{name} has both `states` and `regions`"
@@ -100,7 +100,7 @@ def _state(row: Row, setting: Setting) -> State:
     )
 
 
-def _only_region(row: Row, setting: Setting) -> tuple[NestedRegion, ...]:
+def _only_region(row: WrittenVertex, setting: Setting) -> tuple[NestedRegion, ...]:
     """The region of a state that has `states`; none for a leaf."""
     name, form = row.name, row.form
     if not form.states:
@@ -150,9 +150,9 @@ def initial_of(
     return Initial(target or _first(form.states), effect)
 
 
-def _defers(row: Row, setting: Setting) -> tuple[str, ...]:
+def _defers(row: WrittenVertex, setting: Setting) -> tuple[str, ...]:
     """The events that a state defers, each once."""
-    names: Scope[Event] = Scope("entry of `defer`")
+    names: NameScope[Event] = NameScope("entry of `defer`")
     for index, text in enumerate(row.form.defer or ()):
         origin = row.form.item_at("defer", index)
         event = setting.targets.events.look_up(text, origin, setting.findings)

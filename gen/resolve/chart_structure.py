@@ -6,10 +6,8 @@ and nothing else is said about it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any
-
-import networkx
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from graphlib import CycleError, TopologicalSorter
 
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.terms import BOOLEAN, Expression, Literal
@@ -81,11 +79,15 @@ def _branching(tree: Tree, pseudo: Pseudostate) -> Iterator[Diagnostic]:
 
 def _circles(tree: Tree) -> Iterator[Diagnostic]:
     """Segments never lead from a choice or junction back to it: such a step would not end."""
-    graph: networkx.DiGraph[Any] = networkx.DiGraph()
     inner = [p.name for p in tree.region.pseudostates if p.kind in BRANCHING]
-    graph.add_nodes_from(inner)
-    for name in inner:
-        graph.add_edges_from((name, t.target) for t in tree.outgoing.get(name, ()))
+    ways: dict[str, Iterable[str]] = {
+        name: [t.target for t in tree.outgoing.get(name, ())] for name in inner
+    }
+    if not _has_circle(ways):
+        return
+    import networkx  # only here: it takes longer than the check of a model
+
+    graph: networkx.DiGraph[str] = networkx.DiGraph(ways)
     for circle in networkx.strongly_connected_components(graph):
         members = [name for name in inner if name in circle]
         if not members or (len(members) == 1 and not graph.has_edge(members[0], members[0])):
@@ -102,6 +104,14 @@ def _circles(tree: Tree) -> Iterator[Diagnostic]:
         ]
         hint = "a step must end: put a state into the circle"
         yield error("RV-0518", first.origin, message, notes=notes, hint=hint)
+
+
+def _has_circle(ways: Mapping[str, Iterable[str]]) -> bool:
+    try:
+        TopologicalSorter(ways).prepare()
+    except CycleError:
+        return True
+    return False
 
 
 def _count(tree: Tree, target: str, known: dict[str, int]) -> int:

@@ -17,7 +17,7 @@ from ravenchart.gen.model.statechart import (
     When,
 )
 
-from .chart_names import Vertex
+from .chart_names import NamedVertex
 from .chart_states import Setting
 from .flows import flow_of
 from .typed import condition
@@ -71,7 +71,7 @@ def transition_of(name: str, form: TransitionForm, setting: Setting) -> Transiti
     )
 
 
-def _has_no_exit(vertex: Vertex) -> bool:
+def _has_no_exit(vertex: NamedVertex) -> bool:
     return vertex.is_final or vertex.pseudo is PseudoKind.TERMINATE
 
 
@@ -83,7 +83,7 @@ def _is_else(form: TransitionForm) -> bool:
 
 
 def _kind(
-    name: str, form: TransitionForm, source: Vertex, target: Vertex, setting: Setting
+    name: str, form: TransitionForm, source: NamedVertex, target: NamedVertex, setting: Setting
 ) -> TransitionKind:
     """External, local or internal; reported where the keys do not agree."""
     findings = setting.findings
@@ -117,7 +117,7 @@ def _kind(
 
 
 def _check_local(
-    name: str, form: TransitionForm, source: Vertex, target: Vertex, setting: Setting
+    name: str, form: TransitionForm, source: NamedVertex, target: NamedVertex, setting: Setting
 ) -> None:
     """A local transition leads from a composite state to something inside it."""
     message = hint = None
@@ -143,8 +143,8 @@ def _check_local(
 def _trigger(
     name: str,
     form: TransitionForm,
-    source: Vertex | None,
-    target: Vertex | None,
+    source: NamedVertex | None,
+    target: NamedVertex | None,
     setting: Setting,
 ) -> Trigger | None:
     keys = [key for key in TRIGGERS if form.has(key) or form.lost(key)]
@@ -199,7 +199,7 @@ def _one_trigger(form: TransitionForm, setting: Setting) -> Trigger | None:
 
 
 def _words(
-    form: TransitionForm, source: Vertex | None, trigger: Trigger | None, setting: Setting
+    form: TransitionForm, source: NamedVertex | None, trigger: Trigger | None, setting: Setting
 ) -> Vocabulary:
     """What guard and effect may name: the event's value as well, when it carries one."""
     if isinstance(trigger, OnEvent):
@@ -221,8 +221,8 @@ def _words(
 def _guard(
     name: str,
     form: TransitionForm,
-    source: Vertex | None,
-    target: Vertex | None,
+    source: NamedVertex | None,
+    target: NamedVertex | None,
     words: Vocabulary,
     setting: Setting,
 ) -> tuple[Expression | None, bool]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ravenchart.gen.files.schema import RegionForm
-from ravenchart.gen.language.names import Findings, Scope
+from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.model.statechart import Overflow, Region, State, Timing, Transition, When
 
 from .chart_names import States
@@ -28,7 +28,7 @@ def region_of(
     setting = Setting(name, timing.period, states, words, targets, findings)
     vertices, pseudostates = vertices_of(form, setting)
     transitions: list[Transition] = []
-    names: Scope[str] = Scope(f"transition of {name}")
+    names: NameScope[str] = NameScope(f"transition of {name}")
     for transition, given in form.transitions.items():
         names.declare(transition, given.origin, transition, findings)
         made = transition_of(transition, given, setting)

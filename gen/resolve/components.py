@@ -13,7 +13,7 @@ from ravenchart.gen.files.schema import (
 )
 from ravenchart.gen.files.schema_deployment import ProbeForm
 from ravenchart.gen.files.schema_frames import WatchForm
-from ravenchart.gen.language.names import Findings, Scope, Unknown, meant
+from ravenchart.gen.language.names import Findings, NameScope, Unknown, meant
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Flow, Ns, Type
 from ravenchart.gen.model.commands import Command, Need
@@ -40,7 +40,7 @@ class Parts:
 
     component: Component
     members: Members
-    rows: Scope[str]
+    rows: NameScope[str]
     damaged: frozenset[str]
     is_damaged: bool
 
@@ -69,9 +69,9 @@ def timing_of(
 def parts_of(
     name: str,
     form: ComponentForm,
-    types: Scope[Type],
+    types: NameScope[Type],
     literals: frozenset[str],
-    dictionary: Scope[Command],
+    dictionary: NameScope[Command],
     system: str,
     findings: Findings,
 ) -> Parts:
@@ -81,7 +81,7 @@ def parts_of(
     members = members_of(form, types, space)
     needs = needs_of(form, dictionary, types, members, space)
     hears = heard_of(form, dictionary, types, members, findings)
-    states: Scope[Scope[str]] = Scope("region", open=form.lost("regions"))
+    states: NameScope[NameScope[str]] = NameScope("region", open=form.lost("regions"))
     for gone in form.dropped("regions"):
         states.declare(gone, None, None)
     damaged: set[str] = set()
@@ -96,7 +96,7 @@ def parts_of(
     outputs, calls = outputs_of(members), _calls(form, members, needs)
     targets = Targets(members.data_types, outputs, members.events, calls)
     regions: list[Region] = []
-    activities: Scope[Activity] = Scope("activity")
+    activities: NameScope[Activity] = NameScope("activity")
     for region, at in (form.regions or {}).items():
         count = findings.count()
         timing = timing_of(region, at, findings)
@@ -142,9 +142,9 @@ def parts_of(
     return Parts(component, members, _rows(name, form, component), frozenset(damaged), hurt)
 
 
-def _calls(form: ComponentForm, members: Members, needs: tuple[Need, ...]) -> Scope[Need]:
+def _calls(form: ComponentForm, members: Members, needs: tuple[Need, ...]) -> NameScope[Need]:
     """The required commands that can be called."""
-    scope: Scope[Need] = Scope("required command")
+    scope: NameScope[Need] = NameScope("required command")
     scope.open = form.lost("requires") or bool(form.dropped("requires"))
     called = {need.name.lower(): need for need in needs if not need.is_read}
     for name, origin, port in members.ports.items.values():
@@ -153,9 +153,9 @@ def _calls(form: ComponentForm, members: Members, needs: tuple[Need, ...]) -> Sc
     return scope
 
 
-def _rows(name: str, form: ComponentForm, component: Component) -> Scope[str]:
+def _rows(name: str, form: ComponentForm, component: Component) -> NameScope[str]:
     """What tables may hold of an instance of the component."""
-    scope: Scope[str] = Scope(f"region or activity of {name}")
+    scope: NameScope[str] = NameScope(f"region or activity of {name}")
     scope.open = form.lost("regions") or form.lost("activities")
     if component.port_region is not None:
         scope.declare("ports", None, "ports")
@@ -253,7 +253,7 @@ def _lists(
     form: ActivityForm, words: Vocabulary, targets: Targets, findings: Findings
 ) -> dict[str, tuple[str, ...]]:
     """The declared reads, writes, sends and raises, as the names were declared."""
-    known: Mapping[str, tuple[str, tuple[Scope[object], ...]]] = {
+    known: Mapping[str, tuple[str, tuple[NameScope[object], ...]]] = {
         "reads": (
             "data item, parameter, input port or region",
             (words.readable, words.regions),  # type: ignore[dict-item]
@@ -272,7 +272,7 @@ def _lists(
         ("raises", form.raises),
     ):
         kind, scopes = known[key]
-        names: Scope[str] = Scope(f"entry of `{key}`")
+        names: NameScope[str] = NameScope(f"entry of `{key}`")
         for index, name in enumerate(given or ()):
             origin = form.item_at(key, index)
             if key == "raises" and name.lower() == DONE:
@@ -304,7 +304,7 @@ def _done(targets: Targets, origin: Origin, findings: Findings) -> str | None:
 
 
 def _declared(
-    name: str, kind: str, scopes: Iterable[Scope[object]], origin: Origin, findings: Findings
+    name: str, kind: str, scopes: Iterable[NameScope[object]], origin: Origin, findings: Findings
 ) -> str | None:
     """The name as declared in one of these scopes; None when unknown or unsound."""
     for scope in scopes:

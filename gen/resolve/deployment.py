@@ -20,7 +20,7 @@ from ravenchart.gen.files.schema_frames import (
     DelayedForm,
     RequestedForm,
 )
-from ravenchart.gen.language.names import Findings, Scope
+from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns, Scalar
 from ravenchart.gen.model.buses import Bus, BusErrors, Message
@@ -45,10 +45,10 @@ from .values import constant
 class Site:
     """What the elements of a deployment may refer to."""
 
-    nodes: Scope[Node]
-    buses: Scope[Bus]
-    parts: Scope[Parts]
-    instances: Scope[Instance]
+    nodes: NameScope[Node]
+    buses: NameScope[Bus]
+    parts: NameScope[Parts]
+    instances: NameScope[Instance]
     findings: Findings
 
 
@@ -215,7 +215,7 @@ def port_at(text: str, origin: Origin, site: Site) -> tuple[End, Port] | None:
         return None
     instance, parts, own = found
     ports = parts.members.ports.items.items()
-    named = Scope(
+    named = NameScope(
         f"port of {instance.component.name}",
         {key: at for key, at in ports if at[2] is None or not at[2].is_command},
     )
@@ -230,7 +230,7 @@ def event_at(text: str, origin: Origin, site: Site) -> tuple[str, str] | None:
     if found is None:
         return None
     instance, parts, own = found
-    named = Scope(f"event of {instance.component.name}", parts.members.events.items)
+    named = NameScope(f"event of {instance.component.name}", parts.members.events.items)
     named.open = parts.members.events.open
     event = named.look_up(own, origin, site.findings)
     if event is not None and event.type is not None:
@@ -380,7 +380,7 @@ def _bus_slot(
     return Slot(origin, bus.name, Work.BUS_RECEIVE, "receive", timing, 1, 0)
 
 
-def chain_of(name: str, form: ChainForm, messages: Scope[Message], site: Site) -> Chain | None:
+def chain_of(name: str, form: ChainForm, messages: NameScope[Message], site: Site) -> Chain | None:
     """A chain whose messages and rows exist."""
     places: list[str | None] = []
     for index, text in enumerate(form.path):

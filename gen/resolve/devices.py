@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
-from ravenchart.gen.language.names import Findings, Scope, meant
+from ravenchart.gen.language.names import Findings, NameScope, meant
 from ravenchart.gen.language.terms import Ns, Type
 from ravenchart.gen.model.commands import (
     Command,
@@ -60,12 +60,12 @@ def offered(provider: Provider) -> tuple[str, ...]:
 def device_type_of(
     name: str,
     form: DeviceTypeForm,
-    dictionary: Scope[Command],
-    types: Scope[Type],
+    dictionary: NameScope[Command],
+    types: NameScope[Type],
     findings: Findings,
 ) -> DeviceType | None:
     """A device type whose commands are in the dictionary."""
-    found: Scope[DriverCommand] = Scope("command")
+    found: NameScope[DriverCommand] = NameScope("command")
     for text, wcet in form.provides.items():
         at = form.entry_at("provides", text)
         command = dictionary.look_up(text, at, findings)
@@ -93,18 +93,18 @@ def device_type_of(
 class Devices:
     """The devices of a model, each resolved when it is asked for first."""
 
-    forms: Scope[DeviceForm]
-    scope: Scope[Provider]
+    forms: NameScope[DeviceForm]
+    scope: NameScope[Provider]
     """Those that are known already; a name in it without an item is wrong."""
-    kinds: Scope[DeviceType]
-    instances: Scope[Instance]
-    types: Scope[Type]
+    kinds: NameScope[DeviceType]
+    instances: NameScope[Instance]
+    types: NameScope[Type]
     findings: Findings
     damaged: frozenset[str]
     """Components that had errors: interfaces of theirs may be lost."""
     under_way: list[str] = field(default_factory=list)
 
-    def all(self) -> Scope[Provider]:
+    def all(self) -> NameScope[Provider]:
         """Every device."""
         for name in self.forms.names():
             self._make(name)
@@ -119,7 +119,7 @@ class Devices:
         instance = self.instances.look_up(owner, origin, self.findings)
         if instance is None:
             return None
-        scope: Scope[Provided] = Scope(f"provided interface of {instance.component.name}")
+        scope: NameScope[Provided] = NameScope(f"provided interface of {instance.component.name}")
         scope.open = instance.component.name in self.damaged
         for one in instance.component.provides:
             scope.declare(one.name, one.origin, one)

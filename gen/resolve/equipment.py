@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from itertools import pairwise
 
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
-from ravenchart.gen.language.names import Findings, Scope, meant
+from ravenchart.gen.language.names import Findings, NameScope, meant
 from ravenchart.gen.language.terms import Ns, Scalar, Type
 from ravenchart.gen.model.commands import (
     Access,
@@ -33,10 +33,10 @@ ALIGNMENT = 4
 
 
 def parameters_of(
-    form: DeviceTypeForm, types: Scope[Type], findings: Findings
+    form: DeviceTypeForm, types: NameScope[Type], findings: Findings
 ) -> tuple[DeviceParameter, ...] | None:
     """The parameters of a device type; None when one of them is wrong."""
-    found: Scope[DeviceParameter] = Scope("parameter")
+    found: NameScope[DeviceParameter] = NameScope("parameter")
     for name, at in (form.parameters or {}).items():
         given = parameter(name, at, types, findings)
         made = None if given is None else DeviceParameter(name, at.origin, *given)
@@ -48,7 +48,7 @@ def parameters_of(
 def registers_of(form: DeviceTypeForm, findings: Findings) -> tuple[Register, ...] | None:
     """The registers of a device type, apart from each other; None when one of them is wrong."""
     before = findings.count()
-    found: Scope[Register] = Scope("register")
+    found: NameScope[Register] = NameScope("register")
     for name, at in (form.registers or {}).items():
         made = Register(name, at.origin, at.offset, at.width, Access(at.access))
         size = made.width // 8

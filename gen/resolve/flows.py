@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ravenchart.gen.files.located import Place
+from ravenchart.gen.files.located import TextPlace
 from ravenchart.gen.files.schema import CallForm, IfForm, RaiseForm, SendForm, SetForm
-from ravenchart.gen.language.names import Findings, NameUse, Scope, meant
+from ravenchart.gen.language.names import Findings, NameScope, NameUse, meant
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     Action,
@@ -42,10 +42,10 @@ ActionForms = Sequence[SetForm | SendForm | CallForm | RaiseForm | IfForm]
 class Targets:
     """What the flows of a component may write, send on and raise."""
 
-    data: Scope[Type]
-    outputs: Scope[Type]
-    events: Scope[Event]
-    calls: Scope[Need]
+    data: NameScope[Type]
+    outputs: NameScope[Type]
+    events: NameScope[Event]
+    calls: NameScope[Need]
     do_activity: bool = False
     """These are the flows of a do activity: it may raise `DONE`."""
 
@@ -217,7 +217,7 @@ def _raise(
     return None if values is None else Raise(form.at_key("raise"), event.name, values)
 
 
-Values = tuple[tuple[str | None, Expression], ...]
+FlowValues = tuple[tuple[str | None, Expression], ...]
 Given = int | bool | str | Mapping[str, int | bool | str]
 
 
@@ -228,7 +228,7 @@ def _values(
     type_: Type,
     words: Vocabulary,
     findings: Findings,
-) -> Values | None:
+) -> FlowValues | None:
     """What a port or event that carries ``type_`` is given by ``with``."""
     if isinstance(type_, RecordType):
         return _fields(form, given, carrier, type_, words, findings)
@@ -247,7 +247,7 @@ def _fields(
     type_: RecordType,
     words: Vocabulary,
     findings: Findings,
-) -> Values | None:
+) -> FlowValues | None:
     """The values of a record, in the type's field order."""
     if not isinstance(given, Mapping):
         return _whole(given, form.place("with"), carrier, type_, words, findings)
@@ -278,12 +278,12 @@ def _fields(
 
 def _whole(
     text: int | bool | str,
-    place: Place,
+    place: TextPlace,
     carrier: str,
     type_: RecordType,
     words: Vocabulary,
     findings: Findings,
-) -> Values | None:
+) -> FlowValues | None:
     """A record given as it was read from something of the same type."""
     checked = read(text, place, words, findings)
     if checked is None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from ravenchart.gen.files.schema import ComponentForm
 from ravenchart.gen.files.schema_devices import CommandForm, NeedForm, ProvidedForm, RequiredForm
-from ravenchart.gen.language.names import Findings, Scope
+from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.terms import BOOLEAN, Field, RecordType, Type, default
 from ravenchart.gen.model.commands import (
     Command,
@@ -31,7 +31,7 @@ NOTHING = "nothing"
 
 
 def command_of(
-    name: str, form: CommandForm, types: Scope[Type], findings: Findings
+    name: str, form: CommandForm, types: NameScope[Type], findings: Findings
 ) -> Command | None:
     """An entry of the dictionary whose types fit its kind."""
     kind = CommandKind(form.kind)
@@ -70,7 +70,9 @@ def _words(kind: CommandKind) -> str:
     return "event" if kind is CommandKind.EVENT else f"{kind.value.replace('_', ' ')} command"
 
 
-def declare_vectors(dictionary: Scope[Command], counts: Iterable[int], types: Scope[Type]) -> None:
+def declare_vectors(
+    dictionary: NameScope[Command], counts: Iterable[int], types: NameScope[Type]
+) -> None:
     """The records of one value per axis, for the numbers of axes that are used."""
     for command in dictionary.sound():
         for count in sorted(set(counts)):
@@ -78,14 +80,16 @@ def declare_vectors(dictionary: Scope[Command], counts: Iterable[int], types: Sc
     types.open = types.open or dictionary.has_lost()
 
 
-def at_axes(command: Command, axes: int, types: Scope[Type]) -> tuple[Type | None, Type | None]:
+def at_axes(command: Command, axes: int, types: NameScope[Type]) -> tuple[Type | None, Type | None]:
     """Argument and reply of a command in an interface of so many axes."""
     return _vector(command, command.argument, axes, types), _vector(
         command, command.reply, axes, types
     )
 
 
-def _vector(command: Command, of_type: Type | None, axes: int, types: Scope[Type]) -> Type | None:
+def _vector(
+    command: Command, of_type: Type | None, axes: int, types: NameScope[Type]
+) -> Type | None:
     """The record of one value of a type for each axis, declared when it is asked for first."""
     if not command.per_axis or axes == 1 or of_type is None or isinstance(of_type, RecordType):
         return of_type
@@ -101,13 +105,13 @@ def _vector(command: Command, of_type: Type | None, axes: int, types: Scope[Type
 
 def needs_of(
     form: ComponentForm,
-    dictionary: Scope[Command],
-    types: Scope[Type],
+    dictionary: NameScope[Command],
+    types: NameScope[Type],
     members: Members,
     space: Namespace,
 ) -> tuple[Need, ...]:
     """The commands that a component requires; each becomes something to read or to send on."""
-    found: Scope[Need] = Scope("required command")
+    found: NameScope[Need] = NameScope("required command")
     for interface, at in (form.requires or {}).items():
         space.claim("required interface", interface, at.origin)
         for name, origin, said in _named(at):
@@ -134,7 +138,7 @@ def _need(
     command: Command,
     origin: Origin,
     form: NeedForm | None,
-    types: Scope[Type],
+    types: NameScope[Type],
     members: Members,
     space: Namespace,
 ) -> Need | None:
@@ -269,7 +273,7 @@ def stand_ins_agree(form: ComponentForm, component: Component, findings: Finding
         if need.stand_in is None:
             continue
         at = _else_at((form.requires or {})[need.interface], need.name)
-        activities = Scope(
+        activities = NameScope(
             "activity", {a.name.lower(): (a.name, a.origin, a) for a in component.activities}
         )
         activity = activities.look_up(need.stand_in.activity, at, findings)
@@ -315,8 +319,8 @@ def _is_event(command: Command, origin: Origin, findings: Findings) -> bool:
 
 def heard_of(
     form: ComponentForm,
-    dictionary: Scope[Command],
-    types: Scope[Type],
+    dictionary: NameScope[Command],
+    types: NameScope[Type],
     members: Members,
     findings: Findings,
 ) -> tuple[InterfaceEvent, ...]:
@@ -332,8 +336,8 @@ def _events(
     interface: str,
     form: RequiredForm | ProvidedForm,
     direction: Direction,
-    dictionary: Scope[Command],
-    types: Scope[Type],
+    dictionary: NameScope[Command],
+    types: NameScope[Type],
     members: Members,
     findings: Findings,
 ) -> tuple[InterfaceEvent, ...]:
@@ -389,10 +393,10 @@ def _check_served(
 def provided_of(
     name: str,
     form: ProvidedForm,
-    dictionary: Scope[Command],
-    types: Scope[Type],
+    dictionary: NameScope[Command],
+    types: NameScope[Type],
     members: Members,
-    activities: Scope[Activity],
+    activities: NameScope[Activity],
     findings: Findings,
 ) -> Provided | None:
     """A provided interface whose server and data exist and fit."""
@@ -401,7 +405,7 @@ def provided_of(
     if form.served_by is not None:
         server = activities.look_up(form.served_by, form.at("served_by"), findings)
     _check_served(name, form, server, findings)
-    requests: Scope[Request | Published] = Scope(f"command of {name}")
+    requests: NameScope[Request | Published] = NameScope(f"command of {name}")
     for index, text in enumerate(form.commands or ()):
         at = form.item_at("commands", index)
         command = dictionary.look_up(text, at, findings)

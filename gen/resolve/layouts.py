@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from ravenchart.gen.files.located import Place
+from ravenchart.gen.files.located import TextPlace
 from ravenchart.gen.files.schema_frames import MessageForm, SignalForm
 from ravenchart.gen.language.names import Findings, NameUse, alike_in_databases, meant
 from ravenchart.gen.language.terms import EnumerationType, IntegerType, RecordType, ScalarType, Type
@@ -284,7 +284,7 @@ class _Maker:
         place = form.place("when")
         places = [place]
         if isinstance(form.when, list):
-            places = [Place(form.item_at("when", index)) for index in range(len(given))]
+            places = [TextPlace(form.item_at("when", index)) for index in range(len(given))]
         found = [
             constant(one, at, selector.name, selector.type, self.findings)
             for one, at in zip(given, places, strict=True)

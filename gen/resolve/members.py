@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ravenchart.gen.files.schema import ComponentForm, InputForm, InvariantForm, OutputForm
-from ravenchart.gen.language.names import HIDING, Findings, Scope
+from ravenchart.gen.language.names import HIDING, Findings, NameScope
 from ravenchart.gen.language.terms import Ns, Reading, Type
 from ravenchart.gen.model.component import (
     Data,
@@ -74,14 +74,14 @@ class Namespace:
 class Members:
     """The members of a component by name; those that were wrong keep their names."""
 
-    parameters: Scope[Parameter]
-    ports: Scope[Port]
-    events: Scope[Event]
-    data: Scope[Data]
-    data_types: Scope[Type]
+    parameters: NameScope[Parameter]
+    ports: NameScope[Port]
+    events: NameScope[Event]
+    data: NameScope[Data]
+    data_types: NameScope[Type]
 
 
-def members_of(form: ComponentForm, types: Scope[Type], space: Namespace) -> Members:
+def members_of(form: ComponentForm, types: NameScope[Type], space: Namespace) -> Members:
     """The members of a component, each checked by itself."""
     for region, at_region in (form.regions or {}).items():
         for state, at_state, _, _ in walk(at_region.states):
@@ -107,8 +107,8 @@ def members_of(form: ComponentForm, types: Scope[Type], space: Namespace) -> Mem
     return Members(parameters, ports, events, data, data_types)
 
 
-def _events(form: ComponentForm, types: Scope[Type], space: Namespace) -> Scope[Event]:
-    scope: Scope[Event] = Scope("event")
+def _events(form: ComponentForm, types: NameScope[Type], space: Namespace) -> NameScope[Event]:
+    scope: NameScope[Event] = NameScope("event")
     scope.open = form.lost("events") or form.list_damaged("events")
     for gone in form.dropped("events"):
         scope.declare(gone, None, None)
@@ -136,8 +136,10 @@ def _events(form: ComponentForm, types: Scope[Type], space: Namespace) -> Scope[
     return scope
 
 
-def _parameters(form: ComponentForm, types: Scope[Type], space: Namespace) -> Scope[Parameter]:
-    scope: Scope[Parameter] = Scope("parameter", open=form.lost("parameters"))
+def _parameters(
+    form: ComponentForm, types: NameScope[Type], space: Namespace
+) -> NameScope[Parameter]:
+    scope: NameScope[Parameter] = NameScope("parameter", open=form.lost("parameters"))
     for gone in form.dropped("parameters"):
         scope.declare(gone, None, None)
     findings = space.findings
@@ -150,9 +152,9 @@ def _parameters(form: ComponentForm, types: Scope[Type], space: Namespace) -> Sc
 
 
 def _ports(
-    form: ComponentForm, types: Scope[Type], events: Scope[Event], space: Namespace
-) -> Scope[Port]:
-    scope: Scope[Port] = Scope("port", open=form.lost("ports"))
+    form: ComponentForm, types: NameScope[Type], events: NameScope[Event], space: Namespace
+) -> NameScope[Port]:
+    scope: NameScope[Port] = NameScope("port", open=form.lost("ports"))
     for gone in form.dropped("ports"):
         scope.declare(gone, None, None)
     findings = space.findings
@@ -169,7 +171,7 @@ def _ports(
 
 
 def _input(
-    name: str, form: InputForm, types: Scope[Type], events: Scope[Event], findings: Findings
+    name: str, form: InputForm, types: NameScope[Type], events: NameScope[Event], findings: Findings
 ) -> Port | None:
     type_ = types.look_up(form.in_, form.at("in"), findings)
     raised: dict[str, str | None] = {}
@@ -232,10 +234,10 @@ def _check_carried(
 
 
 def _data(
-    form: ComponentForm, types: Scope[Type], space: Namespace
-) -> tuple[Scope[Data], Scope[Type]]:
-    scope: Scope[Data] = Scope("data item", open=form.lost("data"))
-    kinds: Scope[Type] = Scope("data item", open=form.lost("data"))
+    form: ComponentForm, types: NameScope[Type], space: Namespace
+) -> tuple[NameScope[Data], NameScope[Type]]:
+    scope: NameScope[Data] = NameScope("data item", open=form.lost("data"))
+    kinds: NameScope[Type] = NameScope("data item", open=form.lost("data"))
     for gone in form.dropped("data"):
         scope.declare(gone, None, None)
         kinds.declare(gone, None, None)
@@ -256,7 +258,7 @@ def invariants_of(
     form: ComponentForm, words: Vocabulary, findings: Findings
 ) -> tuple[Invariant, ...]:
     """What shall never hold."""
-    scope: Scope[Invariant] = Scope("invariant")
+    scope: NameScope[Invariant] = NameScope("invariant")
     for name, text in (form.never or {}).items():
         origin = form.entry_at("never", name)
         place = form.place("never", name)
@@ -270,11 +272,11 @@ def invariants_of(
 
 
 def vocabulary_of(
-    members: Members, regions: Scope[Scope[str]], literals: frozenset[str]
+    members: Members, regions: NameScope[NameScope[str]], literals: frozenset[str]
 ) -> Vocabulary:
     """What the expressions of the component may name."""
-    readable: Scope[tuple[Reading, str, Type]] = Scope("data item, parameter or input port")
-    inputs: Scope[str] = Scope("input port")
+    readable: NameScope[tuple[Reading, str, Type]] = NameScope("data item, parameter or input port")
+    inputs: NameScope[str] = NameScope("input port")
     readable.open = members.ports.open or members.data_types.open or members.parameters.open
     inputs.open = members.ports.open
     for name, origin, type_ in members.data_types.items.values():
@@ -296,9 +298,9 @@ def vocabulary_of(
     return Vocabulary(readable, inputs, regions, literals)
 
 
-def outputs_of(members: Members) -> Scope[Type]:
+def outputs_of(members: Members) -> NameScope[Type]:
     """The types of the output ports by name, required commands apart."""
-    scope: Scope[Type] = Scope("output port", open=members.ports.open)
+    scope: NameScope[Type] = NameScope("output port", open=members.ports.open)
     for name, origin, port in members.ports.items.values():
         if port is None or (port.direction is Direction.OUT and not port.is_command):
             scope.declare(name, origin, None if port is None else port.type)

@@ -17,7 +17,13 @@ from ravenchart.gen.derive.remote import calling
 from ravenchart.gen.derive.transport import with_flows
 from ravenchart.gen.files.schema import ModelFile
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
-from ravenchart.gen.language.names import CHILDREN, GNAT_PREFIXES, PREDEFINED_TYPES, Findings, Scope
+from ravenchart.gen.language.names import (
+    CHILDREN,
+    GNAT_PREFIXES,
+    PREDEFINED_TYPES,
+    Findings,
+    NameScope,
+)
 from ravenchart.gen.language.terms import BOOLEAN, EnumerationType, Type
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.commands import Binding, DeviceType, Poll
@@ -206,20 +212,20 @@ class _Sections:
     findings: Findings
     sound: set[str] = field(default_factory=set)
 
-    def named(self, section: str, kind: str, make: Callable[[str, Any], T | None]) -> Scope[T]:
+    def named(self, section: str, kind: str, make: Callable[[str, Any], T | None]) -> NameScope[T]:
         """The named elements of a section, each made from its form."""
         scope = self.scope(section, kind)
         self.fill(section, scope, make)
         return scope
 
-    def scope(self, section: str, kind: str) -> Scope[Any]:
+    def scope(self, section: str, kind: str) -> NameScope[Any]:
         """The names of what was wrong in form in a section."""
-        scope: Scope[Any] = Scope(kind, open=self.model.is_lost(section) or not self.whole)
+        scope: NameScope[Any] = NameScope(kind, open=self.model.is_lost(section) or not self.whole)
         for gone in self.model.dropped(section):
             scope.declare(gone, None, None)
         return scope
 
-    def fill(self, section: str, scope: Scope[T], make: Callable[[str, Any], T | None]) -> None:
+    def fill(self, section: str, scope: NameScope[T], make: Callable[[str, Any], T | None]) -> None:
         """Add the elements of a section to its scope."""
         before = self.findings.count()
         for name, form in self.model.entries(section):
@@ -240,9 +246,9 @@ class _Sections:
 
     def bindings(
         self,
-        kinds: Scope[DeviceType],
-        instances: Scope[Instance],
-        types: Scope[Type],
+        kinds: NameScope[DeviceType],
+        instances: NameScope[Instance],
+        types: NameScope[Type],
         damaged: frozenset[str],
     ) -> tuple[tuple[Binding, ...], tuple[Connection, ...], tuple[Poll, ...]]:
         """What provides each required command, and brings each event.
@@ -250,8 +256,8 @@ class _Sections:
         None where something of it was lost.
         """
         count = self.findings.count()
-        scope: Scope[Provider] = self.scope("devices", "device")
-        forms: Scope[DeviceForm] = Scope("device", open=scope.open)
+        scope: NameScope[Provider] = self.scope("devices", "device")
+        forms: NameScope[DeviceForm] = NameScope("device", open=scope.open)
         for name, form in self.model.entries("devices"):
             forms.declare(name, form.origin, form, self.findings)
         devices = Devices(forms, scope, kinds, instances, types, self.findings, damaged)
@@ -394,6 +400,6 @@ def _axes(model: Merged) -> list[int]:
     return found
 
 
-def _declared(types: Scope[Type]) -> tuple[Type, ...]:
+def _declared(types: NameScope[Type]) -> tuple[Type, ...]:
     """The types that the model declares, in model order."""
     return tuple(type_ for type_ in types.sound() if type_ is not BOOLEAN)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from ravenchart.gen.files.located import Place
+from ravenchart.gen.files.located import TextPlace
 from ravenchart.gen.language import folding, intervals
 from ravenchart.gen.language.expressions import Malformed, Term, parse
 from ravenchart.gen.language.names import Findings, NameUse, Unknown, meant
@@ -47,7 +47,7 @@ class Checker:
 
     vocabulary: Vocabulary
     findings: Findings
-    place: Place
+    place: TextPlace
     known: Known = field(default_factory=dict)
 
     def at(self, term: Term) -> Origin:
@@ -381,7 +381,7 @@ def _is_literal_of(word: str, type_: EnumerationType | None) -> bool:
 
 def read(
     text: int | bool | str,
-    place: Place,
+    place: TextPlace,
     vocabulary: Vocabulary,
     findings: Findings,
     expected: EnumerationType | None = None,
@@ -399,7 +399,7 @@ def read(
 
 
 def condition(
-    text: int | bool | str, place: Place, vocabulary: Vocabulary, findings: Findings, taker: str
+    text: int | bool | str, place: TextPlace, vocabulary: Vocabulary, findings: Findings, taker: str
 ) -> Expression | None:
     """A Boolean expression for ``taker``, such as ``guard``."""
     checked = read(text, place, vocabulary, findings, BOOLEAN)
@@ -414,7 +414,7 @@ def condition(
 
 def fitting(
     text: int | bool | str,
-    place: Place,
+    place: TextPlace,
     target: str,
     type_: ScalarType,
     vocabulary: Vocabulary,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
 
-from ravenchart.gen.files.located import Place
+from ravenchart.gen.files.located import TextPlace
 from ravenchart.gen.files.schema import FieldsType, ParameterForm, RangeType, ValuesType
 from ravenchart.gen.files.schema_base import Element
 from ravenchart.gen.files.schema_devices import DeviceParameterForm
@@ -13,8 +13,8 @@ from ravenchart.gen.language.names import (
     HIDING,
     PREDEFINED_TYPES,
     Findings,
+    NameScope,
     NameUse,
-    Scope,
     meant,
 )
 from ravenchart.gen.language.terms import (
@@ -40,9 +40,9 @@ TypeForms = Iterable[tuple[str, Origin, RangeType | ValuesType | FieldsType]]
 
 def types_of(
     forms: TypeForms, dropped: Iterable[str], system: str, findings: Findings
-) -> Scope[Type]:
+) -> NameScope[Type]:
     """The model's types and ``Boolean``."""
-    scope: Scope[Type] = Scope("type")
+    scope: NameScope[Type] = NameScope("type")
     scope.declare("Boolean", None, BOOLEAN)
     for name in dropped:
         scope.declare(name, None, None)
@@ -89,7 +89,7 @@ def _enumeration(
     name: str, origin: Origin, form: ValuesType, findings: Findings
 ) -> EnumerationType | None:
     before = findings.count()
-    literals: Scope[str] = Scope("literal")
+    literals: NameScope[str] = NameScope("literal")
     for index, literal in enumerate(form.values):
         at = form.item_at("values", index)
         if literal.lower() in ("true", "false"):
@@ -109,11 +109,11 @@ def _record(
     origin: Origin,
     form: FieldsType,
     records: Set[str],
-    scope: Scope[Type],
+    scope: NameScope[Type],
     findings: Findings,
 ) -> RecordType | None:
     sound = not form.damaged
-    names: Scope[str] = Scope("field")
+    names: NameScope[str] = NameScope("field")
     fields: list[Field] = []
     for item, type_name in form.fields.items():
         at = form.entry_at("fields", item)
@@ -133,7 +133,7 @@ def _record(
 
 
 def constant(
-    value: int | bool | str, place: Place, what: str, type_: ScalarType, findings: Findings
+    value: int | bool | str, place: TextPlace, what: str, type_: ScalarType, findings: Findings
 ) -> Scalar | None:
     """A constant of a scalar type; reported when it is none."""
     if isinstance(type_, IntegerType):
@@ -161,7 +161,7 @@ def constant(
 def parameter(
     name: str,
     form: ParameterForm | DeviceParameterForm,
-    types: Scope[Type],
+    types: NameScope[Type],
     findings: Findings,
 ) -> tuple[ScalarType, Scalar | None] | None:
     """Type and default of a parameter; None when one of them is wrong."""

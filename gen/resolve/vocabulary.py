@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ravenchart.gen.language.intervals import Interval
-from ravenchart.gen.language.names import NameUse, Scope
+from ravenchart.gen.language.names import NameScope, NameUse
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     EnumerationType,
@@ -24,9 +24,9 @@ EVENT = "event"
 class Vocabulary:
     """What expressions of one region or activity may name."""
 
-    readable: Scope[tuple[Reading, str, Type]]
-    inputs: Scope[str]
-    regions: Scope[Scope[str]]
+    readable: NameScope[tuple[Reading, str, Type]]
+    inputs: NameScope[str]
+    regions: NameScope[NameScope[str]]
     """Each region's states; the name of the region is that of the inner scope's kind."""
     literals: frozenset[str]
     """All enumeration literals of the model, in lower case."""
@@ -41,7 +41,7 @@ class Vocabulary:
         known = self.readable
         value = None if type_ is None else (Reading.EVENT, event, type_)
         items = {**known.items, EVENT: (EVENT, None, value)}
-        return replace(self, readable=Scope(known.kind, items, known.open))
+        return replace(self, readable=NameScope(known.kind, items, known.open))
 
     def without_event(self, reason: str) -> Vocabulary:
         """The same, with another reason why ``event`` has no value."""

@@ -23,11 +23,11 @@ from .bus_records import (
     RECORD_BYTES,
     RESTART_LAST,
     VERSION,
+    BusRecord,
     Flag,
     Greeting,
-    Kind,
-    Record,
-    State,
+    MemberState,
+    RecordKind,
     Status,
     confirmed_in,
     decode,
@@ -60,9 +60,9 @@ LINGER = 0.5
 """Seconds for which the end of a bus waits for what is still to be transmitted."""
 
 _STATES = {
-    State.ERROR_ACTIVE: can.BusState.ACTIVE,
-    State.ERROR_PASSIVE: can.BusState.PASSIVE,
-    State.BUS_OFF: can.BusState.ERROR,
+    MemberState.ERROR_ACTIVE: can.BusState.ACTIVE,
+    MemberState.ERROR_PASSIVE: can.BusState.PASSIVE,
+    MemberState.BUS_OFF: can.BusState.ERROR,
 }
 
 
@@ -97,8 +97,8 @@ class RavenchartBus(can.BusABC):
         greeting = Greeting(name, bitrate, data_bitrate)
         try:
             hello = encode(
-                Record(
-                    Kind.HELLO,
+                BusRecord(
+                    RecordKind.HELLO,
                     flags=int(Flag.FD) if fd else 0,
                     length=len(name),
                     code=VERSION,
@@ -165,7 +165,7 @@ class RavenchartBus(can.BusABC):
         """ACTIVE asks for recovery from bus-off; nothing else can be asked for."""
         if new_state is not can.BusState.ACTIVE:
             raise NotImplementedError("a node of this bus only becomes active by request")
-        self._write(encode(Record(Kind.RECOVERY)))
+        self._write(encode(BusRecord(RecordKind.RECOVERY)))
 
     @property
     def error_counters(self) -> tuple[int, int]:
@@ -326,17 +326,17 @@ class RavenchartBus(can.BusABC):
             raise can.CanOperationError("the bus server closed the connection")
         return octets
 
-    def _act_on(self, record: Record) -> None:
+    def _act_on(self, record: BusRecord) -> None:
         """What a record from the server means."""
         match record.kind:
-            case Kind.FRAME | Kind.ERROR_FRAME:
+            case RecordKind.FRAME | RecordKind.ERROR_FRAME:
                 arrived = message_of(record, self._start)
                 arrived.channel = self._channel
                 self._arrived.append(arrived)
-            case Kind.STATE:
-                self._state = _STATES[State(record.code)]
+            case RecordKind.STATE:
+                self._state = _STATES[MemberState(record.code)]
                 self._errors = (record.transmit_errors, record.receive_errors)
-            case Kind.CONFIRMATION:
+            case RecordKind.CONFIRMATION:
                 message = self._close(record.number)
                 if message is not None:
                     message.timestamp = (self._start + record.time) / 1e9
@@ -345,9 +345,9 @@ class RavenchartBus(can.BusABC):
                     self._arrived.append(message)
                 if record.number in self._awaited:
                     self._awaited[record.number] = ""
-            case Kind.STATUS if record.number == 0:
+            case RecordKind.STATUS if record.number == 0:
                 raise can.CanOperationError(f"the bus server ends: {Status(record.code).words}")
-            case Kind.STATUS:
+            case RecordKind.STATUS:
                 self._close(record.number)
                 words = Status(record.code).words
                 if record.number in self._awaited:
@@ -376,7 +376,7 @@ class RavenchartBus(can.BusABC):
         self._start = greeting.start
         self.channel_info = f"ravenchart bus {greeting.name} at {channel}, node {welcome.number}"
 
-    def _welcome(self) -> Record:
+    def _welcome(self) -> BusRecord:
         end = time.monotonic() + PATIENCE
         octets = b""
         while len(octets) < RECORD_BYTES:
@@ -385,9 +385,9 @@ class RavenchartBus(can.BusABC):
                 raise can.CanOperationError(f"no welcome within {PATIENCE:g} s")
             octets += part or b""
         record = decode(octets)
-        if record.kind is Kind.STATUS:
+        if record.kind is RecordKind.STATUS:
             raise can.CanOperationError(f"refused: {Status(record.code).words}")
-        if record.kind is not Kind.WELCOME:
+        if record.kind is not RecordKind.WELCOME:
             raise can.CanOperationError(f"bus protocol: {record.kind.name} is no welcome")
         if record.code != VERSION:
             raise can.CanOperationError(f"version {record.code} is spoken there, {VERSION} here")

@@ -37,7 +37,7 @@ BUS_OFF = 256
 """Error counters from which on a node is error-passive, and bus-off (ISO 11898-1)."""
 
 
-class Kind(IntEnum):
+class RecordKind(IntEnum):
     """What a record is."""
 
     HELLO = 1
@@ -60,7 +60,7 @@ class Flag(IntFlag):
     ESI = 16
 
 
-class State(IntEnum):
+class MemberState(IntEnum):
     """Fault confinement (ISO 11898-1)."""
 
     ERROR_ACTIVE = 0
@@ -87,10 +87,10 @@ class Status(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class BusRecord:
     """One record; ``time`` in ns since the bus was started, ``data`` always 64 bytes."""
 
-    kind: Kind
+    kind: RecordKind
     flags: int = 0
     length: int = 0
     code: int = 0
@@ -117,49 +117,49 @@ _TIME = (0, TIME_LAST)
 _NUMBER = (0, NUMBER_LAST)
 _COUNTER = (0, BUS_OFF)
 
-_RANGES: dict[Kind, dict[str, tuple[int, int]]] = {
-    Kind.HELLO: {
+_RANGES: dict[RecordKind, dict[str, tuple[int, int]]] = {
+    RecordKind.HELLO: {
         "length": (1, NAME_LENGTH),
         "code": (1, 255),
         "identifier": (MARK, MARK),
         "number": (0, RESTART_LAST),
     },
-    Kind.WELCOME: {
+    RecordKind.WELCOME: {
         "length": (1, NAME_LENGTH),
         "code": (1, 255),
         "identifier": (MARK, MARK),
         "time": _TIME,
         "number": (1, 255),
     },
-    Kind.FRAME: {
+    RecordKind.FRAME: {
         "length": (0, DATA_BYTES),
         "identifier": _IDENTIFIER,
         "time": _TIME,
         "number": _NUMBER,
     },
-    Kind.ERROR_FRAME: {
+    RecordKind.ERROR_FRAME: {
         "length": (0, 8),
         "identifier": _IDENTIFIER,
         "time": _TIME,
         "number": _NUMBER,
     },
-    Kind.STATE: {
-        "code": (0, len(State) - 1),
+    RecordKind.STATE: {
+        "code": (0, len(MemberState) - 1),
         "time": _TIME,
         "transmit_errors": _COUNTER,
         "receive_errors": _COUNTER,
     },
-    Kind.CONFIRMATION: {"time": _TIME, "number": (1, NUMBER_LAST)},
-    Kind.STATUS: {"code": (1, len(Status)), "number": _NUMBER},
-    Kind.RECOVERY: {},
+    RecordKind.CONFIRMATION: {"time": _TIME, "number": (1, NUMBER_LAST)},
+    RecordKind.STATUS: {"code": (1, len(Status)), "number": _NUMBER},
+    RecordKind.RECOVERY: {},
 }
 """The range of each field that a kind has; the others are 0."""
 
 _FLAGS = {
-    Kind.HELLO: Flag.FD,
-    Kind.WELCOME: Flag.FD,
-    Kind.FRAME: Flag.EXTENDED | Flag.REMOTE | Flag.FD | Flag.BRS | Flag.ESI,
-    Kind.ERROR_FRAME: Flag.EXTENDED,
+    RecordKind.HELLO: Flag.FD,
+    RecordKind.WELCOME: Flag.FD,
+    RecordKind.FRAME: Flag.EXTENDED | Flag.REMOTE | Flag.FD | Flag.BRS | Flag.ESI,
+    RecordKind.ERROR_FRAME: Flag.EXTENDED,
 }
 
 _NUMBERS = (
@@ -167,7 +167,7 @@ _NUMBERS = (
 )  # fmt: skip
 
 
-def encode(record: Record) -> bytes:
+def encode(record: BusRecord) -> bytes:
     """The 88 bytes of ``record``; CanOperationError when it breaks a rule."""
     _check(record)
     return _LAYOUT.pack(
@@ -184,7 +184,7 @@ def encode(record: Record) -> bytes:
     )
 
 
-def decode(octets: bytes) -> Record:
+def decode(octets: bytes) -> BusRecord:
     """The record in ``octets``; CanOperationError when they are none."""
     if len(octets) != RECORD_BYTES:
         raise _broken(f"{len(octets)} bytes are no record of {RECORD_BYTES}")
@@ -200,21 +200,21 @@ def greeting_data(greeting: Greeting) -> bytes:
         raise _broken(f"{greeting}: {fault}") from None
 
 
-def greeting_of(record: Record) -> Greeting:
+def greeting_of(record: BusRecord) -> Greeting:
     """What a hello or welcome says of itself."""
     name, nominal, data, start = _GREETING.unpack(record.data)
     return Greeting(name[: record.length].decode("ascii"), nominal, data, start)
 
 
-def state_of(transmit_errors: int, receive_errors: int) -> State:
+def state_of(transmit_errors: int, receive_errors: int) -> MemberState:
     """The state that goes with these error counters (ISO 11898-1, fault confinement)."""
     if transmit_errors >= BUS_OFF:
-        return State.BUS_OFF
+        return MemberState.BUS_OFF
     passive = max(transmit_errors, receive_errors) >= ERROR_PASSIVE
-    return State.ERROR_PASSIVE if passive else State.ERROR_ACTIVE
+    return MemberState.ERROR_PASSIVE if passive else MemberState.ERROR_ACTIVE
 
 
-def record_of(message: can.Message, number: int) -> Record:
+def record_of(message: can.Message, number: int) -> BusRecord:
     """The request that sends ``message``; CanOperationError when no frame is like that."""
     error, remote = message.is_error_frame, message.is_remote_frame
     flags = Flag(0)
@@ -228,8 +228,8 @@ def record_of(message: can.Message, number: int) -> Record:
         flags |= flag if is_set else Flag(0)
     if len(message.data) != (0 if remote else message.dlc):
         raise _broken(f"a length of {message.dlc} does not fit {len(message.data)} bytes of data")
-    record = Record(
-        Kind.ERROR_FRAME if error else Kind.FRAME,
+    record = BusRecord(
+        RecordKind.ERROR_FRAME if error else RecordKind.FRAME,
         flags=int(flags),
         length=message.dlc,
         identifier=message.arbitration_id,
@@ -240,7 +240,7 @@ def record_of(message: can.Message, number: int) -> Record:
     return record
 
 
-def message_of(record: Record, start: int) -> can.Message:
+def message_of(record: BusRecord, start: int) -> can.Message:
     """The frame or error frame; ``start`` is when bus time 0 was, in ns since 1970."""
     flags = Flag(record.flags)
     remote = Flag.REMOTE in flags
@@ -249,7 +249,7 @@ def message_of(record: Record, start: int) -> can.Message:
         arbitration_id=record.identifier,
         is_extended_id=Flag.EXTENDED in flags,
         is_remote_frame=remote,
-        is_error_frame=record.kind is Kind.ERROR_FRAME,
+        is_error_frame=record.kind is RecordKind.ERROR_FRAME,
         dlc=record.length,
         data=None if remote else record.data[: record.length],
         is_fd=Flag.FD in flags,
@@ -284,18 +284,18 @@ def split(octets: bytes) -> Iterator[_Fields]:
     return _LAYOUT.iter_unpack(octets)
 
 
-def record_in(fields: _Fields) -> Record:
+def record_in(fields: _Fields) -> BusRecord:
     """The record with these fields; CanOperationError when it breaks a rule."""
     kind, *rest = fields
     if kind not in _RANGES:
         raise _broken(f"there is no kind {kind}")
-    record = Record(Kind(kind), *rest)  # type: ignore[arg-type]
+    record = BusRecord(RecordKind(kind), *rest)  # type: ignore[arg-type]
     _check(record)
     return record
 
 
 def frame_in(fields: _Fields, start: int, channel: str) -> can.Message | None:
-    """The frame with these fields, the common kind of record, without a `Record` in between.
+    """The frame with these fields, the common kind of record, without a `BusRecord` in between.
 
     None for another kind, and for a frame that breaks a rule: `record_in` tells them apart.
     """
@@ -352,7 +352,7 @@ def request_of(message: can.Message, number: int) -> bytes:
     )
 
 
-_FRAME, _CONFIRMATION = int(Kind.FRAME), int(Kind.CONFIRMATION)
+_FRAME, _CONFIRMATION = int(RecordKind.FRAME), int(RecordKind.CONFIRMATION)
 _REMOTE = int(Flag.REMOTE)
 
 
@@ -360,7 +360,7 @@ def _broken(rule: str) -> can.CanOperationError:
     return can.CanOperationError(f"bus protocol: {rule}")
 
 
-def _check(record: Record) -> None:
+def _check(record: BusRecord) -> None:
     """CanOperationError when ``record`` breaks a rule of its kind."""
     kind, name = record.kind, record.kind.name.lower().replace("_", " ")
     if record.flags & ~int(_FLAGS.get(kind, Flag(0))):  # ~ of a Flag keeps to its members
@@ -373,13 +373,13 @@ def _check(record: Record) -> None:
             raise _broken(f"{field.replace('_', ' ')} {value} in {name}")
     if len(record.data) != DATA_BYTES:
         raise _broken(f"{len(record.data)} bytes of data")
-    if kind in (Kind.HELLO, Kind.WELCOME):
+    if kind in (RecordKind.HELLO, RecordKind.WELCOME):
         _check_greeting(record)
-    elif kind in (Kind.FRAME, Kind.ERROR_FRAME):
+    elif kind in (RecordKind.FRAME, RecordKind.ERROR_FRAME):
         _check_frame(record)
     elif any(record.data):
         raise _broken(f"data in {name}")
-    if kind is Kind.STATE and record.code != state_of(
+    if kind is RecordKind.STATE and record.code != state_of(
         record.transmit_errors, record.receive_errors
     ):
         raise _broken(
@@ -387,7 +387,7 @@ def _check(record: Record) -> None:
         )
 
 
-def _check_greeting(record: Record) -> None:
+def _check_greeting(record: BusRecord) -> None:
     name, nominal, data, start = _GREETING.unpack(record.data)
     if any(not 0x21 <= octet <= 0x7E for octet in name[: record.length]):
         raise _broken("a name has a character that is not from ! to ~")
@@ -395,11 +395,11 @@ def _check_greeting(record: Record) -> None:
         raise _broken("data beyond the greeting")
     if nominal > 1_000_000 or data > 20_000_000:
         raise _broken(f"bit rates {nominal} and {data}")
-    if start > (TIME_LAST if record.kind is Kind.WELCOME else 0):
+    if start > (TIME_LAST if record.kind is RecordKind.WELCOME else 0):
         raise _broken(f"start {start}")
 
 
-def _check_frame(record: Record) -> None:
+def _check_frame(record: BusRecord) -> None:
     flags = Flag(record.flags)
     if Flag.EXTENDED not in flags and record.identifier > 0x7FF:
         raise _broken(f"standard identifier {record.identifier:#x}")

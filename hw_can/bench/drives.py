@@ -12,7 +12,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from .peer import BenchError, Peer, Values
+from .peer import BenchError, FrameValues, Peer
 from .plant import STEP, UM, Drive, Mode, Push
 from .replay import Timed
 from .scenario import DriveForm
@@ -74,11 +74,11 @@ class Bench:
         self.stations = {name: Station(form, Drive(form.axis())) for name, form in forms.items()}
         self.replayed: deque[Timed] = deque()
         """Frames of a log that are still to be sent, with their times from power-on in s."""
-        self.latest: dict[str, Values] = {}
+        self.latest: dict[str, FrameValues] = {}
         """The last values of each message received."""
         self.skipped = 0
         """Ticks that were missed because the host held the bench up."""
-        self.on_message: Callable[[str, Values], None] = lambda name, values: None
+        self.on_message: Callable[[str, FrameValues], None] = lambda name, values: None
         """Called for each message received."""
         self.start = clock()
         self._clock = clock
@@ -126,7 +126,7 @@ class Bench:
             if name == message and isinstance(position, int):
                 station.ordered = position / UM
 
-    def _take(self, name: str, values: Values) -> None:
+    def _take(self, name: str, values: FrameValues) -> None:
         """A message arrived: the axes move up to now, then the set point counts."""
         self._advance(self.now)
         self.latest[name] = values
@@ -153,7 +153,7 @@ def press(station: Station, switch: str) -> None:
     station.drive.push = Push(switch)
 
 
-def _set_point(name: str, values: Values) -> tuple[Mode, float]:
+def _set_point(name: str, values: FrameValues) -> tuple[Mode, float]:
     """Mode and speed in m/s; BenchError when the mode is none that a drive knows."""
     try:
         return Mode(values["mode"]), int(values["speed"]) / UM
@@ -161,7 +161,7 @@ def _set_point(name: str, values: Values) -> tuple[Mode, float]:
         raise BenchError(f"{name}: {fault}") from None
 
 
-def _feedback(drive: Drive) -> Values:
+def _feedback(drive: Drive) -> FrameValues:
     """What a drive reports."""
     return {
         "count": drive.count,

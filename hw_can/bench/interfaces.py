@@ -8,7 +8,7 @@ from typing import Any
 import can
 from can.interfaces import BACKENDS
 
-from .peer import BenchError, Codec, Peer, Record, link_of, unrecorded
+from .peer import BenchError, Codec, OnFrame, Peer, link_of, unrecorded
 
 BACKENDS.setdefault("ravenchart", ("ravenchart.hw_can.bench.bus_client", "RavenchartBus"))
 """So that it is there in a checkout that is on the path and not installed, too."""
@@ -66,7 +66,7 @@ def words(fault: BaseException) -> str:
     return "".join(c if c.isprintable() else "?" for c in said)
 
 
-def joined(interface: Interface, codec: Codec, record: Record = unrecorded) -> Peer:
+def joined(interface: Interface, codec: Codec, record: OnFrame = unrecorded) -> Peer:
     """A peer at that end of a bus; BenchError when there is none."""
     bus = opened(interface)
     link = link_of(bus) if interface.name == "slcan" and "socket://" in interface.channel else None

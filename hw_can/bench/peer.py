@@ -31,10 +31,10 @@ TRAILER = "SecOC_"
 """How the signals of an authenticated message begin that stand behind its data."""
 
 Value = int | float | str
-Values = dict[str, Value]
+FrameValues = dict[str, Value]
 
 
-Record = Callable[[can.Message], None]
+OnFrame = Callable[[can.Message], None]
 """Gets a copy of each frame that goes over the bus, with its time."""
 
 
@@ -134,7 +134,7 @@ class Codec:
         except (CodecFault, KeyError, ValueError) as fault:
             raise BenchError(f"{name} cannot be sent: {fault}") from None
 
-    def decode(self, frame: can.Message) -> tuple[str, Values] | None:
+    def decode(self, frame: can.Message) -> tuple[str, FrameValues] | None:
         """Name and values of a frame; BenchError for bad data.
 
         None for an unknown identifier, and for a frame of the other format, classic or FD.
@@ -176,7 +176,7 @@ class Peer:
         bus: can.BusABC,
         codec: Codec,
         link: socket.socket | None = None,
-        record: Record = unrecorded,
+        record: OnFrame = unrecorded,
         gone: str = "the controller left the bus",
     ) -> None:
         """Speak on ``bus``, which is closed together with the peer; ``link`` is its socket.
@@ -196,7 +196,7 @@ class Peer:
         self._closed = False
 
     @staticmethod
-    def connect(port: int, codec: Codec, record: Record = unrecorded) -> Peer:
+    def connect(port: int, codec: Codec, record: OnFrame = unrecorded) -> Peer:
         """A peer at the slcan server on this machine's TCP ``port``."""
         try:
             bus = can.Bus(
@@ -250,7 +250,7 @@ class Peer:
         copied.timestamp, copied.is_rx = self._stamp(), False
         self._record(copied)
 
-    def receive_until(self, deadline: float, take: Callable[[str, Values], None]) -> None:
+    def receive_until(self, deadline: float, take: Callable[[str, FrameValues], None]) -> None:
         """Hand over what arrives until ``deadline``, a time of `clock`."""
         while self._open:
             frame = self._next(deadline)

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from .drives import Bench, Track, press
-from .peer import BenchError, Peer, Value, Values
+from .peer import BenchError, FrameValues, Peer, Value
 from .plant import UM
 from .replay import from_outside, read_log
 from .scenario import (
@@ -18,8 +18,8 @@ from .scenario import (
     Release,
     Replay,
     Scenario,
-    Send,
-    Step,
+    ScenarioStep,
+    SendStep,
     StopFeedback,
     Wait,
     WaitFor,
@@ -131,10 +131,10 @@ def run_scenario(
     )
 
 
-def _check(step: Step, peer: Peer) -> None:
+def _check(step: ScenarioStep, peer: Peer) -> None:
     """BenchError when a step's message does not fit the DBC."""
     match step:
-        case Send():
+        case SendStep():
             peer.codec.check(step.send, step.fields, step.wrong)
         case WaitFor():
             message, field = step.wait_for.split(".")
@@ -151,10 +151,10 @@ class _Runner:
         self._limit = limit
         self._scenario = scenario
 
-    def do(self, step: Step) -> tuple[bool, str]:
+    def do(self, step: ScenarioStep) -> tuple[bool, str]:
         """Whether the step passed, and what came out."""
         match step:
-            case Send():
+            case SendStep():
                 return self._send(step)
             case Replay():
                 return self._replay(step)
@@ -181,7 +181,7 @@ class _Runner:
                 self._bench.peer.drop()
                 return True, "done"
 
-    def _send(self, step: Send) -> tuple[bool, str]:
+    def _send(self, step: SendStep) -> tuple[bool, str]:
         if not self._bench.peer.is_open:
             return False, "the bench has left the bus"
         began = self._bench.now
@@ -209,7 +209,7 @@ class _Runner:
         message, field = step.wait_for.split(".")
         found: list[Value] = []
 
-        def look(name: str, values: Values) -> None:
+        def look(name: str, values: FrameValues) -> None:
             if name == message:
                 found.append(values[field])
 

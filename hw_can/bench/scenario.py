@@ -33,7 +33,7 @@ class ScenarioError(Exception):
 
 Signal = Annotated[str, Field(pattern=r"^\w+\.\w+$")]
 """``message.field``"""
-Element = Annotated[str, Field(pattern=r"^\w+\.\w+$")]
+ElementName = Annotated[str, Field(pattern=r"^\w+\.\w+$")]
 """``owner.name``: a region or port of the controller."""
 
 
@@ -66,7 +66,7 @@ class DriveForm(_Form):
     count_at_start: int = 0
     target: Signal | None = None
     """Field of a sent message that orders a position in um from the axis's zero."""
-    states: Element | None = None
+    states: ElementName | None = None
     """Region of the controller that moves this axis."""
 
     def axis(self) -> Axis:
@@ -80,7 +80,7 @@ class DriveForm(_Form):
         )
 
 
-class Send(_Form):
+class SendStep(_Form):
     """Send one message to the controller."""
 
     send: str
@@ -183,11 +183,20 @@ class Replay(_Form):
         return f"replay {self.replay}"
 
 
-Step = (
-    Send | Replay | WaitFor | Expect | ExpectStop | Wait | Pull | Release | StopFeedback | KillBench
+ScenarioStep = (
+    SendStep
+    | Replay
+    | WaitFor
+    | Expect
+    | ExpectStop
+    | Wait
+    | Pull
+    | Release
+    | StopFeedback
+    | KillBench
 )
-STEPS: Mapping[str, type[Step]] = {
-    "send": Send,
+STEPS: Mapping[str, type[ScenarioStep]] = {
+    "send": SendStep,
     "replay": Replay,
     "wait_for": WaitFor,
     "expect": Expect,
@@ -250,11 +259,11 @@ class TraceCheck(_Form):
     ``after_silence``. With ``then`` it went on to that state later.
     """
 
-    region: Element
+    region: ElementName
     reaches: str
     within: Time | None = None
-    after_last: Element | None = None
-    after_silence: Element | None = None
+    after_last: ElementName | None = None
+    after_silence: ElementName | None = None
     then: str | None = None
 
     @property
@@ -323,7 +332,7 @@ class Missed(_Counted):
 class Overran(_Counted):
     """The executions of a row, ``owner.name``, were longer than its ``wcet``: counted once."""
 
-    overran: Element
+    overran: ElementName
 
 
 Expected = Lost | Fault | Missed | Overran
@@ -354,7 +363,7 @@ class Scenario:
 
     title: str
     drives: Mapping[str, DriveForm]
-    steps: tuple[Step, ...]
+    steps: tuple[ScenarioStep, ...]
     lines: tuple[int, ...]
     trace_checks: tuple[TraceCheck, ...]
     bus_events: tuple[BusEvent, ...] = ()
@@ -475,7 +484,7 @@ def _fit_together(scenario: Scenario, source: Source) -> None:
             source.wrong(MISFIT, ("bus", index, "at"), message, hint)
 
 
-def _drives_of(step: Step) -> Iterator[tuple[Place, str]]:
+def _drives_of(step: ScenarioStep) -> Iterator[tuple[Place, str]]:
     """The drives that a step names, and where."""
     match step:
         case Expect():

@@ -54,7 +54,7 @@ class Skipped(Exception):  # noqa: N818
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class ConformanceCase:
     """One case: what it is called, and how it is run."""
 
     name: str
@@ -339,24 +339,28 @@ def _no_errors(ends: Ends) -> str:
 
 
 CASES = (
-    Case("standard data frames", lambda e: exact(f := _data(extended=False), _one_by_one(e, f))),
-    Case("extended data frames", lambda e: exact(f := _data(extended=True), _one_by_one(e, f))),
-    Case("identifiers at their limits", _identifiers),
-    Case("every byte value", _every_byte),
-    Case("standard remote frames", lambda ends: _remotes(ends, extended=False)),
-    Case("extended remote frames", lambda ends: _remotes(ends, extended=True)),
-    Case("FD frames of every length", _fd),
-    Case("FD frames, bit rate switched", lambda ends: _fd(ends, "brs")),
-    Case("FD frames, error state indicated", lambda ends: _fd(ends, "esi")),
-    Case("error frame", _error_frame),
-    Case("the other way", _other_way),
-    Case("burst", _burst),
-    Case("order", _order),
-    Case("filters", _filters),
-    Case("echo", _echo),
-    Case("error state", _state),
-    Case("timestamps", _timestamps),
-    Case("latency", _latency),
-    Case("throughput", _throughput),
-    Case("error frames seen", _no_errors),
+    ConformanceCase(
+        "standard data frames", lambda e: exact(f := _data(extended=False), _one_by_one(e, f))
+    ),
+    ConformanceCase(
+        "extended data frames", lambda e: exact(f := _data(extended=True), _one_by_one(e, f))
+    ),
+    ConformanceCase("identifiers at their limits", _identifiers),
+    ConformanceCase("every byte value", _every_byte),
+    ConformanceCase("standard remote frames", lambda ends: _remotes(ends, extended=False)),
+    ConformanceCase("extended remote frames", lambda ends: _remotes(ends, extended=True)),
+    ConformanceCase("FD frames of every length", _fd),
+    ConformanceCase("FD frames, bit rate switched", lambda ends: _fd(ends, "brs")),
+    ConformanceCase("FD frames, error state indicated", lambda ends: _fd(ends, "esi")),
+    ConformanceCase("error frame", _error_frame),
+    ConformanceCase("the other way", _other_way),
+    ConformanceCase("burst", _burst),
+    ConformanceCase("order", _order),
+    ConformanceCase("filters", _filters),
+    ConformanceCase("echo", _echo),
+    ConformanceCase("error state", _state),
+    ConformanceCase("timestamps", _timestamps),
+    ConformanceCase("latency", _latency),
+    ConformanceCase("throughput", _throughput),
+    ConformanceCase("error frames seen", _no_errors),
 )

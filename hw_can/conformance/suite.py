@@ -11,13 +11,13 @@ import can
 
 from ravenchart.hw_can.bench.interfaces import words
 
-from .cases import CASES, LAST, Case, Failed, Skipped, frame
+from .cases import CASES, LAST, ConformanceCase, Failed, Skipped, frame
 from .ends import Ends, Setup, is_faulty
 
 Progress = Callable[[str], None]
 
 
-class Verdict(Enum):
+class CaseVerdict(Enum):
     """How a case ended."""
 
     PASSED = "passed"
@@ -30,7 +30,7 @@ class CaseResult:
     """How one case went: what was seen, or the reason why not."""
 
     name: str
-    verdict: Verdict
+    verdict: CaseVerdict
     detail: str
     seconds: float
 
@@ -44,7 +44,7 @@ class LoopbackResult:
     latencies: tuple[int, ...]
     rate: float | None
 
-    def count(self, verdict: Verdict) -> int:
+    def count(self, verdict: CaseVerdict) -> int:
         """How many cases ended so."""
         return sum(case.verdict is verdict for case in self.cases)
 
@@ -56,11 +56,11 @@ class LoopbackResult:
     @property
     def passed(self) -> bool:
         """Nothing failed, and something passed."""
-        return self.count(Verdict.FAILED) == 0 and self.count(Verdict.PASSED) > 0
+        return self.count(CaseVerdict.FAILED) == 0 and self.count(CaseVerdict.PASSED) > 0
 
 
 def run(
-    ends: Ends, progress: Progress = lambda name: None, cases: Sequence[Case] = CASES
+    ends: Ends, progress: Progress = lambda name: None, cases: Sequence[ConformanceCase] = CASES
 ) -> LoopbackResult:
     """Run ``cases`` in order; once no frame arrives at all, the rest is skipped."""
     results: list[CaseResult] = []
@@ -69,10 +69,10 @@ def run(
         progress(case.name)
         began = time.monotonic()
         if lost:
-            verdict, detail = Verdict.SKIPPED, "the bus was lost before"
+            verdict, detail = CaseVerdict.SKIPPED, "the bus was lost before"
         else:
             verdict, detail = _run_one(ends, case)
-            loss = _loss(ends) if verdict is Verdict.FAILED else None
+            loss = _loss(ends) if verdict is CaseVerdict.FAILED else None
             if loss is not None:
                 lost, detail = True, f"{detail}{loss}"
         results.append(CaseResult(case.name, verdict, detail, time.monotonic() - began))
@@ -93,21 +93,21 @@ def _loss(ends: Ends) -> str | None:
     return f"; no frame arrives within {ends.patience:g} s"
 
 
-def _run_one(ends: Ends, case: Case) -> tuple[Verdict, str]:
+def _run_one(ends: Ends, case: ConformanceCase) -> tuple[CaseVerdict, str]:
     """Verdict and reason. Any exception of a driver is a failure of the case."""
     try:
         ends.drain()
-        return Verdict.PASSED, case.run(ends)
+        return CaseVerdict.PASSED, case.run(ends)
     except Skipped as reason:
-        return Verdict.SKIPPED, str(reason)
+        return CaseVerdict.SKIPPED, str(reason)
     except Failed as reason:
-        return Verdict.FAILED, str(reason)
+        return CaseVerdict.FAILED, str(reason)
     except NotImplementedError as missing:
-        return Verdict.SKIPPED, f"not implemented there: {words(missing)}"
+        return CaseVerdict.SKIPPED, f"not implemented there: {words(missing)}"
     except (can.CanError, OSError) as fault:
-        return Verdict.FAILED, words(fault)
+        return CaseVerdict.FAILED, words(fault)
     except Exception as fault:
-        return Verdict.FAILED, f"the driver raised {words(fault)}"
+        return CaseVerdict.FAILED, f"the driver raised {words(fault)}"
 
 
 def histogram(latencies: Sequence[int]) -> tuple[tuple[int, int], ...]:

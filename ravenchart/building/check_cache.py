@@ -1,12 +1,11 @@
 """What the rules of behaviour found earlier, kept by the content of the model (`kept`).
 
 A key covers every file of the model, the sources of the tool, and the versions of Python and z3.
-A result that is not finished is kept with the seconds that it had.
+A result that is not finished is kept with the work that it might take.
 """
 
 from __future__ import annotations
 
-import hashlib
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -15,14 +14,11 @@ from importlib import metadata
 from typing import Any
 
 from ravenchart.behaviour.limits import UNFINISHED, Behaviour
-from ravenchart.gen.diagnostics import Diagnostic, Severity
 from ravenchart.gen.model.safety import Fact, SafeRegion
-from ravenchart.gen.origins import Origin
-from ravenchart.paths import PACKAGE
 from ravenchart.tools import kept
 
 KIND = "checks"
-FORMAT = 2
+FORMAT = 3
 """Part of each key: raised when what an entry holds changes."""
 SOURCES = ("analysis", "behaviour", "gen")
 
@@ -30,11 +26,7 @@ SOURCES = ("analysis", "behaviour", "gen")
 @cache
 def _tool() -> list[object]:
     """All that decides what is found in a model."""
-    paths = sorted(path for name in SOURCES for path in (PACKAGE / name).rglob("*.py"))
-    sources = [
-        (str(p.relative_to(PACKAGE)), hashlib.sha256(p.read_bytes()).hexdigest()) for p in paths
-    ]
-    return [FORMAT, sys.version, metadata.version("z3-solver"), sources]
+    return [FORMAT, sys.version, metadata.version("z3-solver"), kept.sources(*SOURCES)]
 
 
 def key(sources: Mapping[str, Sequence[str]]) -> str:
@@ -42,28 +34,28 @@ def key(sources: Mapping[str, Sequence[str]]) -> str:
     return kept.digest([_tool(), sorted((name, list(text)) for name, text in sources.items())])
 
 
-def load(key: str, seconds: float, *, finished: bool) -> Behaviour | None:
+def load(key: str, effort: int, *, finished: bool) -> Behaviour | None:
     """What was found; None when nothing is kept.
 
-    One that was not finished counts when it had ``seconds``, unless it must be ``finished``.
+    One that was not finished counts when it might take ``effort``, unless it must be ``finished``.
     """
     entry: Any = kept.load(KIND, key)
     try:
-        found = tuple(_diagnostic(one) for one in entry["found"])
+        found = tuple(kept.diagnostic(one) for one in entry["found"])
         is_open = any(one.code == UNFINISHED for one in found)
         safe = tuple(_safe(one) for one in entry["safe"])
-        if is_open and (finished or entry["seconds"] < seconds):
+        if is_open and (finished or entry["effort"] < effort):
             return None
         return Behaviour(found, safe)
     except (KeyError, TypeError, ValueError):
         return None
 
 
-def store(key: str, seconds: float, behaviour: Behaviour) -> None:
-    """Keep what was found within so many seconds."""
-    found = [_entry(one) for one in behaviour.found]
+def store(key: str, effort: int, behaviour: Behaviour) -> None:
+    """Keep what was found with so much work."""
+    found = [kept.listed(one) for one in behaviour.found]
     safe = [asdict(one) for one in behaviour.safe]
-    kept.store(KIND, key, {"seconds": seconds, "found": found, "safe": safe})
+    kept.store(KIND, key, {"effort": effort, "found": found, "safe": safe})
 
 
 def _safe(entry: Any) -> SafeRegion:
@@ -74,19 +66,3 @@ def _safe(entry: Any) -> SafeRegion:
     names = tuple(entry["invariants"])
     home = entry["component"], entry["region"]
     return SafeRegion(*home, names, tuple(facts), tuple(entry["alone"]))
-
-
-def _entry(found: Diagnostic) -> list[object]:
-    notes = [(_place(origin), text) for origin, text in found.notes]
-    place = _place(found.origin)
-    return [found.code, found.severity.value, place, found.message, notes, found.hint]
-
-
-def _place(origin: Origin) -> list[object]:
-    return [origin.file, origin.line, origin.column]
-
-
-def _diagnostic(entry: Any) -> Diagnostic:
-    code, severity, place, message, notes, hint = entry
-    shown = tuple((Origin(*origin), text) for origin, text in notes)
-    return Diagnostic(code, Severity(severity), Origin(*place), message, shown, hint)

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Iterator
-from contextlib import contextmanager
+import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.system.identifiers import order_of
 from ravenchart.analysis.system.timing import Analysis, analyse
-from ravenchart.behaviour.limits import SECONDS, Behaviour
+from ravenchart.behaviour.limits import EFFORT, Behaviour
 from ravenchart.failures import Refused
 from ravenchart.gen.derive.identifiers import with_order
 from ravenchart.gen.diagnostics import Diagnostic, Sources, render_all
-from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
 
 from . import check_cache
+from .garbage import without_collector
 
 
 def is_usual(path: Path) -> bool:
@@ -44,6 +43,8 @@ class Checked:
     sources: Sources
     diagnostics: tuple[Diagnostic, ...]
     """What ``warnings`` shows."""
+    read: Mapping[str, str]
+    """SHA-256 of each file of the model, by its path."""
 
     @property
     def folder(self) -> Path:
@@ -58,19 +59,7 @@ class Checked:
     @property
     def stem(self) -> str:
         """The system's name as its files carry it."""
-        return ada_case(self.system.name).lower()
-
-
-@contextmanager
-def without_collector() -> Iterator[None]:
-    """No search for garbage in circles: a large model is searched again whenever it has grown."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
+        return self.system.name.lower()
 
 
 @without_collector()
@@ -78,41 +67,48 @@ def check(
     path: Path,
     *,
     deadlines: bool = True,
-    patience: float = SECONDS,
+    effort: int = EFFORT,
     finish: bool = False,
     read: Reader = read_file,
 ) -> Checked:
     """Load, check and analyse a model; Refused with every diagnostic when it is wrong.
 
-    ``patience`` is how many seconds the rules of behaviour may take. What they found in the
-    same content before is taken again; with ``finish``, unless it was not finished. ``read`` is
-    how files are read.
+    ``effort`` is how much work the rules of behaviour may take, in units of z3. What they
+    found in the same content before is taken again; with ``finish``, unless it was not
+    finished. ``read`` is how files are read.
     """
-    loaded = load(path, read)
+    digests: dict[str, str] = {}
+
+    def noted(file: Path, limit: int) -> bytes:
+        content = read(file, limit)
+        digests[str(file)] = hashlib.sha256(content).hexdigest()
+        return content
+
+    loaded = load(path, noted)
     system = loaded.system
     if system is None:
         raise Refused(_rendered(loaded, loaded.diagnostics), loaded.diagnostics)
     system, unordered = identified(system)
     analysis = analyse(system)
     late = (unordered or findings(analysis)) if deadlines else ()
-    behaviour = _behaviour(loaded, system, patience, finish)
+    behaviour = _behaviour(loaded, system, effort, finish)
     system = replace(system, safe_regions=behaviour.safe)
     everything = (*loaded.diagnostics, *behaviour.found, *late)
     if any(d.is_error for d in everything):
         raise Refused(_rendered(loaded, everything), everything)
     warnings = _rendered(loaded, everything)
-    return Checked(path, system, analysis, warnings, loaded.sources, everything)
+    return Checked(path, system, analysis, warnings, loaded.sources, everything, digests)
 
 
-def _behaviour(loaded: Loaded, system: System, patience: float, finish: bool) -> Behaviour:
+def _behaviour(loaded: Loaded, system: System, effort: int, finish: bool) -> Behaviour:
     """What the rules of behaviour find, or have found before in the same content."""
     key = check_cache.key(loaded.sources)
-    found = check_cache.load(key, patience, finished=finish)
+    found = check_cache.load(key, effort, finished=finish)
     if found is None:
         from ravenchart.behaviour import rules  # imports a solver
 
-        found = rules.behaviour(system, patience)
-        check_cache.store(key, patience, found)
+        found = rules.behaviour(system, effort)
+        check_cache.store(key, effort, found)
     return found
 
 

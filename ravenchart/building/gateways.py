@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.paths import ROOT
 from ravenchart.stacks.report import Memory
 from ravenchart.tools import toolchain
 
@@ -36,7 +37,7 @@ with "ravenchart.gpr";
 
 project Gateway extends "{program}" is
 
-   for Source_Dirs use (".", "{gateway}");
+   for Source_Dirs use (".", "{gateway}", "{lines}");
    for Object_Dir use "objects";
    for Exec_Dir use ".";
    for Create_Missing_Dirs use "True";
@@ -63,9 +64,10 @@ def build(
     home.mkdir(parents=True, exist_ok=True)
     main = f"{ada_case(program.checked.system.name)}_Main"
     sources = file_of(board.target.name).parent / "gateway"
+    lines = ROOT / "hw_can" / "drivers" / "serial"
     texts = {
         "gateway_main.adb": MAIN.format(main=main),
-        "gateway.gpr": PROJECT.format(program=program.project, gateway=sources),
+        "gateway.gpr": PROJECT.format(program=program.project, gateway=sources, lines=lines),
     }
     for name, text in texts.items():
         path = home / name

@@ -7,7 +7,6 @@ import os
 import time
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 from ravenchart.analysis.findings.claims import Unclaimed, claims_of, uncertified
@@ -22,17 +21,10 @@ from ravenchart.gen.emit.program import (
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.rules.unready import unready
 
-from .checking import Checked, without_collector
-
-MANIFEST = "generated.list"
-"""SHA-256 and name of each file of the last generation, as `sha256sum` prints them.
-
-Only these files are ever deleted, and an edit of one of them is noticed.
-"""
-
-
-EDITED = ".edited"
-"""Ending of the copy that is kept of an edited file."""
+from .checking import Checked
+from .garbage import without_collector
+from .written import EDITED, MANIFEST, Written
+from .written import listed as listed_in
 
 
 def without_clashes(checked: Checked) -> None:
@@ -53,24 +45,6 @@ def claims(checked: Checked) -> Claims:
         raise Refused(f"{checked.path}: error: {problem}: leave some of its time unused") from None
 
 
-@dataclass(frozen=True, slots=True)
-class Written:
-    """What a generation did.
-
-    ``files`` were generated, the manifest not counted; of these ``changed`` have other bytes
-    than before. ``edited`` had been changed by hand: their copies lie beside them.
-    ``first`` are units of the user that were not there and got a first version; ``untouched``
-    are those that are still as first written, and do nothing.
-    """
-
-    folder: Path
-    files: int
-    changed: int
-    edited: tuple[str, ...]
-    first: tuple[Path, ...]
-    untouched: tuple[Path, ...]
-
-
 @without_collector()
 def write_program(checked: Checked) -> Written:
     """Write generated/ beside the model; user/ is never touched.
@@ -86,7 +60,7 @@ def write_program(checked: Checked) -> Written:
     folder = checked.generated
     folder.mkdir(parents=True, exist_ok=True)
     files = generate(checked.system, claims(checked))
-    old = _manifest(folder)
+    old = listed_in(folder)
     edited = tuple(n for n, digest in old.items() if _edited(folder / n, digest, files.get(n)))
     for name in edited:
         (folder / name).replace(folder / f"{name}{EDITED}")
@@ -104,16 +78,19 @@ def write_program(checked: Checked) -> Written:
                 (folder / gone).parent.rmdir()
     texts = first_versions(checked.system)
     first = _write_absent(checked.folder, texts)
-    return Written(folder, len(files), changed, edited, first, _untouched(checked, texts))
-
-
-def _manifest(folder: Path) -> dict[str, str]:
-    """Name to SHA-256 of each file of the last generation; "" where the list has no digest."""
-    if not (folder / MANIFEST).is_file():
-        return {}
-    lines = (folder / MANIFEST).read_text(encoding="utf-8").splitlines()
-    pairs = (line.rpartition("  ")[::2] for line in lines)
-    return {name: digest for digest, name in pairs if _is_inside(name)}
+    user = {name: _digest((checked.folder / name).read_bytes()) for name in texts}
+    units = user_units(checked.system)
+    untouched = tuple(n for n in units if user[n] == _digest(texts[n].encode("utf-8")))
+    return Written(
+        folder,
+        len(files),
+        changed,
+        edited,
+        first,
+        tuple(checked.folder / name for name in untouched),
+        _digest(listed.encode("utf-8")),
+        {checked.folder / name: digest for name, digest in user.items()},
+    )
 
 
 def _edited(path: Path, digest: str, text: str | None) -> bool:
@@ -143,18 +120,6 @@ def _write_absent(folder: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:
         path.parent.mkdir(parents=True, exist_ok=True)
         replace_file(path, text)
     return tuple(path for path, _ in absent)
-
-
-def _untouched(checked: Checked, texts: Mapping[str, str]) -> tuple[Path, ...]:
-    """The units of the user that still do nothing: they are as first written."""
-    units = ((checked.folder / name, texts[name]) for name in user_units(checked.system))
-    return tuple(unit for unit, text in units if unit.read_bytes() == text.encode("utf-8"))
-
-
-def _is_inside(name: str) -> bool:
-    """Whether a generated file can have that name: in generated/, or one or two folders below."""
-    parts = Path(name).parts
-    return len(parts) in (1, 2, 3) and ".." not in parts and not Path(name).is_absolute()
 
 
 def replace_file(path: Path, text: str) -> bool:

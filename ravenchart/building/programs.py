@@ -20,29 +20,16 @@ from ravenchart.gen.emit.program import (
 )
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT, work
-from ravenchart.proof.proving import Task
+from ravenchart.proof.proving import ProofTask
 from ravenchart.stacks.report import Memory
-from ravenchart.tools import steps, toolchain
 
 from . import images, stacks, targets
 from .checking import Checked, is_usual
+from .compilation import Compilation
+from .variants import DRIVER_FOLDERS, NATIVE
 
-DRIVER_FOLDERS = {
-    "loopback": ("drivers/loopback",),
-    "slcan": ("drivers/slcan", "drivers/tcp", "drivers/sockets"),
-    "bus": ("drivers/bus", "drivers/tcp", "drivers/sockets"),
-    "socketcan": ("drivers/socketcan", "drivers/sockets"),
-    "ctucanfd": ("drivers/ctucanfd",),
-    "xilinx": ("drivers/xilinx",),
-}
-"""The folders of hw_can/ that ravenchart.gpr adds for each driver."""
-
-
-DRIVERS = tuple(DRIVER_FOLDERS)
 TRACE_MAP = "trace.json"
 """Beside the generated sources: what the numbers of a trace mean."""
-REGISTERS = ("simulated", HARDWARE)
-"""What the registers of devices can be: see the project file of a program."""
 RUNTIME_FOLDERS = (
     "spark_runtime/src",
     "spark_runtime/native",
@@ -85,11 +72,11 @@ class Program:
         """Its GNAT project."""
         return self.generated / f"{self.checked.stem}.gpr"
 
-    def home(self, driver: str, target: str = targets.NATIVE) -> Path:
+    def home(self, driver: str, target: str = NATIVE) -> Path:
         """Where its objects and the program itself go."""
         return build_home(self.checked, driver, target) / self.folder
 
-    def scenario(self, mode: str, driver: str, target: str = targets.NATIVE) -> dict[str, str]:
+    def scenario(self, mode: str, driver: str, target: str = NATIVE) -> dict[str, str]:
         """The scenario variables of a build: mode, CAN driver, and where objects go."""
         home = self.home(driver, target)
         return {"MODE": mode, "CAN_DRIVER": driver, "RAVENCHART_BUILD": str(home)}
@@ -114,26 +101,12 @@ class Program:
         Refused where ``driver`` cannot do what the model wants, and with ``registers`` of the
         hardware where a device has no address.
         """
-        target = board.target if board else targets.target(targets.NATIVE)
-        chosen = driver or default_driver(self.checked, target)
-        check_driver(self.checked, chosen, target)
-        if registers == HARDWARE:
-            self._check_addresses()
-        variables = {
-            **self.scenario(mode, chosen, target.name),
-            "RAVENCHART_REGISTERS": registers,
-        }
-        options = ["-p", "-q", "-j0", steps.OF_GPRBUILD, "-P", self.project.name]
-        if board:
-            variables |= board.scenario()
-            options = [*board.options(), *options]
-        options += ["-cargs:Ada", stacks.CALL_GRAPHS, "-gargs"]
-        made = self.home(chosen, target.name) / mode / f"{self.checked.stem}_main"
+        target = board.target if board else targets.target(NATIVE)
+        compilation = self.compilation(mode, driver, registers, board)
+        made = compilation.image
 
         def compiled(*more: str) -> None:
-            taken = steps.Steps(steps.COMPILING, tell).takes
-            words, where = [*options, *more], self.project.parent
-            said = toolchain.run("gprbuild", words, where, variables, taken)
+            said = compilation.run(*more, tell=tell)
             if said.strip():
                 warn(said.rstrip())
 
@@ -147,6 +120,31 @@ class Program:
                 stacks.must_have_graphs(stacks.objects_of(made))
             self._examine(made, mode, target, board)
         return made
+
+    def compilation(
+        self,
+        mode: str = "checks",
+        driver: str | None = None,
+        registers: str = "simulated",
+        board: targets.Board | None = None,
+    ) -> Compilation:
+        """How `build` calls gprbuild. Refused as there."""
+        target = board.target if board else targets.target(NATIVE)
+        chosen = driver or default_driver(self.checked, target)
+        check_driver(self.checked, chosen, target)
+        if registers == HARDWARE:
+            self._check_addresses()
+        variables = {
+            **self.scenario(mode, chosen, target.name),
+            "RAVENCHART_REGISTERS": registers,
+        }
+        options = ["-p", "-q", "-j0", "-P", self.project.name]
+        if board:
+            variables |= board.scenario()
+            options = [*board.options(), *options]
+        options += ["-cargs:Ada", stacks.CALL_GRAPHS, "-gargs"]
+        image = self.home(chosen, target.name) / mode / f"{self.checked.stem}_main"
+        return Compilation(tuple(options), self.project.parent, variables, image)
 
     def last_build(self) -> Memory | None:
         """The stacks and the memory of its last build from these sources, if there is one."""
@@ -176,7 +174,7 @@ class Program:
         stacks.keep(
             made,
             stacks.examine(
-                stacks.Made(
+                stacks.BuiltProgram(
                     self.part,
                     made,
                     stacks.objects_of(made),
@@ -224,7 +222,7 @@ class Program:
         """What of the system it is."""
         return next(p for p in programs(self.checked.system) if p.nodes[0].name == self.node)
 
-    def proof(self, driver: str, *, warnings: str = "continue", whole: bool = False) -> Task:
+    def proof(self, driver: str, *, warnings: str = "continue", whole: bool = False) -> ProofTask:
         """The run of gnatprove on it, with the runtime and the HAL again if ``whole``."""
         own = self.home(driver) / "checks" / "gnatprove"
         runtime = work() / "obj" / f"checks-{driver}" / "gnatprove"
@@ -235,7 +233,7 @@ class Program:
         if types_with_registers(self.part):
             read = (*read, self.generated / HARDWARE)
             scenario["RAVENCHART_REGISTERS"] = HARDWARE
-        return Task(
+        return ProofTask(
             self.project,
             scenario,
             (own, runtime) if whole else (own,),
@@ -257,9 +255,9 @@ def programs_of(checked: Checked) -> tuple[Program, ...]:
     )
 
 
-def build_home(checked: Checked, driver: str, target: str = targets.NATIVE) -> Path:
+def build_home(checked: Checked, driver: str, target: str = NATIVE) -> Path:
     """What is built of a model, below build/ of the place of work, apart for driver and target."""
-    place = driver if target == targets.NATIVE else f"{driver}-{target}"
+    place = driver if target == NATIVE else f"{driver}-{target}"
     return work() / "build" / f"{checked.stem}-{_mark(checked.path)}-{place}"
 
 
@@ -280,7 +278,7 @@ def default_driver(checked: Checked, target: targets.Target | None = None) -> st
     So does one whose transmit buffers are by priority: an slcan adapter has none. On another
     target it is the first of that target's drivers.
     """
-    if target is not None and target.name != targets.NATIVE:
+    if target is not None and target.name != NATIVE:
         return target.facts.drivers[0]
     if len(checked.system.nodes) > 1 or _by_priority(checked):
         return "bus"

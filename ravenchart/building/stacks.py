@@ -38,7 +38,7 @@ SAFE = 1_024
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class BuiltProgram:
     """A program that is built: its image, objects and tools, and the model that it is made of."""
 
     system: System
@@ -122,14 +122,19 @@ def read_record(path: Path) -> Memory:
         raise Unusable(f"{path} is no record of stacks and memory: {fault}") from None
 
 
+def facts_of(target: Target) -> tuple[Path, ...]:
+    """What decides beside a program whether its stacks are large enough, this module apart."""
+    return FRAMES, file_of(target.name)
+
+
 def is_known(image: Path, target: Target) -> bool:
     """Was this very program found to have stacks that are large enough?"""
     kept = record_of(image)
-    read = (image, FRAMES, file_of(target.name), Path(__file__))
+    read = (image, *facts_of(target), Path(__file__))
     return kept.is_file() and kept.stat().st_mtime_ns >= max(r.stat().st_mtime_ns for r in read)
 
 
-def examine(made: Made) -> Memory:
+def examine(made: BuiltProgram) -> Memory:
     """The stacks and the memory of a program. Refused where a stack has no bound, or not the bytes.
 
     ToolFailed where a tool cannot say what is asked.
@@ -151,7 +156,7 @@ def examine(made: Made) -> Memory:
     flash, ram = memory.totals(sections)
     if made.target.facts.stacks.library is not None:  # on a board they are in the tasks
         given = sum(one.size or 0 for one in stacks)
-        parts.append(memory.Part("stacks of tasks", 0, given))
+        parts.append(memory.UsedMemory("stacks of tasks", 0, given))
         ram += given
     return Memory(
         made.system.nodes[0].name,
@@ -172,7 +177,7 @@ def digests(folders: Iterable[Path], folder: Path) -> dict[str, str]:
     return {named(p, folder): digest(p) for p in files}
 
 
-def _said(made: Made, tool: str, *options: str) -> str:
+def _said(made: BuiltProgram, tool: str, *options: str) -> str:
     words = [f"{made.tools}{tool}", *options, str(made.image)]
     done = children.run(words, errors="replace")
     if done.returncode != 0:
@@ -180,7 +185,7 @@ def _said(made: Made, tool: str, *options: str) -> str:
     return str(done.stdout)
 
 
-def _graph(made: Made) -> graph.Graph:
+def _graph(made: BuiltProgram) -> graph.Graph:
     """The functions of the program and, where it is in the image, of the run-time library."""
     texts = (one.with_suffix(".ci").read_text("utf-8", "replace") for one in made.objects)
     try:
@@ -194,7 +199,7 @@ def _graph(made: Made) -> graph.Graph:
     return found
 
 
-def _rules(made: Made, linked: frozenset[str]) -> Rules:
+def _rules(made: BuiltProgram, linked: frozenset[str]) -> Rules:
     facts = made.target.facts.stacks
     given = tomllib.loads(FRAMES.read_text("utf-8"))
     regions = [r for c in made.system.components for r in c.regions]
@@ -216,7 +221,9 @@ def _timers(transitions: Sequence[object]) -> int:
 # --- The stacks ------------------------------------------------------------------
 
 
-def _tasks(made: Made, depths: Depths, by_name: Mapping[str, symbols.Symbol]) -> Iterator[Stack]:
+def _tasks(
+    made: BuiltProgram, depths: Depths, by_name: Mapping[str, symbols.Symbol]
+) -> Iterator[Stack]:
     """The stack of each task, in the order of the model."""
     values = symbols.Values(made.image, by_name)
     known = _known(made.system)
@@ -265,14 +272,14 @@ def _known(system: System) -> dict[str, tuple[str, Origin, int | None]]:
     return found
 
 
-def _ending(made: Made, depths: Depths) -> int:
+def _ending(made: BuiltProgram, depths: Depths) -> int:
     """What the run-time library executes on the stack of a task that ends."""
     wanted = set(made.target.facts.stacks.on_end)
     found = [title for title, one in depths.graph.items() if graph.plain(one.name) in wanted]
     return max(map(depths.depth, found), default=0)
 
 
-def _interrupted(made: Made, depths: Depths) -> int:
+def _interrupted(made: BuiltProgram, depths: Depths) -> int:
     """What an interrupt takes of the stack of the task that it interrupts."""
     facts = made.target.facts.stacks.interrupted
     if facts is None:
@@ -280,14 +287,14 @@ def _interrupted(made: Made, depths: Depths) -> int:
     return facts.frame + max((_depth(made, depths, name) for name in facts.calls), default=0)
 
 
-def _depth(made: Made, depths: Depths, name: str) -> int:
+def _depth(made: BuiltProgram, depths: Depths, name: str) -> int:
     if name not in depths.graph:
         raise ToolFailed(f"{made.image} has no {name}, which {made.target.name} needs")
     return depths.depth(name)
 
 
 def _stack(
-    made: Made, depths: Depths, task: str, root: str, size: int | None, ending: int = 0
+    made: BuiltProgram, depths: Depths, task: str, root: str, size: int | None, ending: int = 0
 ) -> Stack:
     extra = _interrupted(made, depths)
     bound = max(depths.depth(root), ending) + extra
@@ -302,7 +309,9 @@ def _function(title: str) -> str:
     return title if title == LIBRARY else graph.ada_name(graph.symbol(title))
 
 
-def _others(made: Made, depths: Depths, by_name: Mapping[str, symbols.Symbol]) -> Iterator[Stack]:
+def _others(
+    made: BuiltProgram, depths: Depths, by_name: Mapping[str, symbols.Symbol]
+) -> Iterator[Stack]:
     """The stack of the environment task, and that of interrupts."""
     facts = made.target.facts.stacks
     size = None if facts.environment is None else _between(made, by_name, *facts.environment)
@@ -318,7 +327,9 @@ def _others(made: Made, depths: Depths, by_name: Mapping[str, symbols.Symbol]) -
     yield Stack("interrupts", bound, bound - once, 0, size, _path(depths, place.root))
 
 
-def _between(made: Made, by_name: Mapping[str, symbols.Symbol], first: str, last: str) -> int:
+def _between(
+    made: BuiltProgram, by_name: Mapping[str, symbols.Symbol], first: str, last: str
+) -> int:
     for name in (first, last):
         if name not in by_name:
             raise ToolFailed(f"{made.image} has no {name}, which {made.target.name} needs")
@@ -328,7 +339,7 @@ def _between(made: Made, by_name: Mapping[str, symbols.Symbol], first: str, last
 # --- What is wrong ----------------------------------------------------------------
 
 
-def _too_small(made: Made, one: Stack) -> Iterator[Diagnostic]:
+def _too_small(made: BuiltProgram, one: Stack) -> Iterator[Diagnostic]:
     if one.size is None or one.bound <= one.size:
         return
     places = {name: origin for name, origin, _ in _known(made.system).values()}
@@ -353,7 +364,7 @@ def _too_small(made: Made, one: Stack) -> Iterator[Diagnostic]:
     )  # fmt: skip
 
 
-def _problems(made: Made, depths: Depths) -> Iterator[Diagnostic]:
+def _problems(made: BuiltProgram, depths: Depths) -> Iterator[Diagnostic]:
     """Why paths have no bound."""
     unknown = made.system.nodes[0].origin
     for one in depths.problems:

@@ -20,15 +20,12 @@ from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
-from ravenchart.paths import ROOT, work
+from ravenchart.paths import work
 from ravenchart.tools import children
 
-RUNTIME = ROOT / "spark_runtime"
-NATIVE = "native"
-"""The target of this machine."""
-RTS_VARIABLE = "RAVENCHART_RTS"
-"""Names the run-time library where a command is not given one."""
-COMPILERS = RUNTIME / "compilers"
+from . import variants
+
+COMPILERS = variants.RUNTIME / "compilers"
 """What gprbuild must know of compilers beside what it knows itself."""
 SECOND = 10**9
 """In ns."""
@@ -38,7 +35,7 @@ class _Form(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class Region(_Form):
+class MemoryRegion(_Form):
     """Memory: its first address, and its bytes."""
 
     at: int = Field(ge=0)
@@ -54,7 +51,7 @@ class CanController(_Form):
     interrupt: int = Field(ge=0)
 
 
-class Overheads(_Form):
+class TargetOverheads(_Form):
     """What the run-time library costs there, in ns; named as the keys of a node are."""
 
     context_switch: Span
@@ -115,8 +112,8 @@ class TargetForm(_Form):
     compilers: tuple[str, ...] = ()
     drivers: tuple[str, ...] = Field(min_length=1)
     tick: PositiveSpan | None = None
-    overheads: Overheads | None = None
-    memory: dict[str, Region] = {}
+    overheads: TargetOverheads | None = None
+    memory: dict[str, MemoryRegion] = {}
     stacks: Stacks = Stacks()
     can: tuple[CanController, ...] = ()
     emulator: Emulator | None = None
@@ -153,21 +150,17 @@ class Board:
         }
 
 
-def names() -> tuple[str, ...]:
-    """Every target, that of this machine first."""
-    found = sorted(path.parent.name for path in RUNTIME.glob("*/target.toml"))
-    return (NATIVE, *(name for name in found if name != NATIVE))
-
-
 def file_of(name: str) -> Path:
     """The data file of a target."""
-    return RUNTIME / name / "target.toml"
+    return variants.RUNTIME / name / "target.toml"
 
 
 def target(name: str) -> Target:
     """The target of that name. Unusable where its file is wrong, or there is none."""
-    if name not in names():
-        raise Unusable(f"there is no target {name}; the targets are {', '.join(names())}")
+    if name not in variants.targets():
+        raise Unusable(
+            f"there is no target {name}; the targets are {', '.join(variants.targets())}"
+        )
     path = file_of(name)
     try:
         return Target(name, TargetForm.model_validate(tomllib.loads(path.read_text("utf-8"))))
@@ -178,13 +171,13 @@ def target(name: str) -> Target:
 def board(chosen: Target, rts: Path | None) -> Board:
     """The target with its tools. Unusable, with what is missing, where one is missing."""
     known = " or ".join(chosen.facts.compilers)
-    if rts is None and os.environ.get(RTS_VARIABLE):
-        rts = Path(os.environ[RTS_VARIABLE])
+    if rts is None and os.environ.get(variants.RTS_VARIABLE):
+        rts = Path(os.environ[variants.RTS_VARIABLE])
     if rts is None:
         raise Unusable(
             f"the target {chosen.name} needs an Ada run-time library: give the folder of a "
-            f"light-tasking one for it with `--rts DIR` or {RTS_VARIABLE}; it comes with your "
-            f"GNAT for {known}"
+            f"light-tasking one for it with `--rts DIR` or {variants.RTS_VARIABLE}; it comes with "
+            f"your GNAT for {known}"
         )
     if not (rts / "adalib").is_dir():
         raise Unusable(f"{rts} is no Ada run-time library: it has no folder adalib")

@@ -18,7 +18,7 @@ from rich.table import Table as Printed
 from rich.text import Text
 
 from ravenchart.analysis.core import allocation
-from ravenchart.analysis.core.allocation import Activity, Strategy, Table
+from ravenchart.analysis.core.allocation import Movable, Strategy, Table
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.present.words import verdict_line
@@ -32,7 +32,7 @@ from ravenchart.terminal import console, progress
 
 from . import common
 from .allocation_search import SET, Judged, searched
-from .results import Allocated, AllocateResult, Row
+from .results import ActivityRow, Allocated, AllocateResult
 
 STRATEGIES = {
     "period": Strategy.BY_PERIOD,
@@ -63,7 +63,7 @@ def propose(analysis: Analysis, strategy: str) -> Proposal:
     moved = [processor for processor in system.processors if processor.released_by is None]
     home = {slot.element: (processor, slot) for processor in moved for slot in processor.slots}
     activities = [
-        Activity(
+        Movable(
             slot.element,
             slot.timing.period,
             slot.timing.wcet,
@@ -267,7 +267,7 @@ def _answer(proposal: Proposal, strategy: str) -> AllocateResult:
             one.wcet,
             analysis.found.from_event(one.name),
             [
-                Row(
+                ActivityRow(
                     slot.element,
                     slot.timing.period,
                     slot.timing.deadline,

@@ -3,30 +3,35 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from ravenchart.building import programs
-from ravenchart.building.stacks import kept, write
+from ravenchart.building import unchanged, variants
 from ravenchart.failures import OK
-from ravenchart.terminal import stages
+from ravenchart.terminal import progress, stages
 
 from . import common
 from .answer import say
-from .results import BuildResult, Built
+from .build_results import BuildResult, Built
+
+if TYPE_CHECKING:
+    from ravenchart.building.programs import Program
+    from ravenchart.building.targets import Board
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
     common.add_target(sub)
-    sub.add_argument("--driver", choices=programs.DRIVERS, help="the CAN driver")
+    sub.add_argument("--driver", choices=variants.DRIVERS, help="the CAN driver")
     sub.add_argument(
         "--mode", choices=("checks", "release"), default="checks",
         help="checks: every contract is executed; release: -O2, proof stands for checks",
     )  # fmt: skip
     sub.add_argument(
-        "--registers", choices=programs.REGISTERS, default="simulated",
+        "--registers", choices=variants.REGISTERS, default="simulated",
         help="simulated: the bodies in simulated/; hardware: at the addresses of the devices",
     )  # fmt: skip
     sub.add_argument(
@@ -37,23 +42,85 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Build every program of the model; the exit status."""
+    before = unchanged.build(options.model, _switches(options)) if _is_common(options) else None
+    if before is None:
+        _build(options)
+    else:
+        _build_again(options, before)
+    return OK
+
+
+def _is_common(options: argparse.Namespace) -> bool:
+    """Whether a build is of the kind of which records are kept."""
+    return options.target == variants.NATIVE and options.memory is None
+
+
+def _switches(options: argparse.Namespace) -> tuple[str, ...]:
+    return options.mode, options.driver or "", options.registers
+
+
+def _build(options: argparse.Namespace) -> None:
+    """All of it."""
     checked = common.checked(options)
     board = common.board(options, checked)
-    generated = common.generated(checked, options.answer)
-    answer = options.answer.result = BuildResult(generated, [])
-    warn = partial(say, options.answer, severity="warning")
+    from ravenchart.building import generation, programs, stacks, targets
+
+    with progress("generate"):
+        written = generation.write_program(checked)
+    unchanged.keep(checked, written)
+    generated = common.tell_written(written, options.answer)
+    options.answer.result = BuildResult(generated, [])
     found = programs.programs_of(checked)
+    done = []
     for made in found:
-        with stages(f"compile {made.node}") as tell:
-            program = made.build(
-                options.mode, options.driver, options.registers, warn, board, tell=tell
-            )
-        memory = kept(program)
-        answer.programs.append(Built(made.node, str(program), memory))
+        done.append(_built(options, made, board))
         if options.memory:
-            write(memory, _file(options.memory, made.node if len(found) > 1 else ""))
-        print(f"built {program}\n  {memory.shown()}")
-    return OK
+            stacks.write(
+                done[-1].memory, _file(options.memory, made.node if len(found) > 1 else "")
+            )
+        _tell(options, done[-1])
+    if _is_common(options):
+        facts = stacks.facts_of(targets.target(variants.NATIVE))
+        unchanged.keep_build(checked, written, _switches(options), done, facts)
+
+
+def _build_again(options: argparse.Namespace, before: unchanged.Build) -> None:
+    """What gprbuild finds to do, and the rest where it has made another program."""
+    generated = common.generated_before(before.generation, options.answer)
+    options.answer.result = BuildResult(generated, [])
+    for one in before.programs:
+        with stages(f"compile {one.node}") as tell:
+            said = one.compilation.run(tell=tell)
+        if said.strip():
+            _warn(options)(said.rstrip())
+        _tell(options, one if before.holds() else _examined(options, one.node))
+
+
+def _examined(options: argparse.Namespace, node: str) -> unchanged.Built:
+    """The program of a node whose model has been told of."""
+    from ravenchart.building import checking, programs
+
+    found = programs.programs_of(checking.check(options.model))
+    return _built(options, next(one for one in found if one.node == node), None)
+
+
+def _built(options: argparse.Namespace, made: Program, board: Board | None) -> unchanged.Built:
+    from ravenchart.building import stacks
+
+    choice = options.mode, options.driver, options.registers
+    with stages(f"compile {made.node}") as tell:
+        image = made.build(*choice, _warn(options), board, tell=tell)
+    return unchanged.Built(made.node, made.compilation(*choice, board), stacks.kept(image))
+
+
+def _warn(options: argparse.Namespace) -> Callable[[str], None]:
+    return partial(say, options.answer, severity="warning")
+
+
+def _tell(options: argparse.Namespace, one: unchanged.Built) -> None:
+    image = one.compilation.image
+    options.answer.result.programs.append(Built(one.node, str(image), one.memory))
+    print(f"built {image}\n  {one.memory.shown()}")
 
 
 def _file(path: Path, node: str) -> Path:

@@ -11,7 +11,7 @@ from ravenchart.gen.model.safety import SafeRegion
 from ravenchart.gen.model.system import System
 
 from . import common
-from .results import CheckResult
+from .build_results import CheckResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:

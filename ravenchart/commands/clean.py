@@ -36,7 +36,7 @@ def execute(options: argparse.Namespace) -> int:
 
         folders = homes_of(options.model)
     if options.results:
-        folders += [cache() / "checks", cache() / "proofs", cache() / "verdicts"]
+        folders += [cache() / kind for kind in ("checks", "generations", "proofs", "verdicts")]
     freed = sum(_size(folder) for folder in folders)
     there = [folder for folder in folders if folder.exists()]
     for folder in there:

@@ -7,15 +7,19 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ravenchart.building import variants
+from ravenchart.building.garbage import without_collector
 from ravenchart.failures import Unusable
 from ravenchart.terminal import progress
 
 from .answer import Answer, say
-from .results import GenerateResult
+from .build_results import GenerateResult
 
 if TYPE_CHECKING:
     from ravenchart.building.checking import Checked
     from ravenchart.building.targets import Board
+    from ravenchart.building.unchanged import Generation
+    from ravenchart.building.written import Written
     from ravenchart.gen.model.system import System
     from ravenchart.hw_can.bench.interfaces import Interface
 
@@ -27,24 +31,22 @@ def add_model(sub: argparse.ArgumentParser) -> None:
 
 def add_target(sub: argparse.ArgumentParser) -> None:
     """What the program is built for."""
-    from ravenchart.building import targets
-
     sub.add_argument(
-        "--target", choices=targets.names(), default=targets.NATIVE,
+        "--target", choices=variants.targets(), default=variants.NATIVE,
         help="what the program runs on (default: this machine)",
     )  # fmt: skip
     sub.add_argument(
         "--rts", type=Path, metavar="DIR",
-        help=f"the target's Ada run-time library (default: {targets.RTS_VARIABLE})",
+        help=f"the target's Ada run-time library (default: {variants.RTS_VARIABLE})",
     )  # fmt: skip
 
 
 def board(options: argparse.Namespace, found: Checked) -> Board | None:
     """The board that the program is built for, its warnings printed; None: this machine."""
+    if options.target == variants.NATIVE:
+        return None
     from ravenchart.building import targets
 
-    if options.target == targets.NATIVE:
-        return None
     made = targets.board(targets.target(options.target), options.rts)
     for text in targets.check_system(made, found.system):
         say(options.answer, text)
@@ -95,19 +97,27 @@ def checked(
     options: argparse.Namespace, *, deadlines: bool = True, finish: bool = False
 ) -> Checked:
     """The model, with its warnings printed; Refused with its errors."""
-    from ravenchart.building import checking
+    with without_collector():
+        from ravenchart.building import checking
 
     with progress(f"check {options.model.name}"):
         found = checking.check(options.model, deadlines=deadlines, finish=finish)
-    tell_warnings(found)
+    tell_warnings(found.warnings)
     options.answer.add(found.diagnostics)
     return found
 
 
-def tell_warnings(found: Checked) -> None:
+def tell_warnings(warnings: str) -> None:
     """Print the warnings of a model."""
-    if found.warnings:
-        print(found.warnings, file=sys.stderr, flush=True)
+    if warnings:
+        print(warnings, file=sys.stderr, flush=True)
+
+
+def generated_before(found: Generation, answer: Answer) -> GenerateResult:
+    """Tell what a generation that has nothing to do would tell."""
+    tell_warnings(found.warnings)
+    answer.add(found.found)
+    return tell_written(found.written, answer)
 
 
 def several(count: int, what: str) -> str:
@@ -124,12 +134,10 @@ def verdict(found: Checked) -> str:
     return f"{system.name}: {instances} on {processors}, {messages}; every deadline is met"
 
 
-def generated(checked: Checked, answer: Answer) -> GenerateResult:
-    """The program written; what that did, and what is still to write, is printed too."""
-    from ravenchart.building.generation import EDITED, write_program
+def tell_written(written: Written, answer: Answer) -> GenerateResult:
+    """What a generation did, and what is still to write: printed, and for the answer."""
+    from ravenchart.building.written import EDITED
 
-    with progress("generate"):
-        written = write_program(checked)
     print(f"{written.folder}: {several(written.files, 'file')}, {written.changed} changed")
     for name in written.edited:
         say(

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 
+from ravenchart.building import unchanged
 from ravenchart.failures import OK
+from ravenchart.terminal import progress
 
 from . import common
 
@@ -12,6 +14,16 @@ add_arguments = common.add_model
 
 
 def execute(options: argparse.Namespace) -> int:
-    """Write it; the exit status."""
-    options.answer.result = common.generated(common.checked(options), options.answer)
+    """Write it, where it is not there as it would be written; the exit status."""
+    before = unchanged.generation(options.model)
+    if before is not None:
+        options.answer.result = common.generated_before(before, options.answer)
+        return OK
+    checked = common.checked(options)
+    from ravenchart.building import generation  # only here: it imports all that writes Ada
+
+    with progress("generate"):
+        written = generation.write_program(checked)
+    unchanged.keep(checked, written)
+    options.answer.result = common.tell_written(written, options.answer)
     return OK

@@ -13,14 +13,14 @@ from ravenchart import terminal
 from ravenchart.failures import OK, WRONG, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.conformance.ends import Setup, open_ends
-from ravenchart.hw_can.conformance.suite import LoopbackResult, Verdict, histogram, run
+from ravenchart.hw_can.conformance.suite import CaseVerdict, LoopbackResult, histogram, run
 
 from . import loopback_files, results
 
 BAR = 40
 """Columns of the longest bar of the histogram."""
 
-_STYLES = {Verdict.PASSED: "", Verdict.FAILED: "bold red", Verdict.SKIPPED: "dim"}
+_STYLES = {CaseVerdict.PASSED: "", CaseVerdict.FAILED: "bold red", CaseVerdict.SKIPPED: "dim"}
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
@@ -75,7 +75,7 @@ def show(result: LoopbackResult, console: Console | None = None) -> None:
 
 def verdict_line(result: LoopbackResult) -> str:
     """PASS or FAIL, and how many cases ended how."""
-    passed, failed, skipped = map(result.count, Verdict)
+    passed, failed, skipped = map(result.count, CaseVerdict)
     word = "PASS" if result.passed else "FAIL"
     return f"{word}: {passed} passed, {failed} failed, {skipped} skipped"
 
@@ -105,7 +105,7 @@ def tested(options: argparse.Namespace) -> bool:
     options.answer.result = results.LoopbackResult(
         result.passed,
         [
-            results.Case(one.name, one.verdict.value.lower(), one.seconds, one.detail)
+            results.LoopbackCase(one.name, one.verdict.value.lower(), one.seconds, one.detail)
             for one in result.cases
         ],
         list(result.latencies),

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from ravenchart.hw_can.conformance.suite import LoopbackResult, Verdict, histogram
+from ravenchart.hw_can.conformance.suite import CaseVerdict, LoopbackResult, histogram
 
 
 def facts(result: LoopbackResult) -> tuple[tuple[str, str], ...]:
@@ -29,9 +29,9 @@ def junit(result: LoopbackResult, suite_name: str = "loopback") -> str:
         "testsuite",
         name=f"{suite_name} {result.setup.interface}",
         tests=str(len(result.cases)),
-        failures=str(result.count(Verdict.FAILED)),
+        failures=str(result.count(CaseVerdict.FAILED)),
         errors="0",
-        skipped=str(result.count(Verdict.SKIPPED)),
+        skipped=str(result.count(CaseVerdict.SKIPPED)),
         time=f"{result.seconds:.3f}",
     )
     properties = ElementTree.SubElement(suite, "properties")
@@ -45,10 +45,10 @@ def junit(result: LoopbackResult, suite_name: str = "loopback") -> str:
             name=case.name,
             time=f"{case.seconds:.3f}",
         )
-        if case.verdict is Verdict.PASSED:
+        if case.verdict is CaseVerdict.PASSED:
             ElementTree.SubElement(element, "system-out").text = case.detail
         else:
-            tag = "failure" if case.verdict is Verdict.FAILED else "skipped"
+            tag = "failure" if case.verdict is CaseVerdict.FAILED else "skipped"
             ElementTree.SubElement(element, tag, message=case.detail)
     root = ElementTree.Element("testsuites")
     root.append(suite)
@@ -74,7 +74,7 @@ def html(result: LoopbackResult) -> str:
     return environment.get_template("loopback.html").render(
         result=result,
         facts=facts(result),
-        counts=[(verdict.value.lower(), result.count(verdict)) for verdict in Verdict],
+        counts=[(verdict.value.lower(), result.count(verdict)) for verdict in CaseVerdict],
         bars=bars,
         highest=max((count for _, count in bars), default=1),
     )

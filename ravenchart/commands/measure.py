@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ravenchart import terminal
 from ravenchart.analysis.system.observed import Observation, TraceError
-from ravenchart.building import targets
+from ravenchart.building import targets, variants
 from ravenchart.building.checking import Checked
 from ravenchart.failures import OK, WRONG, Refused, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
@@ -56,7 +56,7 @@ def execute(options: argparse.Namespace) -> int:
     found = measured.measured(
         checked.system,
         seen,
-        board.target.name if board else targets.NATIVE,
+        board.target.name if board else variants.NATIVE,
         emulator.time if emulator else measured.OF_THIS_MACHINE,
         outcome.title,
         options.margin,

@@ -6,11 +6,11 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from ravenchart.building import programs
+from ravenchart.building import generation, programs, variants
 from ravenchart.failures import OK, WRONG
 from ravenchart.proof import outside_spark, proving, unproved, verdicts
 from ravenchart.proof.spark_results import Outside
-from ravenchart.terminal import stages
+from ravenchart.terminal import progress, stages
 
 from . import common
 from .answer import say
@@ -20,7 +20,7 @@ from .results import Proved, ProveResult, Unproved
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
-    sub.add_argument("--driver", choices=programs.DRIVERS, help="the CAN driver")
+    sub.add_argument("--driver", choices=variants.DRIVERS, help="the CAN driver")
     sub.add_argument(
         "--whole", action="store_true",
         help="prove the runtime and the HAL again, which `make prove` proves by themselves",
@@ -52,7 +52,9 @@ def _memcached(address: str) -> verdicts.Memcached:
 def execute(options: argparse.Namespace) -> int:
     """Prove every program of the model; the exit status."""
     checked = common.checked(options)
-    generated = common.generated(checked, options.answer)
+    with progress("generate"):
+        written = generation.write_program(checked)
+    generated = common.tell_written(written, options.answer)
     answer = options.answer.result = ProveResult(generated, [])
     driver = options.driver or programs.default_driver(checked)
     programs.check_driver(checked, driver)

@@ -9,67 +9,9 @@ from dataclasses import dataclass
 
 from ravenchart.described import Described, Result
 from ravenchart.running.measured import Measurement
-from ravenchart.stacks.report import Memory
 
+from .build_results import BuildResult, CheckResult, GenerateResult
 from .run_results import RunResult, ShellResult
-
-
-@dataclass(slots=True)
-class CheckResult(Result):
-    """A model without errors."""
-
-    system: str
-    """The name of the system."""
-    digest: str
-    """SHA-256 of the model's files."""
-    instances: int
-    """How many instances of components it has."""
-    processors: int
-    """How many command processors."""
-    messages: int
-    """How many messages of buses."""
-    contracts: dict[str, list[str]]
-    """The invariants that are contracts of the code, each with the facts that its proof uses."""
-
-
-@dataclass(slots=True)
-class GenerateResult(Result):
-    """A program, written beside its model."""
-
-    folder: str
-    """Where it was written."""
-    files: int
-    """How many files it has."""
-    changed: int
-    """How many of these differ from those before."""
-    edited: list[str]
-    """Files that had been edited by hand: their copies end in `.edited`."""
-    first: list[str]
-    """Files of the user that were not there, and got a first version."""
-    untouched: list[str]
-    """Files of the user that are as first written, and do nothing."""
-
-
-@dataclass(slots=True)
-class Built(Described):
-    """The program of one node."""
-
-    node: str
-    """The name of the node."""
-    program: str
-    """The executable."""
-    memory: Memory
-    """Its stacks and its memory."""
-
-
-@dataclass(slots=True)
-class BuildResult(Result):
-    """Programs, generated and compiled."""
-
-    generated: GenerateResult
-    """What was generated."""
-    programs: list[Built]
-    """One for each node that runs something."""
 
 
 @dataclass(slots=True)
@@ -129,7 +71,7 @@ class ProveResult(Result):
 
 
 @dataclass(slots=True)
-class Row(Described):
+class ActivityRow(Described):
     """An activity of a processor."""
 
     activity: str
@@ -168,7 +110,7 @@ class Allocated(Described):
     """Worst-case execution time in ns."""
     response: int | None
     """Response-time bound in ns; null where there is none."""
-    activities: list[Row]
+    activities: list[ActivityRow]
     """Its table, first to last."""
 
 
@@ -293,7 +235,7 @@ class NewResult(Result):
 
 
 @dataclass(slots=True)
-class Case(Described):
+class LoopbackCase(Described):
     """A case of the suite."""
 
     name: str
@@ -312,7 +254,7 @@ class LoopbackResult(Result):
 
     passed: bool
     """Whether nothing failed, and something passed."""
-    cases: list[Case]
+    cases: list[LoopbackCase]
     """In the order in which they ran."""
     latencies: list[int]
     """From sending to receiving, in ns."""

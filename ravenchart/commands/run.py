@@ -75,7 +75,10 @@ def _judged(outcome: RunResult, folder: Path) -> run_results.RunResult:
         outcome.not_judged,
         list(outcome.failures),
         list(outcome.notes),
-        [run_results.Step(one.at, one.text, one.passed, one.outcome) for one in outcome.steps],
+        [
+            run_results.PlayedStep(one.at, one.text, one.passed, one.outcome)
+            for one in outcome.steps
+        ],
         [
             run_results.Observed(one.task, one.releases, one.observed, one.bound)
             for one in outcome.compared

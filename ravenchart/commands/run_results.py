@@ -8,7 +8,7 @@ from ravenchart.described import Described, Result
 
 
 @dataclass(slots=True)
-class Step(Described):
+class PlayedStep(Described):
     """A step of the scenario."""
 
     at: float
@@ -51,7 +51,7 @@ class RunResult(Result):
     """The reasons; empty exactly when the run passed."""
     notes: list[str]
     """What a reader should know besides."""
-    steps: list[Step]
+    steps: list[PlayedStep]
     """Of the scenario."""
     processors: list[Observed]
     """Longest responses."""
@@ -65,7 +65,7 @@ class RunResult(Result):
 class ShellResult(Result):
     """What a script of the shell did."""
 
-    commands: list[Step]
+    commands: list[PlayedStep]
     """Its lines that were carried out, the last one perhaps without success."""
     status: dict[str, dict[str, int | float | str]]
     """The last values of each message that came, by field."""

@@ -6,7 +6,7 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from ravenchart.building import gateways, programs, targets
+from ravenchart.building import gateways, generation, programs, targets, variants
 from ravenchart.building.checking import Checked
 from ravenchart.building.programs import TRACE_MAP
 from ravenchart.failures import Unusable
@@ -19,7 +19,7 @@ from ravenchart.running.runs import (
     controller,
     run_on_this_machine,
 )
-from ravenchart.terminal import stages
+from ravenchart.terminal import progress, stages
 
 from . import common
 from .answer import Answer, say
@@ -62,7 +62,7 @@ def request(
     made = controllers(checked, options.answer, board, gateway, mode)
     target = board.target if board else None
     driver = gateway.driver if gateway else programs.default_driver(checked, target)
-    home = programs.build_home(checked, driver, target.name if target else targets.NATIVE)
+    home = programs.build_home(checked, driver, target.name if target else variants.NATIVE)
     return RunRequest(
         checked.analysis,
         made,
@@ -82,7 +82,9 @@ def controllers(
     mode: str = "checks",
 ) -> tuple[Controller, ...]:
     """The program of each node, generated and built."""
-    common.generated(checked, answer)
+    with progress("generate"):
+        written = generation.write_program(checked)
+    common.tell_written(written, answer)
     warn = partial(say, answer, severity="warning")
     made: list[Controller] = []
     for one in programs.programs_of(checked):
@@ -101,7 +103,7 @@ def on_bus(
     options: argparse.Namespace, checked: Checked, folder: Path | None, log: Path | None
 ) -> RunRequest:
     """The scenario alone, for a controller that runs already; Unusable without one."""
-    if options.target != targets.NATIVE:
+    if options.target != variants.NATIVE:
         raise Unusable("--interface and --target exclude each other: nothing is built")
     if options.scenario is None:
         raise Unusable("--interface needs --scenario: what is to be played there")

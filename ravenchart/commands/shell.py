@@ -136,7 +136,7 @@ class _Session:
             goes_on, fault = False, str(problem)
         self._out.file.flush()
         if line.strip():
-            step = run_results.Step(began, line.strip(), not fault, fault or "done")
+            step = run_results.PlayedStep(began, line.strip(), not fault, fault or "done")
             self._result.commands.append(step)
         self._result.status = self._robot.status
         return goes_on, fault

@@ -2,7 +2,7 @@
 
 The program is the generated one without tasks and buses: a main that holds the
 processors' tables, reads numbered stimuli from standard input, calls the rows in the
-order of `behaviour.interpreter.machine` and prints the lines of `Record.text`.
+order of `behaviour.interpreter.machine` and prints the lines of `StepRecord.text`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pathlib import Path
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.region import Stuck
 from ravenchart.behaviour.interpreter.stimuli import Raised, Stimuli, read
-from ravenchart.behaviour.interpreter.traces import Record, parsed
+from ravenchart.behaviour.interpreter.traces import StepRecord, parsed
 from ravenchart.behaviour.rules.outside import external_events
 from ravenchart.building.checking import Checked
 from ravenchart.building.generation import replace_file, without_clashes, write_first_versions
@@ -67,7 +67,7 @@ def _refused(found: Sequence[Diagnostic], path: Path, text: str) -> Refused:
     return Refused(render_all(found, sources), found)
 
 
-def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[Record]:
+def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[StepRecord]:
     """What the interpreter executes; Refused when the chart gets stuck."""
     try:
         with progress("simulate"):
@@ -83,12 +83,12 @@ def refused_as(stuck: Stuck) -> Refused:
     return Refused(render(found, {}), [found])
 
 
-def simulated_by_program(checked: Checked, stimuli: Stimuli) -> list[Record]:
+def simulated_by_program(checked: Checked, stimuli: Stimuli) -> list[StepRecord]:
     """What the generated program executes."""
     return played_by_program(checked)(stimuli)
 
 
-def played_by_program(checked: Checked) -> Callable[[Stimuli], list[Record]]:
+def played_by_program(checked: Checked) -> Callable[[Stimuli], list[StepRecord]]:
     """The generated program, built: what it executes under stimuli."""
     without_clashes(checked)
     write_first_versions(checked)
@@ -120,13 +120,13 @@ def build_simulation(system: System, folder: Path, home: Path) -> Path:
         places.append(str(ROOT / RUNTIME_FOLDER))
     given = {"RAVENCHART_USER": ",".join(places)} if places else {}
     with stages("compile the simulation") as tell:
-        taken = steps.Steps(steps.COMPILING, tell).takes
+        taken = steps.Announced(steps.COMPILING, tell).takes
         words = ["-p", "-q", "-j0", steps.OF_GPRBUILD, "-P", project]
         toolchain.run("gprbuild", words, source, given, taken)
     return home / project.removesuffix(".gpr")
 
 
-def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[Record]:
+def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[StepRecord]:
     """The steps that the compiled program executes under the stimuli."""
     known = {
         (instance.lower(), what.lower()): (number, of_type)

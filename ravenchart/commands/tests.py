@@ -11,8 +11,8 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from ravenchart.behaviour.cases.goals import Kind
-from ravenchart.behaviour.cases.search import EFFORT, Case, Found, Search
+from ravenchart.behaviour.cases.goals import GoalKind
+from ravenchart.behaviour.cases.search import EFFORT, CaseSearch, Found, FoundCase
 from ravenchart.behaviour.interpreter.stimuli import written
 from ravenchart.building.checking import Checked
 from ravenchart.building.generation import replace_file
@@ -62,7 +62,7 @@ def execute(options: argparse.Namespace) -> int:
     checked = common.checked(options, deadlines=False)
     interpreted_alone(checked.system)
     with progress("find cases"):
-        found = Search(as_one(checked.system), options.effort).found()
+        found = CaseSearch(as_one(checked.system), options.effort).found()
     folder = options.folder or checked.folder / "cases"
     files = _write(found.cases, folder)
     for case, file in zip(found.cases, files, strict=True):
@@ -88,7 +88,7 @@ def execute(options: argparse.Namespace) -> int:
     return WRONG if different else OK
 
 
-def _write(cases: list[Case], folder: Path) -> list[Path]:
+def _write(cases: list[FoundCase], folder: Path) -> list[Path]:
     """One file for each case; their paths."""
     folder.mkdir(parents=True, exist_ok=True)
     files = [folder / CASE.format(number) for number in range(1, len(cases) + 1)]
@@ -107,11 +107,13 @@ def _rows(found: Found) -> list[TestGoals]:
     every = Counter(goal.kind for goal in found.goals)
     left = Counter(goal.kind for goal in found.open)
     return [
-        TestGoals(kind.value, every[kind] - left[kind], every[kind]) for kind in Kind if every[kind]
+        TestGoals(kind.value, every[kind] - left[kind], every[kind])
+        for kind in GoalKind
+        if every[kind]
     ]
 
 
-def _different(checked: Checked, cases: list[Case], files: list[Path]) -> list[Path]:
+def _different(checked: Checked, cases: list[FoundCase], files: list[Path]) -> list[Path]:
     """The cases in which program and interpreter differ; what is told of them is printed."""
     missing = left_out(checked.system)
     if missing is not None:

@@ -75,7 +75,7 @@ def _checked(model: Path, seen: dict[Path, Stamp]) -> tuple[str, bool]:
     except Failure as failure:
         print(failure.shown(), file=sys.stderr, flush=True)
         return f"FAILED: {_counted(failure)}", False
-    tell_warnings(found)
+    tell_warnings(found.warnings)
     return verdict(found), True
 
 

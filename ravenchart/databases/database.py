@@ -22,10 +22,10 @@ from ravenchart.gen.language.quantities import duration
 from ravenchart.gen.model.signals import FD_SIZES
 from ravenchart.gen.resolve.layouts import SIGNED_BITS
 
-from .fields import Field, Fields, fields_of, raw_fields
+from .fields import Fields, ImportedField, fields_of, raw_fields
 from .names import HIDDEN, Names
 from .signals import Unsayable, Words, named_values
-from .whole import Frames, Sent, behaviour, bit_rate, deadline, sections
+from .whole import Frames, SentMessage, behaviour, bit_rate, deadline, sections
 
 FORMATS = (".dbc", ".kcd", ".sym", ".arxml")
 """Databases by the ending of their files; a file with another one is read as DBC."""
@@ -165,7 +165,7 @@ class _Writer:
 
     frames: list[Frames] = field(default_factory=list)
     """What is on the bus."""
-    sent: list[Sent] = field(default_factory=list)
+    sent: list[SentMessage] = field(default_factory=list)
     """What the node sends."""
     received: list[Frames] = field(default_factory=list)
     """What it receives with a port."""
@@ -303,7 +303,7 @@ class _Writer:
         often = f"  # every {period}" if sends and period is not None else ""
         self.ports.append(f"      {name}: {{{way}: {record}}}{often}")
         if sends:
-            self.sent.append(Sent(name, period))
+            self.sent.append(SentMessage(name, period))
         else:
             self.received.append(self.frames[-1])
         end = f"{self.instance}.{name}"
@@ -410,7 +410,7 @@ def _kept(name: str, original: str, known: set[str]) -> list[str]:
     return [f'database_name: "{original}"'] if told else []
 
 
-def _pages(one: Field, selector: Field | None) -> list[str]:
+def _pages(one: ImportedField, selector: ImportedField | None) -> list[str]:
     """The key that says with which values of the multiplexor a signal is there."""
     if selector is None or not one.pages:
         return []

@@ -18,7 +18,7 @@ MOST = 64
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class ImportedField:
     """A signal of the database, or bits of several of them, in a model's words."""
 
     signal: Signal
@@ -33,7 +33,7 @@ class Field:
         """Its bits in the frame, the least significant first."""
         return bits_of(self.signal)
 
-    def clashes(self, other: Field) -> bool:
+    def clashes(self, other: ImportedField) -> bool:
         """Do both have a bit in some frame?"""
         apart = self.pages and other.pages and not self.pages & other.pages
         return not apart and bool(set(self.bits) & set(other.bits))
@@ -46,9 +46,9 @@ class Fields:
     message: Message
     taken: Set[str]
     """Names that no literal may have, in lower case."""
-    selector: Field | None = None
+    selector: ImportedField | None = None
     """The multiplexor of the model."""
-    fields: list[Field] = field(default_factory=list)
+    fields: list[ImportedField] = field(default_factory=list)
     left_out: list[tuple[Signal, str]] = field(default_factory=list)
     """Signals that no field has, with the reason."""
 
@@ -62,7 +62,7 @@ def fields_of(message: Message, *, taken: Set[str], sends: bool) -> Fields:
     """The fields of a message. One that is sent has constants where signals are left out."""
     found = Fields(message, taken)
     found.selector = _selector(found)
-    loose: list[Field] = []
+    loose: list[ImportedField] = []
     for signal in message.signals:
         if found.selector is not None and signal is found.selector.signal:
             found.fields.append(found.selector)
@@ -75,7 +75,7 @@ def fields_of(message: Message, *, taken: Set[str], sends: bool) -> Fields:
     return found
 
 
-def raw_fields(message: Message) -> list[Field]:
+def raw_fields(message: Message) -> list[ImportedField]:
     """The bytes of a message without signals."""
     told = "is raw bits: the message has no signals"
     return [
@@ -83,7 +83,7 @@ def raw_fields(message: Message) -> list[Field]:
     ]
 
 
-def _selector(found: Fields) -> Field | None:
+def _selector(found: Fields) -> ImportedField | None:
     """The multiplexor with the most signals among those that are always there."""
     message = found.message
     roots = [
@@ -97,14 +97,14 @@ def _selector(found: Fields) -> Field | None:
     pages = {page for one in _paged_by(message, signal) for page in one.multiplexer_ids or ()}
     try:
         if signal.is_signed:
-            return Field(signal, unsigned_words(signal, "a multiplexor has no sign"))
+            return ImportedField(signal, unsigned_words(signal, "a multiplexor has no sign"))
         words = words_of(signal, taken=found.taken)
         if not all(words.has(page) for page in pages):
             reason = "some values of the multiplexor have no name, or are beyond its limits"
             words = raw_words(signal, reason)
     except Unsayable:
         return None
-    return Field(signal, words)
+    return ImportedField(signal, words)
 
 
 def _paged_by(message: Message, selector: Signal) -> list[Signal]:
@@ -140,7 +140,7 @@ def _pages(found: Fields, signal: Signal) -> tuple[frozenset[int], str | None]:
     return frozenset(), inner
 
 
-def _add(found: Fields, signal: Signal, loose: list[Field]) -> None:
+def _add(found: Fields, signal: Signal, loose: list[ImportedField]) -> None:
     """A signal that is not the model's multiplexor."""
     pages, inner = _pages(found, signal)
     if signal.multiplexer_ids and not pages and inner is None:
@@ -158,7 +158,7 @@ def _add(found: Fields, signal: Signal, loose: list[Field]) -> None:
             continue
         half = part is not signal and signal.conversion.is_float
         told = f"is part of the raw bits of a floating-point number ({signal.length} bits)"
-        new = Field(part, words, pages, told if half else None)
+        new = ImportedField(part, words, pages, told if half else None)
         if inner is not None:
             loose.append(new)
         elif clash := _clash(found, new):
@@ -167,14 +167,14 @@ def _add(found: Fields, signal: Signal, loose: list[Field]) -> None:
             found.fields.append(new)
 
 
-def _clash(found: Fields, new: Field) -> Field | None:
+def _clash(found: Fields, new: ImportedField) -> ImportedField | None:
     others = found.fields if found.selector is None else [found.selector, *found.fields]
     return next((other for other in others if new.clashes(other)), None)
 
 
-def _merged(found: Fields, loose: list[Field]) -> Iterator[Field]:
+def _merged(found: Fields, loose: list[ImportedField]) -> Iterator[ImportedField]:
     """Signals of inner multiplexors: those that may share bits become raw bits together."""
-    groups: list[list[Field]] = []
+    groups: list[list[ImportedField]] = []
     for new in loose:
         own = [new]
         while hit := next((g for g in groups if any(_meet(own, one) for one in g)), None):
@@ -199,7 +199,7 @@ def _merged(found: Fields, loose: list[Field]) -> Iterator[Field]:
             yield replace(_raw(name, run), pages=pages, told=shown)
 
 
-def _meet(group: list[Field], other: Field) -> bool:
+def _meet(group: list[ImportedField], other: ImportedField) -> bool:
     """Can raw bits of the whole group and of another signal be in one frame?"""
     pages = frozenset().union(*(one.pages for one in group))
     always = any(not one.pages for one in group)
@@ -211,8 +211,8 @@ def _meet(group: list[Field], other: Field) -> bool:
 def _shorten(found: Fields) -> None:
     """At most as many fields as a record has: the last ones become raw bits together."""
     pool = [one for one in found.fields if one is not found.selector]
-    rest: list[Field] = []
-    made: list[Field] = []
+    rest: list[ImportedField] = []
+    made: list[ImportedField] = []
     while len(found.fields) - len(rest) + len(made) > MOST and len(rest) < len(pool):
         rest.insert(0, pool[len(pool) - 1 - len(rest)])
         made = []
@@ -228,7 +228,7 @@ def _shorten(found: Fields) -> None:
     found.fields = [one for one in found.fields if id(one) not in gone] + made
 
 
-def _constants(found: Fields) -> Iterator[Field]:
+def _constants(found: Fields) -> Iterator[ImportedField]:
     """The bits that only signals have which are left out, as they are sent."""
     held = {bit for one in found.fields for bit in one.bits}
     values: dict[int, int] = {}
@@ -248,9 +248,9 @@ def _constants(found: Fields) -> Iterator[Field]:
         yield replace(made, words=words, told=told)
 
 
-def _raw(name: str, run: range) -> Field:
+def _raw(name: str, run: range) -> ImportedField:
     signal = Signal(name, run[0], len(run), byte_order="little_endian")
-    return Field(signal, replace(raw_words(signal, ""), raw=None))
+    return ImportedField(signal, replace(raw_words(signal, ""), raw=None))
 
 
 def _runs(bits: Iterable[int]) -> Iterator[range]:

@@ -61,7 +61,7 @@ class Frames:
 
 
 @dataclass(frozen=True, slots=True)
-class Sent:
+class SentMessage:
     """A port that the node sends from."""
 
     port: str
@@ -99,7 +99,7 @@ def _depth(count: int) -> int:
     return min(max(count, DEPTHS[0]), DEPTHS[1])
 
 
-def _rows(sent: Sequence[Sent], *, receives: bool) -> dict[str, list[str]]:
+def _rows(sent: Sequence[SentMessage], *, receives: bool) -> dict[str, list[str]]:
     """The ports that are sent from with each period, the shortest one first.
 
     A component without a port has a row as well, for it must have something to run.
@@ -116,7 +116,7 @@ def _named(period: str) -> str:
     return f"every_{period.replace('.', '_').replace(' ', '_')}"
 
 
-def behaviour(sent: Sequence[Sent], *, receives: bool) -> list[str]:
+def behaviour(sent: Sequence[SentMessage], *, receives: bool) -> list[str]:
     """What the component does with its ports, as keys of it."""
     lines = [f"    port_region: {{period: {PORTS_PERIOD}, wcet: 200 us}}"] if receives else []
     rows = _rows(sent, receives=receives)
@@ -134,7 +134,7 @@ def behaviour(sent: Sequence[Sent], *, receives: bool) -> list[str]:
 def sections(
     instance: str,
     component: str,
-    sent: Sequence[Sent],
+    sent: Sequence[SentMessage],
     *,
     received: Sequence[Frames],
     rate: int,

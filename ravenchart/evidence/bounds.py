@@ -10,7 +10,7 @@ from ravenchart.analysis.units import duration
 from ravenchart.gen.emit.ada.naming import root_package
 from ravenchart.gen.model.system import Processor
 
-from .claim import NO_RECORD, Claim, Kind, Shown, own_tool
+from .claim import NO_RECORD, Claim, ClaimKind, Shown, own_tool
 from .facts import Facts
 
 
@@ -53,7 +53,7 @@ def _bounded(
         if node.record is not None:
             inputs.append((f"record {node.record.name}", node.record.digest))
     return Claim(
-        id_, Kind.TIMING, tuple(dict.fromkeys(elements)), statement, theorem,
+        id_, ClaimKind.TIMING, tuple(dict.fromkeys(elements)), statement, theorem,
         "analysis, and certificate checked by compiler and gnatprove", own_tool(),
         verdict, (*wrong, *certificate.missing), tuple(inputs),
     )  # fmt: skip

@@ -22,7 +22,7 @@ class Shown(Enum):
     USERS = "user's"
 
 
-class Kind(Enum):
+class ClaimKind(Enum):
     """What a claim is about; the goals of the argument, in its order."""
 
     TRANSLATION = "The program is what the model gives"
@@ -41,7 +41,7 @@ class Claim:
     """One claim."""
 
     id: str
-    kind: Kind
+    kind: ClaimKind
     elements: tuple[str, ...]
     """The elements of the model that it is about."""
     statement: str

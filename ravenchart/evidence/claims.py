@@ -16,10 +16,10 @@ from ravenchart.gen.model.statechart import Region
 
 from . import records
 from .bounds import bounds
-from .claim import NO_RECORD, Claim, Kind, Pairs, Shown, own_tool, verdict_of
-from .facts import Facts, Node
+from .claim import NO_RECORD, Claim, ClaimKind, Pairs, Shown, own_tool, verdict_of
+from .facts import Facts, NodeFacts
 from .memory import stacks
-from .records import Record
+from .records import BelievedRecord
 from .results import FAILED, SKIPPED
 
 
@@ -38,7 +38,7 @@ def claims(facts: Facts) -> tuple[Claim, ...]:
     )
 
 
-def _on(facts: Facts, node: Node) -> str:
+def _on(facts: Facts, node: NodeFacts) -> str:
     return f" on {node.name}" if len(facts.nodes) > 1 else ""
 
 
@@ -46,20 +46,20 @@ def _several(count: int, what: str) -> str:
     return f"{count:,} {what}" if count == 1 else f"{count:,} {what}s"
 
 
-def _id(word: str, facts: Facts, node: Node) -> str:
+def _id(word: str, facts: Facts, node: NodeFacts) -> str:
     return f"{word}-{node.name}" if len(facts.nodes) > 1 else word
 
 
 # --- Program ---------------------------------------------------------------------
 
 
-def _translation(facts: Facts, node: Node) -> Claim:
+def _translation(facts: Facts, node: NodeFacts) -> Claim:
     problems = [facts.ungenerated] if facts.ungenerated else list(node.differences)
     if not problems and not node.files:
         problems = ["no program is generated"]
     return Claim(
         _id("generated", facts, node),
-        Kind.TRANSLATION,
+        ClaimKind.TRANSLATION,
         (facts.checked.system.name,),
         f"The generated files{_on(facts, node)} are exactly those that this model gives",
         "The program is generated again in memory and compared with the files, byte by byte; "
@@ -72,7 +72,7 @@ def _translation(facts: Facts, node: Node) -> Claim:
     )
 
 
-def _record_problems(node: Node) -> tuple[str, ...]:
+def _record_problems(node: NodeFacts) -> tuple[str, ...]:
     """Why what is proved of a program says nothing of this model; empty where it does."""
     if node.record is None:
         return (NO_RECORD,)
@@ -80,17 +80,17 @@ def _record_problems(node: Node) -> tuple[str, ...]:
     return (*node.record.problems, *others)
 
 
-def _inputs(node: Node) -> Pairs:
+def _inputs(node: NodeFacts) -> Pairs:
     record = node.record
     own = () if record is None else ((f"record {record.name}", record.digest), *record.sources)
     return (*own, *node.files)
 
 
-def _tool(record: Record | None) -> str:
+def _tool(record: BelievedRecord | None) -> str:
     return records.UNKNOWN_TOOL if record is None else record.tool
 
 
-def _program(facts: Facts, node: Node) -> Claim:
+def _program(facts: Facts, node: NodeFacts) -> Claim:
     record = node.record
     problems = list(_record_problems(node))
     verdict = verdict_of(problems, shown=record is not None)
@@ -103,7 +103,7 @@ def _program(facts: Facts, node: Node) -> Claim:
     checks = "" if record is None else f" {record.checks:,} checks, {record.proved:,} proved."
     return Claim(
         _id("program", facts, node),
-        Kind.PROGRAM,
+        ClaimKind.PROGRAM,
         (facts.checked.system.name,),
         f"The program{_on(facts, node)} has no run-time error, no data race, no use of an unset "
         "value and no ceiling violation",
@@ -118,7 +118,7 @@ def _program(facts: Facts, node: Node) -> Claim:
 
 
 def _proved_unit(
-    node: Node, unit: str, *, may_be_simple: bool = False
+    node: NodeFacts, unit: str, *, may_be_simple: bool = False
 ) -> tuple[Shown, tuple[str, ...], str]:
     """The verdict on a unit: its record holds, and has checks of it; and how many.
 
@@ -149,13 +149,13 @@ def _is_within(name: str, unit: str) -> bool:
     return f"{name.lower()}.".startswith(f"{unit.lower()}.")
 
 
-def _was_read(record: Record, unit: str) -> bool:
+def _was_read(record: BelievedRecord, unit: str) -> bool:
     """The body of a unit is among the sources of a record."""
     body = f"{unit.lower().replace('.', '-')}.adb"
     return any(name.rpartition("/")[2] == body for name, _ in record.sources)
 
 
-def _homes(facts: Facts, component: Component) -> Iterator[tuple[Node, str]]:
+def _homes(facts: Facts, component: Component) -> Iterator[tuple[NodeFacts, str]]:
     """Each program with an instance of a component, and the suffix of a claim about it."""
     for node in facts.nodes:
         here = node.program.part.instances
@@ -172,7 +172,7 @@ def _charts(facts: Facts) -> Iterator[Claim]:
                 verdict, problems, told = _proved_unit(node, unit)
                 yield Claim(
                     f"chart-{component.name}.{region.name}{suffix}",
-                    Kind.CHARTS,
+                    ClaimKind.CHARTS,
                     (f"{component.name}.{region.name}",),
                     f"{component.name}.{region.name}{_on(facts, node)}: the chosen transition is "
                     "enabled and none that precedes it is; each step ends in the target "
@@ -188,7 +188,9 @@ def _charts(facts: Facts) -> Iterator[Claim]:
             yield from _bodies(facts, component, node, suffix)
 
 
-def _invariants(facts: Facts, component: Component, node: Node, suffix: str) -> Iterator[Claim]:
+def _invariants(
+    facts: Facts, component: Component, node: NodeFacts, suffix: str
+) -> Iterator[Claim]:
     """The invariants that are contracts of the code."""
     system = facts.checked.system
     for safe in system.safe_regions:
@@ -199,7 +201,7 @@ def _invariants(facts: Facts, component: Component, node: Node, suffix: str) -> 
         for name in safe.invariants:
             yield Claim(
                 f"code-never-{component.name}.{name}{suffix}",
-                Kind.CHARTS,
+                ClaimKind.CHARTS,
                 (f"{component.name}.{name}",),
                 f"{component.name}.{name}: after each step of {safe.region}{_on(facts, node)} the "
                 "condition is false of its states and data",
@@ -222,7 +224,7 @@ def _theorem(region: Region) -> str:
     return f"{'; '.join(parts)}. Not stated: what an effect does to the data."
 
 
-def _bodies(facts: Facts, component: Component, node: Node, suffix: str) -> Iterator[Claim]:
+def _bodies(facts: Facts, component: Component, node: NodeFacts, suffix: str) -> Iterator[Claim]:
     """Activities: flows that are generated, and bodies of the user."""
     package = component_package(facts.checked.system, component)
     for child, mine in (("Flows", False), ("Activities", True)):
@@ -236,7 +238,7 @@ def _bodies(facts: Facts, component: Component, node: Node, suffix: str) -> Iter
             problems = ("what the user's bodies compute is not stated by a contract",)
         yield Claim(
             f"activities-{component.name}.{child.lower()}{suffix}",
-            Kind.PROGRAM,
+            ClaimKind.PROGRAM,
             tuple(f"{component.name}.{name}" for name in names),
             f"The activities of {component.name}{_on(facts, node)} ({', '.join(names)}) read and "
             "write only what the model says, within the ranges of the types",
@@ -261,7 +263,7 @@ def _frames(facts: Facts) -> Iterator[Claim]:
         names = tuple(message.name for message in part.messages)
         yield Claim(
             _id("codecs", facts, node),
-            Kind.BUS,
+            ClaimKind.BUS,
             names,
             f"Pack and Unpack of every message{_on(facts, node)} give each raw value by the layout "
             "table, and a value survives both",
@@ -276,7 +278,7 @@ def _frames(facts: Facts) -> Iterator[Claim]:
         if guarded:
             yield Claim(
                 _id("protection", facts, node),
-                Kind.BUS,
+                ClaimKind.BUS,
                 tuple(guarded),
                 f"Frames of {', '.join(guarded)}{_on(facts, node)} are used only if they are "
                 "intact and in sequence",
@@ -308,7 +310,7 @@ def _behaviour(facts: Facts) -> Iterator[Claim]:
     if regions:
         verdict = verdict_of(told, shown=bool(others) or not unfinished)
         yield Claim(
-            "behaviour-rules", Kind.BEHAVIOUR, regions,
+            "behaviour-rules", ClaimKind.BEHAVIOUR, regions,
             "No chart gets stuck, goes on for ever in one step, has a state or transition that "
             "nothing reaches, or is unable to reach its safe state",
             "search of all situations of each component, guards and data by a solver; about the "
@@ -330,7 +332,7 @@ def _behaviour(facts: Facts) -> Iterator[Claim]:
             if verdict is Shown.NOT_SHOWN:
                 reasons = ("the search of the situations was not finished",)
             yield Claim(
-                f"never-{component.name}.{invariant.name}", Kind.BEHAVIOUR,
+                f"never-{component.name}.{invariant.name}", ClaimKind.BEHAVIOUR,
                 (f"{component.name}.{invariant.name}",),
                 f"{component.name}.{invariant.name}: the condition holds in no reachable situation",
                 "search of all situations, and induction over each step by a solver; about the "
@@ -350,7 +352,7 @@ def _runtime(facts: Facts) -> Iterator[Claim]:
     statement = f"Runtime, CAN layer and the driver {facts.driver} keep their contracts"
     if not facts.runtime:
         yield Claim(
-            "runtime", Kind.RUNTIME, (facts.checked.system.name,), statement, theorem, "proof",
+            "runtime", ClaimKind.RUNTIME, (facts.checked.system.name,), statement, theorem, "proof",
             records.UNKNOWN_TOOL, Shown.NOT_SHOWN, ("its proof records are not at hand",), (),
         )  # fmt: skip
     reasons = dict(facts.runtime_reasons)
@@ -366,7 +368,7 @@ def _runtime(facts: Facts) -> Iterator[Claim]:
             verdict = Shown.PARTLY
         counts = f". {record.checks:,} checks, {record.proved:,} proved."
         yield Claim(
-            record.name.removesuffix(".toml"), Kind.RUNTIME, (facts.checked.system.name,),
+            record.name.removesuffix(".toml"), ClaimKind.RUNTIME, (facts.checked.system.name,),
             f"{statement} ({record.name})", theorem + counts, "proof", record.tool, verdict,
             tuple(problems), ((f"record {record.name}", record.digest), *record.sources),
         )  # fmt: skip
@@ -389,7 +391,7 @@ def _tests(facts: Facts) -> Claim:
     text = "".join(f"{t.name} {t.outcome} {t.requirements}\n" for t in facts.tests or ())
     digest = hashlib.sha256(text.encode("utf-8")).hexdigest()
     return Claim(
-        "tests", Kind.TESTS, (facts.checked.system.name,), f"{_several(count, 'test')} passed"
+        "tests", ClaimKind.TESTS, (facts.checked.system.name,), f"{_several(count, 'test')} passed"
         if count else "The tests pass", "results of a test run in the form of JUnit; that the "
         "run was one of this program is the user's word", "test", "the user's test runner",
         verdict, tuple(reasons), (("results of tests", digest),) if count else (),

@@ -154,7 +154,7 @@ class StandardEntry(Described):
 
 
 @dataclass(slots=True)
-class Problem(Described):
+class KnownProblem(Described):
     """A known problem of a tool or of the runtime."""
 
     of: str
@@ -209,7 +209,7 @@ class Evidence(Described):
     """Warnings about the model, and findings of traceability."""
     standards: list[StandardEntry]
     """Objectives of standards."""
-    known_problems: list[Problem]
+    known_problems: list[KnownProblem]
     """Of compiler, prover and runtime."""
     faults: list[Fault]
     """The fault matrix; empty where it is not at hand."""

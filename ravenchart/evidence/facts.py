@@ -25,11 +25,11 @@ from ravenchart.proof import outside_spark
 from ravenchart.stacks.report import Memory
 
 from . import records
-from .records import Record
+from .records import BelievedRecord
 from .results import Test, junit
 
-PATIENCE = 300.0
-"""Seconds of processor time for the rules of behaviour."""
+EFFORT = 150_000_000
+"""Work for the rules of behaviour, in units of z3."""
 FIRST_DRIVER = "loopback"
 """With it all of the runtime is proved; with another only what differs."""
 OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
@@ -37,11 +37,11 @@ OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class NodeFacts:
     """The program of a node: its record, and what of its files is not what the model gives."""
 
     program: Program
-    record: Record | None
+    record: BelievedRecord | None
     differences: tuple[str, ...]
     files: tuple[tuple[str, str], ...]
     """(name, SHA-256) of each of its files on disk."""
@@ -59,8 +59,8 @@ class Facts:
     checked: Checked
     """The model as it is here, names of files from its own folder."""
     driver: str
-    nodes: tuple[Node, ...]
-    runtime: tuple[Record, ...]
+    nodes: tuple[NodeFacts, ...]
+    runtime: tuple[BelievedRecord, ...]
     """Of the runtime and the HAL with this driver; none where they are not at hand."""
     reasons: tuple[tuple[str, str], ...]
     """What the user says may be outside SPARK, with the reason."""
@@ -81,7 +81,7 @@ def gather(
     driver: str | None = None,
     given: Sequence[Path] = (),
     tests: Path | None = None,
-    patience: float = PATIENCE,
+    effort: int = EFFORT,
     memory: Sequence[Path] = (),
 ) -> Facts:
     """What is at hand of a model; Refused where it has errors other than missed deadlines."""
@@ -91,7 +91,7 @@ def gather(
         return read_file(folder / path, limit)
 
     main = Path(model.name)
-    found = checking.check(main, deadlines=False, patience=patience, finish=True, read=read)
+    found = checking.check(main, deadlines=False, effort=effort, finish=True, read=read)
     checked = replace(found, path=model)
     chosen = driver or programs.default_driver(checked)
     programs.check_driver(checked, chosen)
@@ -143,7 +143,7 @@ def _refuse_foreign(given: Sequence[Path], made: Sequence[Program]) -> None:
 
 def _node(
     program: Program, driver: str, files: dict[str, str], why: str, given: Sequence[Path]
-) -> Node:
+) -> NodeFacts:
     """The facts of one program; ``why`` there are no files, where there are none."""
     folder = program.checked.folder
     path = next((one for one in given if records.belongs(one, program)), None)
@@ -174,12 +174,14 @@ def _node(
         elif files and path.read_bytes() != wanted[name].encode("utf-8"):
             differences.append(f"{name} is not what the model gives")
     pairs = tuple((records.shown(path, folder), _sha(path)) for path in there.values())
-    return Node(program, record, tuple(differences), pairs)
+    return NodeFacts(program, record, tuple(differences), pairs)
 
 
-def _runtime(driver: str, folder: Path) -> tuple[tuple[Record, ...], tuple[tuple[str, str], ...]]:
+def _runtime(
+    driver: str, folder: Path
+) -> tuple[tuple[BelievedRecord, ...], tuple[tuple[str, str], ...]]:
     """The records of runtime and HAL, and what may be outside SPARK in them."""
-    found: list[Record] = []
+    found: list[BelievedRecord] = []
     reasons: dict[str, str] = {}
     for name in dict.fromkeys((FIRST_DRIVER, driver)):
         target = f"runtime-{name}"

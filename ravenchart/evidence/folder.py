@@ -21,7 +21,7 @@ from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.paths import ROOT
 
 from . import exchange, gsn, ledger, standards
-from .claim import Claim, Kind, own_tool
+from .claim import Claim, ClaimKind, own_tool
 from .claims import claims
 from .documents import (
     FORMAT,
@@ -56,7 +56,7 @@ WORDS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class FolderTexts:
     """The texts of a folder, and what they say."""
 
     texts: Mapping[str, str]
@@ -74,7 +74,7 @@ def make(
     facts: Facts,
     requirements: Sequence[Requirement] | None = None,
     scenarios: Sequence[Path] | None = None,
-) -> Made:
+) -> FolderTexts:
     """All texts of the folder."""
     found = claims(facts)
     trace = None if requirements is None else traced(facts, found, requirements, scenarios)
@@ -95,7 +95,7 @@ def make(
     evidence = _document(facts, found, trace, back, findings, names)
     texts[DATA] = exchange.text(asdict(evidence))
     texts[INDEX] = _page(evidence, texts[TREE])
-    return Made(texts, evidence, found, findings)
+    return FolderTexts(texts, evidence, found, findings)
 
 
 def _document(
@@ -217,7 +217,7 @@ def _page(evidence: Evidence, tree: str) -> str:
         evidence=evidence,
         tree=Markup(tree),
         counts=counts,
-        kinds=[kind.value for kind in Kind],
+        kinds=[kind.value for kind in ClaimKind],
         missing=[
             (heading, listed)
             for kind, heading in WORDS.items()
@@ -245,7 +245,7 @@ def _anchor(id_: str) -> str:
 # --- On disk ---------------------------------------------------------------------
 
 
-def write(folder: Path, made: Made) -> None:
+def write(folder: Path, made: FolderTexts) -> None:
     """Write the folder; files of an earlier one that are no longer made go."""
     remove(folder)
     folder.mkdir(parents=True, exist_ok=True)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree as Xml
 
-from .claim import Claim, Kind, Shown
+from .claim import Claim, ClaimKind, Shown
 
 MOST = 30
 """Claims of a kind that are drawn one by one; of more only their number."""
@@ -49,7 +49,7 @@ class _Row:
 
 def draw(system: str, digest: str, claims: Sequence[Claim], assumptions: Sequence[str]) -> str:
     """The whole tree as SVG text."""
-    groups = [(kind, [c for c in claims if c.kind is kind]) for kind in Kind]
+    groups = [(kind, [c for c in claims if c.kind is kind]) for kind in ClaimKind]
     groups = [(kind, found) for kind, found in groups if found]
     rows = [(kind, found, _rows(found)) for kind, found in groups]
     height = STEP * sum(max(2, len(listed)) for _, _, listed in rows) + 60 + 12 * len(rows)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ravenchart.gen.model.system import Processor
 from ravenchart.stacks.report import Memory
 
-from .claim import Claim, Kind, Pairs, Shown, own_tool
+from .claim import Claim, ClaimKind, Pairs, Shown, own_tool
 from .facts import Facts
 
 
@@ -20,7 +20,7 @@ def stacks(facts: Facts) -> Iterator[Claim]:
 
 def _undeclared(facts: Facts, one: Processor) -> Claim:
     return Claim(
-        f"stack-{one.name}", Kind.MEMORY, (one.name,),
+        f"stack-{one.name}", ClaimKind.MEMORY, (one.name,),
         f"The stack of {one.name} is at most {one.stack_bytes:,} bytes",
         "declared in the model, and compared with the longest path by each build (ASM-004)",
         "declaration", "none", Shown.USERS,
@@ -51,7 +51,7 @@ def _recorded(facts: Facts, one: Processor, record: Memory) -> Claim:
     verdict = Shown.NOT_MET if wrong else Shown.PARTLY if partly else Shown.MET
     inputs: Pairs = (*facts.sources, *record.sources.items())
     return Claim(
-        f"stack-{one.name}", Kind.MEMORY, (one.name,),
+        f"stack-{one.name}", ClaimKind.MEMORY, (one.name,),
         f"The stack of {one.name}, {one.stack_bytes:,} bytes, holds the {bound:,} bytes that it "
         "takes at most",
         f"longest path in the call graphs of the compiler, mode {record.mode}, target "

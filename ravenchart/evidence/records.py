@@ -10,7 +10,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravenchart.building.programs import DRIVER_FOLDERS, Program
+from ravenchart.building.programs import Program
+from ravenchart.building.variants import DRIVER_FOLDERS
 from ravenchart.gen.emit.commands.registers import HARDWARE
 from ravenchart.gen.emit.program import source_folders
 from ravenchart.paths import ROOT
@@ -35,7 +36,7 @@ class Entity:
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class BelievedRecord:
     """What a record says, and why it cannot be believed of the sources that are here."""
 
     name: str
@@ -66,7 +67,7 @@ def shown(path: Path, folder: Path) -> str:
     return Path(os.path.relpath(whole, os.path.abspath(folder))).as_posix()
 
 
-def read(path: Path, name: str, folder: Path) -> Record:
+def read(path: Path, name: str, folder: Path) -> BelievedRecord:
     """A record; of one that cannot be read, or says too little, the problems say so."""
     try:
         found = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -81,13 +82,15 @@ def read(path: Path, name: str, folder: Path) -> Record:
         tool = str(found.get("tool") or UNKNOWN_TOOL)
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         problem = f"the record {name} cannot be read as a proof record"
-        return Record(name, UNKNOWN_TOOL, 0, 0, (), (), (), (problem,), "")
+        return BelievedRecord(name, UNKNOWN_TOOL, 0, 0, (), (), (), (problem,), "")
     named = [(shown(ROOT / key, folder), key, digest) for key, digest in sources.items()]
     problems = (*_numbers(checks, proved, justified, assumed, entities), *_stale(named))
     pairs = tuple((key, digest) for key, _, digest in named)
     text = repr((checks, proved, justified, assumed, outside, pairs, entities, tool))
     digest = hashlib.sha256(text.encode("utf-8")).hexdigest()
-    return Record(name, tool, checks, proved, outside, pairs, entities, tuple(problems), digest)
+    return BelievedRecord(
+        name, tool, checks, proved, outside, pairs, entities, tuple(problems), digest
+    )
 
 
 def _count(table: Mapping[str, object], key: str) -> int:
@@ -122,15 +125,15 @@ def _stale(named: Iterable[tuple[str, str, str]]) -> Iterator[str]:
             yield f"{name} differs from the source that was proved"
 
 
-def judged(record: Record, problems: Iterable[str]) -> Record:
+def judged(record: BelievedRecord, problems: Iterable[str]) -> BelievedRecord:
     """The record with more problems."""
-    return Record(
+    return BelievedRecord(
         record.name, record.tool, record.checks, record.proved, record.outside, record.sources,
         record.entities, (*record.problems, *problems), record.digest,
     )  # fmt: skip
 
 
-def missing(program: Program, record: Record, driver: str) -> Iterator[str]:
+def missing(program: Program, record: BelievedRecord, driver: str) -> Iterator[str]:
     """Sources of a program that the record does not have, with its CAN driver."""
     recorded = {name for name, _ in record.sources}
     body = f"hw_can/{DRIVER_FOLDERS[driver][0]}/{DRIVER}"

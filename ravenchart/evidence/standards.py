@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from importlib import resources
 from typing import Any
 
-from .claim import Claim, Kind, Shown
-from .documents import ObjectiveEntry, Problem, StandardEntry
+from .claim import Claim, ClaimKind, Shown
+from .documents import KnownProblem, ObjectiveEntry, StandardEntry
 from .tracing import Traceability
 
 REQUIREMENTS = "REQUIREMENTS"
@@ -59,7 +59,7 @@ def state_of(name: str, claims: Sequence[Claim], trace: Traceability | None) -> 
         if trace is None:
             return NOT_MET
         return NOT_MET if trace.findings else MET
-    found = [claim.verdict for claim in claims if claim.kind is Kind[name]]
+    found = [claim.verdict for claim in claims if claim.kind is ClaimKind[name]]
     if not found or any(one in (Shown.NOT_MET, Shown.NOT_SHOWN) for one in found):
         return NOT_MET
     if all(one is Shown.USERS for one in found):
@@ -68,9 +68,9 @@ def state_of(name: str, claims: Sequence[Claim], trace: Traceability | None) -> 
 
 
 def _shown(name: str) -> str:
-    return "traceability of requirements" if name == REQUIREMENTS else Kind[name].value
+    return "traceability of requirements" if name == REQUIREMENTS else ClaimKind[name].value
 
 
-def problems() -> list[Problem]:
+def problems() -> list[KnownProblem]:
     """Known problems of compiler, prover and runtime."""
-    return [Problem(**one) for one in _data("known_problems.toml")["problem"]]
+    return [KnownProblem(**one) for one in _data("known_problems.toml")["problem"]]

@@ -19,14 +19,14 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 from ravenchart.running import scenarios
 
-from .claim import Claim, Kind, Shown
+from .claim import Claim, ClaimKind, Shown
 from .claims import unit_files
 from .facts import Facts
 from .lists import Requirement
 from .results import PASSED, Test
 
 NO_ELEMENT, UNKNOWN_ID, NO_TEST, NO_PROOF = "RV-1403", "RV-1404", "RV-1405", "RV-1406"
-PROOFS = (Kind.PROGRAM, Kind.CHARTS, Kind.BUS, Kind.BEHAVIOUR, Kind.TIMING)
+PROOFS = (ClaimKind.PROGRAM, ClaimKind.CHARTS, ClaimKind.BUS, ClaimKind.BEHAVIOUR, ClaimKind.TIMING)
 """Claims that can show that a requirement is implemented as the model says."""
 
 
@@ -123,7 +123,9 @@ def claims_of(facts: Facts, link: Link, found: Sequence[Claim]) -> tuple[Claim, 
         own = _about({str(link.path[1]).lower()}, found)  # a port, an event or data
     if own:
         return own
-    return tuple(claim for claim in found if claim.kind is Kind.PROGRAM and _whole(facts, claim))
+    return tuple(
+        claim for claim in found if claim.kind is ClaimKind.PROGRAM and _whole(facts, claim)
+    )
 
 
 def _whole(facts: Facts, claim: Claim) -> bool:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ravenchart.gen.files.forms import keys_beside, words_for
 from ravenchart.gen.files.located import Map, grow
-from ravenchart.gen.files.spans import Mapping
+from ravenchart.gen.files.spans import YamlMapping
 
 from .model import Open, model
 from .texts import FileText, path_to
@@ -24,7 +24,7 @@ _BEHIND = re.compile(r"\w*")
 
 
 @dataclass(frozen=True, slots=True)
-class Proposal:
+class CompletionProposal:
     """A word that could stand at a place; ``detail`` is its kind, or what the key means."""
 
     word: str
@@ -32,10 +32,10 @@ class Proposal:
     is_key: bool = False
 
 
-def proposals(path: Path, file: str, offset: int, documents: Open) -> list[Proposal]:
+def proposals(path: Path, file: str, offset: int, documents: Open) -> list[CompletionProposal]:
     """The words that could stand at a character of an open file of the model at ``path``."""
     text = documents[file]
-    found: dict[str, Proposal] = {}
+    found: dict[str, CompletionProposal] = {}
     for one in (*_keys(text, offset), *_values(path, file, offset, documents)):
         found.setdefault(one.word.lower(), one)
     return list(found.values())
@@ -57,7 +57,7 @@ def _word(text: str, offset: int) -> tuple[int, int]:
     return before.start() if before else offset, behind.end() if behind else offset
 
 
-def _keys(text: str, offset: int) -> list[Proposal]:
+def _keys(text: str, offset: int) -> list[CompletionProposal]:
     """The keys, where the word is a key that is being written."""
     start, end = _word(text, offset)
     line_start = text.rfind("\n", 0, start) + 1
@@ -72,7 +72,11 @@ def _keys(text: str, offset: int) -> list[Proposal]:
         return []
     there = _siblings(made, start)
     told = _keys_in(made)
-    return [Proposal(key, meant, is_key=True) for key, meant in told.items() if key not in there]
+    return [
+        CompletionProposal(key, meant, is_key=True)
+        for key, meant in told.items()
+        if key not in there
+    ]
 
 
 def _keys_in(text: str) -> dict[str, str]:
@@ -83,22 +87,22 @@ def _keys_in(text: str) -> dict[str, str]:
 def _siblings(text: str, offset: int) -> set[str]:
     """The keys of the mapping in which the one at a character stands."""
     root = FileText(text).root
-    path = path_to(root, offset) if isinstance(root, Mapping) else []
+    path = path_to(root, offset) if isinstance(root, YamlMapping) else []
     return {key.value for key, _ in path[-1][0].entries} if path else set()
 
 
-def _values(path: Path, file: str, offset: int, documents: Open) -> list[Proposal]:
+def _values(path: Path, file: str, offset: int, documents: Open) -> list[CompletionProposal]:
     """The names and words, where the word is part of a value."""
     text = documents[file]
     start, end = _word(text, offset)
     made = text[:start] + WORD + text[end:]
     changed = {**documents, file: made}
     found = [
-        Proposal(name, one.kind)
+        CompletionProposal(name, one.kind)
         for one in model(path, changed).loaded.unknown
         if one.name == WORD
         for name in one.known
     ]
     tree, _ = grow(made, "")
     words = words_for(tree, WORD) if isinstance(tree, Map) else ()
-    return found + [Proposal(word, "word of the language") for word in words]
+    return found + [CompletionProposal(word, "word of the language") for word in words]

@@ -8,14 +8,14 @@ from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import microseconds
 from ravenchart.workbench.evaluation import Evaluation
 
-from .model import Model
+from .model import OpenModel
 from .symbols import ModelSymbol
 
 MOST_LINES = 8
 """Lines of a declaration that are shown."""
 
 
-def described(symbol: ModelSymbol, now: Model, evaluation: Evaluation) -> str:
+def described(symbol: ModelSymbol, now: OpenModel, evaluation: Evaluation) -> str:
     """The text for people, in Markdown."""
     parts = [f"**{symbol.kind}** `{symbol.name}`"]
     if symbol.declared is not None:

@@ -38,7 +38,7 @@ def reader(documents: Open) -> Reader:
 
 
 @dataclass(frozen=True)
-class Model:
+class OpenModel:
     """A model at one moment."""
 
     path: Path
@@ -56,17 +56,17 @@ class Model:
         return next((one for one in self.texts if real(one) == name), None)
 
 
-def model(path: Path, documents: Open) -> Model:
+def model(path: Path, documents: Open) -> OpenModel:
     """The model whose main file is at ``path``."""
     seen: dict[str, FileText] = {}
-    return Model(path, load(path, _noting(reader(documents), seen)), seen)
+    return OpenModel(path, load(path, _noting(reader(documents), seen)), seen)
 
 
-def evaluated(path: Path, documents: Open) -> tuple[Model, Evaluation]:
+def evaluated(path: Path, documents: Open) -> tuple[OpenModel, Evaluation]:
     """The same, with its timing where it has no errors."""
     seen: dict[str, FileText] = {}
     found = evaluate(path, {}, _noting(reader(documents), seen))
-    return Model(path, found.loaded, seen), found
+    return OpenModel(path, found.loaded, seen), found
 
 
 def checked(path: Path, documents: Open) -> tuple[Diagnostic, ...]:

@@ -12,23 +12,25 @@ from collections.abc import Mapping
 from ravenchart.gen.language.names import problem_of
 from ravenchart.gen.pipeline import Loaded
 
-from .model import Model, Open, model, real
+from .model import Open, OpenModel, model, real
 from .symbols import ModelSymbol, Token
-from .texts import Span
+from .texts import TextRange
 
 
 class NotRenamedError(Exception):
     """A name cannot be changed; the message says why."""
 
 
-def renamed(now: Model, symbol: ModelSymbol, new: str, documents: Open) -> Mapping[str, list[Span]]:
+def renamed(
+    now: OpenModel, symbol: ModelSymbol, new: str, documents: Open
+) -> Mapping[str, list[TextRange]]:
     """Where the new name goes in each file, by its absolute name."""
     if symbol.declared is None:
         raise NotRenamedError(f"no file of the model declares `{symbol.name}`")
     problem = problem_of(new)
     if problem is not None:
         raise NotRenamedError(problem[1])
-    places: dict[str, list[Span]] = {}
+    places: dict[str, list[TextRange]] = {}
     for file, start, end in sorted(symbol.tokens):
         places.setdefault(file, []).append((start, end))
     changed = dict(documents)
@@ -43,7 +45,7 @@ def renamed(now: Model, symbol: ModelSymbol, new: str, documents: Open) -> Mappi
     return {real(file): spans for file, spans in places.items()}
 
 
-def _exchanged(text: str, spans: list[Span], new: str) -> str:
+def _exchanged(text: str, spans: list[TextRange], new: str) -> str:
     for start, end in reversed(spans):
         text = text[:start] + new + text[end:]
     return text
@@ -60,6 +62,6 @@ def _news(before: Loaded, after: Loaded) -> str | None:
     return None
 
 
-def place_of(token: Token) -> Span:
+def place_of(token: Token) -> TextRange:
     """The characters of a place."""
     return token[1], token[2]

@@ -25,7 +25,7 @@ from ravenchart.workbench.evaluation import MARK, Evaluation
 from . import model as models
 from .completing import key_meaning, proposals
 from .hovering import described
-from .model import Model, real
+from .model import OpenModel, real
 from .renaming import NotRenamedError, place_of, renamed
 from .symbols import ModelSymbol, Token
 from .texts import FileText
@@ -36,7 +36,7 @@ PAUSE = 0.2
 T = TypeVar("T")
 
 
-class Server(LanguageServer):
+class ModelServer(LanguageServer):
     """The server, and what it knows of each model."""
 
     def __init__(self) -> None:
@@ -92,7 +92,7 @@ class Server(LanguageServer):
 
     def _found(
         self, name: str, documents: models.Open, behaviour: bool
-    ) -> tuple[str, Model, tuple[Diagnostic, ...]]:
+    ) -> tuple[str, OpenModel, tuple[Diagnostic, ...]]:
         main = self.main_file(name, documents)
         now, evaluation = models.evaluated(Path(main), documents)
         found = evaluation.found
@@ -104,11 +104,11 @@ class Server(LanguageServer):
 
     async def symbol(
         self, uri: str, position: lsp.Position
-    ) -> tuple[Model, ModelSymbol, Token, models.Open] | None:
+    ) -> tuple[OpenModel, ModelSymbol, Token, models.Open] | None:
         """The name at a position, in the model that it belongs to."""
         documents, name = self.documents(), _name(uri)
 
-        def found() -> tuple[Model, ModelSymbol, Token, models.Open] | None:
+        def found() -> tuple[OpenModel, ModelSymbol, Token, models.Open] | None:
             now = models.model(Path(self.main_file(name, documents)), documents)
             file = now.file(name)
             if file is None:
@@ -118,7 +118,7 @@ class Server(LanguageServer):
 
         return await self.alone(found)
 
-    def evaluated(self, name: str, documents: models.Open) -> tuple[Model, Evaluation]:
+    def evaluated(self, name: str, documents: models.Open) -> tuple[OpenModel, Evaluation]:
         """The model of a file with its timing; in the thread that reads models."""
         return models.evaluated(Path(self.main_file(name, documents)), documents)
 
@@ -127,12 +127,12 @@ def _name(uri: str) -> str:
     return real(to_fs_path(uri) or uri)
 
 
-def _location(token: Token, now: Model) -> lsp.Location:
+def _location(token: Token, now: OpenModel) -> lsp.Location:
     uri = from_fs_path(real(token[0])) or ""
     return lsp.Location(uri, now.texts[token[0]].range(place_of(token)))
 
 
-def _diagnostic(one: Diagnostic, now: Model) -> lsp.Diagnostic:
+def _diagnostic(one: Diagnostic, now: OpenModel) -> lsp.Diagnostic:
     notes = [
         lsp.DiagnosticRelatedInformation(
             lsp.Location(from_fs_path(real(origin.file)) or "", _marked(origin, now)), text
@@ -150,7 +150,7 @@ def _diagnostic(one: Diagnostic, now: Model) -> lsp.Diagnostic:
     )
 
 
-def _marked(origin: Origin, now: Model) -> lsp.Range:
+def _marked(origin: Origin, now: OpenModel) -> lsp.Range:
     text = now.texts.get(origin.file)
     if text is None:
         start = lsp.Position(max(0, origin.line - 1), max(0, origin.column - 1))
@@ -158,28 +158,28 @@ def _marked(origin: Origin, now: Model) -> lsp.Range:
     return text.marked(origin)
 
 
-def server() -> Server:
+def server() -> ModelServer:
     """The server with all that it answers."""
-    made = Server()
+    made = ModelServer()
     feature = made.feature
 
     @feature(lsp.TEXT_DOCUMENT_DID_OPEN)
-    async def opened(ls: Server, given: lsp.DidOpenTextDocumentParams) -> None:
+    async def opened(ls: ModelServer, given: lsp.DidOpenTextDocumentParams) -> None:
         ls.look(given.text_document.uri, 0, behaviour=True)
 
     @feature(lsp.TEXT_DOCUMENT_DID_CHANGE)
-    async def changed(ls: Server, given: lsp.DidChangeTextDocumentParams) -> None:
+    async def changed(ls: ModelServer, given: lsp.DidChangeTextDocumentParams) -> None:
         ls.look(given.text_document.uri, PAUSE, behaviour=False)
 
     @feature(lsp.TEXT_DOCUMENT_DID_SAVE)
-    async def saved(ls: Server, given: lsp.DidSaveTextDocumentParams) -> None:
+    async def saved(ls: ModelServer, given: lsp.DidSaveTextDocumentParams) -> None:
         ls.look(given.text_document.uri, 0, behaviour=True)
 
     @feature(
         lsp.TEXT_DOCUMENT_COMPLETION,
         lsp.CompletionOptions(trigger_characters=[" ", ".", "{", "["]),
     )
-    async def complete(ls: Server, given: lsp.CompletionParams) -> list[lsp.CompletionItem]:
+    async def complete(ls: ModelServer, given: lsp.CompletionParams) -> list[lsp.CompletionItem]:
         documents, name = ls.documents(), _name(given.text_document.uri)
 
         def found() -> list[lsp.CompletionItem]:
@@ -200,7 +200,7 @@ def server() -> Server:
         return await ls.alone(found)
 
     @feature(lsp.TEXT_DOCUMENT_HOVER)
-    async def hover(ls: Server, given: lsp.HoverParams) -> lsp.Hover | None:
+    async def hover(ls: ModelServer, given: lsp.HoverParams) -> lsp.Hover | None:
         documents, name = ls.documents(), _name(given.text_document.uri)
 
         def found() -> lsp.Hover | None:
@@ -225,18 +225,18 @@ def server() -> Server:
     return made
 
 
-def _names(made: Server) -> None:
+def _names(made: ModelServer) -> None:
     """What is asked of names: definition, references, rename."""
 
     @made.feature(lsp.TEXT_DOCUMENT_DEFINITION)
-    async def definition(ls: Server, given: lsp.DefinitionParams) -> lsp.Location | None:
+    async def definition(ls: ModelServer, given: lsp.DefinitionParams) -> lsp.Location | None:
         there = await ls.symbol(given.text_document.uri, given.position)
         if there is None or there[1].declared is None:
             return None
         return _location(there[1].declared, there[0])
 
     @made.feature(lsp.TEXT_DOCUMENT_REFERENCES)
-    async def references(ls: Server, given: lsp.ReferenceParams) -> list[lsp.Location]:
+    async def references(ls: ModelServer, given: lsp.ReferenceParams) -> list[lsp.Location]:
         there = await ls.symbol(given.text_document.uri, given.position)
         if there is None:
             return []
@@ -246,14 +246,14 @@ def _names(made: Server) -> None:
         return [_location(one, now) for one in shown]
 
     @made.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)
-    async def prepare(ls: Server, given: lsp.PrepareRenameParams) -> lsp.Range | None:
+    async def prepare(ls: ModelServer, given: lsp.PrepareRenameParams) -> lsp.Range | None:
         there = await ls.symbol(given.text_document.uri, given.position)
         if there is None or there[1].declared is None:
             return None
         return there[0].texts[there[2][0]].range(place_of(there[2]))
 
     @made.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
-    async def rename(ls: Server, given: lsp.RenameParams) -> lsp.WorkspaceEdit:
+    async def rename(ls: ModelServer, given: lsp.RenameParams) -> lsp.WorkspaceEdit:
         there = await ls.symbol(given.text_document.uri, given.position)
         if there is None:
             raise JsonRpcInvalidParams("there is no name of the model here")
@@ -273,7 +273,7 @@ def _names(made: Server) -> None:
         )
 
 
-def _range(now: Model, name: str, span: tuple[int, int]) -> lsp.Range:
+def _range(now: OpenModel, name: str, span: tuple[int, int]) -> lsp.Range:
     file = now.file(name)
     assert file is not None
     return now.texts[file].range(span)

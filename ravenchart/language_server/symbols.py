@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from ravenchart.gen.files import spans
 from ravenchart.gen.language.names import NameUse
 
-from .texts import FileText, Span
+from .texts import FileText, TextRange
 
 Token = tuple[str, int, int]
 """A file, the first character of a name in it, and the one behind its last."""
@@ -88,7 +88,7 @@ class Symbols:
         scalar = text.scalar_at(start)
         end = start + len(use.name) if scalar is None else scalar.end
         exact = text.word(use.name, start, start + len(use.name))
-        found: Span | None = None
+        found: TextRange | None = None
         if exact is None or (file, start, use.name.lower()) in self._ends:
             found = text.word(use.name, max(start, self._ends.get((file, start), start)), end)
         found = found or exact or text.word(use.name, start, end)
@@ -112,12 +112,12 @@ class Symbols:
         return None if found is None else (at.file, *found)
 
 
-def _literal(text: FileText, start: int, name: str) -> spans.Scalar | None:
+def _literal(text: FileText, start: int, name: str) -> spans.YamlScalar | None:
     """The literal of that name in the type whose key begins there."""
     types = None if text.root is None else text.root.mapping("types")
     for key, form in () if types is None else types.mappings():
         values = form.get("values")
         if key.start == start and isinstance(values, spans.Sequence):
-            literals = (one for one in values.items if isinstance(one, spans.Scalar))
+            literals = (one for one in values.items if isinstance(one, spans.YamlScalar))
             return next((one for one in literals if one.value.lower() == name.lower()), None)
     return None

@@ -15,13 +15,13 @@ from lsprotocol.types import Position, Range
 
 from ravenchart.gen.files import spans
 from ravenchart.gen.files.located import LINE_BREAK
-from ravenchart.gen.files.spans import Mapping, Node, Scalar
+from ravenchart.gen.files.spans import YamlMapping, YamlNode, YamlScalar
 from ravenchart.gen.origins import Origin
 
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _WORD = re.compile(r"\w+")
 
-Span = tuple[int, int]
+TextRange = tuple[int, int]
 """The first character, and the one behind the last."""
 
 
@@ -33,17 +33,17 @@ class FileText:
         self.text = text
 
     @cached_property
-    def root(self) -> Mapping | None:
+    def root(self) -> YamlMapping | None:
         """Its tree; None where it is not YAML, or not one mapping."""
         return spans.spans(self.text)
 
     @cached_property
-    def scalars(self) -> list[Scalar]:
+    def scalars(self) -> list[YamlScalar]:
         """Keys and values, in order."""
         found = [] if self.root is None else list(_scalars(self.root))
         return sorted(found, key=lambda one: one.start)
 
-    def scalar_at(self, offset: int) -> Scalar | None:
+    def scalar_at(self, offset: int) -> YamlScalar | None:
         """The key or value that holds a character, or ends before it."""
         index = bisect_right(self.scalars, offset, key=lambda one: one.start) - 1
         found = self.scalars[index] if index >= 0 else None
@@ -84,7 +84,7 @@ class FileText:
         before = self.text[self._lines[line] : offset]
         return Position(line, len(before) + sum(ord(char) > 0xFFFF for char in before))
 
-    def range(self, span: Span) -> Range:
+    def range(self, span: TextRange) -> Range:
         """The range of characters."""
         return Range(self.position(span[0]), self.position(span[1]))
 
@@ -100,7 +100,7 @@ class FileText:
 
     # --- Names
 
-    def word(self, name: str, start: int, end: int) -> Span | None:
+    def word(self, name: str, start: int, end: int) -> TextRange | None:
         """The first place of a name between two characters, without regard to case."""
         found = re.compile(rf"(?<!\w){re.escape(name)}(?!\w)", re.IGNORECASE).search(
             self.text, start
@@ -108,11 +108,11 @@ class FileText:
         return None if found is None or found.end() > end else found.span()
 
 
-def _scalars(node: Node) -> Iterator[Scalar]:
+def _scalars(node: YamlNode) -> Iterator[YamlScalar]:
     match node:
-        case Scalar():
+        case YamlScalar():
             yield node
-        case Mapping():
+        case YamlMapping():
             for key, value in node.entries:
                 yield key
                 yield from _scalars(value)
@@ -121,10 +121,10 @@ def _scalars(node: Node) -> Iterator[Scalar]:
                 yield from _scalars(item)
 
 
-def path_to(node: Node, offset: int) -> list[tuple[Mapping, Scalar]]:
+def path_to(node: YamlNode, offset: int) -> list[tuple[YamlMapping, YamlScalar]]:
     """The mappings around a character, outermost first, each with the key that leads on."""
     match node:
-        case Mapping():
+        case YamlMapping():
             for key, value in node.entries:
                 inside = path_to(value, offset)
                 if inside:

@@ -20,14 +20,14 @@ from ravenchart.tools import kept
 from .spark_results import Entity, Outside, Results
 
 if TYPE_CHECKING:
-    from .proving import Task
+    from .proving import ProofTask
 
 FORMAT = 2
 """Part of each key: raised when what an entry holds changes."""
 KIND = "proofs"
 
 
-def key(version: str, task: Task, inputs: Mapping[Path, str]) -> str:
+def key(version: str, task: ProofTask, inputs: Mapping[Path, str]) -> str:
     """What the results depend on, as one digest; where objects go is no part of it."""
     scenario = {n: v for n, v in sorted(task.scenario.items()) if n != "RAVENCHART_BUILD"}
     base = task.project.resolve().parent

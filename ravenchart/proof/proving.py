@@ -27,7 +27,7 @@ from .verdicts import Memcached
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class ProofTask:
     """One gnatprove run."""
 
     project: Path
@@ -83,7 +83,7 @@ class NotProved(ToolFailed):
 
 
 def prove(
-    task: Task,
+    task: ProofTask,
     *,
     fresh: bool = False,
     memcached: Memcached | None = None,
@@ -125,7 +125,7 @@ def prove(
     return proof
 
 
-def examples(task: Task, proof: Proof, tell: Callable[[str], None] = lambda _: None) -> str:
+def examples(task: ProofTask, proof: Proof, tell: Callable[[str], None] = lambda _: None) -> str:
     """The messages about what is not proved, with values for which it fails where there are some.
 
     Each unit with such a check is proved again, for the provers look for values only then.
@@ -140,7 +140,7 @@ def examples(task: Task, proof: Proof, tell: Callable[[str], None] = lambda _: N
     return ""
 
 
-def _run(task: Task, server: str | None, tell: Callable[[str], None], *more: str) -> None:
+def _run(task: ProofTask, server: str | None, tell: Callable[[str], None], *more: str) -> None:
     arguments = ["-P", task.project.name, "-f", "-q", "--output=oneline", *more]
     arguments.append(steps.OF_GNATPROVE)
     arguments.append(f"--warnings={task.warnings}")
@@ -150,7 +150,7 @@ def _run(task: Task, server: str | None, tell: Callable[[str], None], *more: str
         arguments.append(f"--memcached-server={server}")
     if task.units:
         arguments += ["-u", *task.units]
-    taken = steps.Steps(steps.PROVING, tell).takes
+    taken = steps.Announced(steps.PROVING, tell).takes
     ages.run(arguments, task.project.parent, task.scenario, taken)
 
 

@@ -40,7 +40,7 @@ def served(tool: str, memcached: Memcached | None = None) -> Iterator[str]:
 
     Raises OSError where the machine has no port for it.
     """
-    server = Server(("127.0.0.1", 0), _Asked)
+    server = VerdictServer(("127.0.0.1", 0), _Asked)
     server.prefix = hashlib.sha256(tool.encode()).hexdigest()[:16]
     server.store = _Store(cache() / "verdicts" / "proved.db")
     server.memcached = memcached
@@ -148,7 +148,7 @@ class Memcached:
             self._alive = False
 
 
-class Server(socketserver.ThreadingTCPServer):
+class VerdictServer(socketserver.ThreadingTCPServer):
     daemon_threads = True
     request_queue_size = 64
     prefix: str
@@ -173,7 +173,7 @@ class Server(socketserver.ThreadingTCPServer):
 class _Asked(socketserver.StreamRequestHandler):
     """The commands ``get KEY`` and ``set KEY FLAGS EXPIRES LENGTH`` of the memcached protocol."""
 
-    server: Server
+    server: VerdictServer
 
     def handle(self) -> None:
         with suppress(OSError, ValueError):

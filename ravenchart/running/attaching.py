@@ -6,7 +6,7 @@ from ravenchart.failures import Unusable
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.interfaces import Interface, joined
-from ravenchart.hw_can.bench.peer import BenchError, Peer, Record
+from ravenchart.hw_can.bench.peer import BenchError, OnFrame, Peer
 
 from .vocabulary import Vocabulary
 
@@ -25,7 +25,7 @@ def interface_of(system: System, name: str, channel: str) -> Interface:
     return Interface(name, channel, bus.bit_rate, data_rate, fd=bus.takes_fd)
 
 
-def attached(interface: Interface, vocabulary: Vocabulary, record: Record) -> Peer:
+def attached(interface: Interface, vocabulary: Vocabulary, record: OnFrame) -> Peer:
     """A peer there; Unusable where there is no such bus."""
     try:
         return joined(interface, vocabulary.codec, record)

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import can
 
-from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer, Record, unrecorded
+from ravenchart.hw_can.bench.peer import BenchError, Codec, OnFrame, Peer, unrecorded
 
 LOOK = 1e-3
 """From one look of the gateway to the next, in s."""
@@ -47,7 +47,7 @@ class BoardBus(can.BusABC):
         self.waiting += line_of(msg)
 
 
-class Link:
+class BoardLink:
     """The two pipes of a board; ``lives``: whether its emulator still runs."""
 
     def __init__(self, ends: tuple[int, int], lives: Callable[[], bool]) -> None:
@@ -125,7 +125,9 @@ def frame_of(line: bytes, at: float) -> can.Message:
 class BoardPeer(Peer):
     """One end of a bus with boards, which go on as the bench does."""
 
-    def __init__(self, links: Sequence[Link], codec: Codec, record: Record = unrecorded) -> None:
+    def __init__(
+        self, links: Sequence[BoardLink], codec: Codec, record: OnFrame = unrecorded
+    ) -> None:
         """On the bus from the first look of all boards on. BenchError where one is missing."""
         self._board = BoardBus()
         super().__init__(self._board, codec, record=record)

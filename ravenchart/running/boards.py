@@ -94,7 +94,7 @@ def _joined(
             words = command(board, emulator, one.executable, report, LONGEST)
             process = stack.enter_context(_started(words, report.parent))
             processes.append(process)
-            links.append(board_bus.Link(ends, partial(_lives, process)))
+            links.append(board_bus.BoardLink(ends, partial(_lives, process)))
         try:
             peer = board_bus.BoardPeer(links, codec, record)
             asked: list[float] = []

@@ -15,7 +15,7 @@ from can.io.logger import MESSAGE_WRITERS
 
 from ravenchart.failures import Unusable
 from ravenchart.hw_can.bench.bus_records import RECORD_BYTES, decode, greeting_of, message_of
-from ravenchart.hw_can.bench.peer import Record, unrecorded
+from ravenchart.hw_can.bench.peer import OnFrame, unrecorded
 
 CHUNK = 512 * RECORD_BYTES
 
@@ -44,7 +44,7 @@ def written(path: Path) -> Iterator[int]:
 
 
 @contextmanager
-def recorded(path: Path | None, bus: str) -> Iterator[Record]:
+def recorded(path: Path | None, bus: str) -> Iterator[OnFrame]:
     """What takes the frames of a bus for a log, if there is to be one; raises as `written`."""
     if path is None:
         yield unrecorded

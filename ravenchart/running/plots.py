@@ -37,7 +37,7 @@ BAND = 0.10
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class Stay:
     """A stay in a state, in s from the bench's start."""
 
     state: str
@@ -54,7 +54,7 @@ class Mark:
 
 
 def positions(
-    tracks: Mapping[str, Track], states: Mapping[str, Sequence[Span]], marks: Sequence[Mark]
+    tracks: Mapping[str, Track], states: Mapping[str, Sequence[Stay]], marks: Sequence[Mark]
 ) -> Figure:
     """Target and true position of every axis over time, in mm from its low hard stop."""
     figure = Figure(figsize=(11, 0.9 + 2.25 * len(tracks)), layout="constrained")
@@ -113,7 +113,7 @@ def _panel(panel: Axes, name: str, track: Track) -> None:
         spine.set_color(INK)
 
 
-def _bands(panel: Axes, spans: Sequence[Span], colours: Mapping[str, str], end: float) -> None:
+def _bands(panel: Axes, spans: Sequence[Stay], colours: Mapping[str, str], end: float) -> None:
     """The states along the upper edge, named where there is room."""
     panel.set_xlim(0, end)
     for span in spans:
@@ -150,7 +150,7 @@ def _label_marks(panel: Axes, marks: Sequence[Mark]) -> None:
         )
 
 
-def _colours(states: Mapping[str, Sequence[Span]]) -> dict[str, str]:
+def _colours(states: Mapping[str, Sequence[Stay]]) -> dict[str, str]:
     """One colour for each state name."""
     names = dict.fromkeys(span.state for spans in states.values() for span in spans)
     return {name: PALETTE[index % len(PALETTE)] for index, name in enumerate(names)}

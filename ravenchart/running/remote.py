@@ -29,7 +29,7 @@ from ravenchart.building import checking
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.drives import Bench, Station, press
 from ravenchart.hw_can.bench.interfaces import Interface
-from ravenchart.hw_can.bench.peer import BenchError, MalformedFrameError, Peer, Value, Values
+from ravenchart.hw_can.bench.peer import BenchError, FrameValues, MalformedFrameError, Peer, Value
 from ravenchart.hw_can.bench.replay import from_outside, read_log
 from ravenchart.hw_can.bench.scenario import DriveForm
 
@@ -97,7 +97,7 @@ class RemoteSystem:
         self._bench = Bench(peer, drives or {}, tracks=False)
         self._bench.on_message = self._take
         self._lock = threading.Lock()
-        self._last: dict[str, tuple[float, Values]] = {}
+        self._last: dict[str, tuple[float, FrameValues]] = {}
         self._sent: dict[str, dict[str, Value]] = {}
         self._sent_at = 0.0
         self._waiting: list[_Waiting] = []
@@ -124,7 +124,7 @@ class RemoteSystem:
         return self.vocabulary.system
 
     @property
-    def status(self) -> dict[str, Values]:
+    def status(self) -> dict[str, FrameValues]:
         """The last values of every message that came, by the names of messages and fields."""
         with self._lock:
             return {name: dict(values) for name, (_, values) in sorted(self._last.items())}
@@ -323,7 +323,7 @@ class RemoteSystem:
                 self._fault = fault
                 return
 
-    def _take(self, name: str, values: Values) -> None:
+    def _take(self, name: str, values: FrameValues) -> None:
         with self._lock:
             self._last[name] = (time.monotonic(), values)
             self._waiting = [one for one in self._waiting if not one.look(name, values)]

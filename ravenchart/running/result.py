@@ -14,7 +14,7 @@ from ravenchart.hw_can.bench.runner import ScenarioResult
 from ravenchart.hw_can.bench.scenario import Scenario
 
 from .expected import DEADLINE_MISS
-from .plots import Mark, Span
+from .plots import Mark, Stay
 from .process import ERROR, Ended
 
 
@@ -108,14 +108,14 @@ def clock_offset(
     return min(offsets, default=None)
 
 
-def spans(result: RunResult) -> Mapping[str, tuple[Span, ...]]:
+def spans(result: RunResult) -> Mapping[str, tuple[Stay, ...]]:
     """The states of each axis, on the bench's clock."""
     seen, offset = result.observation, result.clock_offset
     if seen is None or offset is None or result.scenario is None:
         return {}
     return {
         name: tuple(
-            Span(v.state, v.start / 1e9 - offset, (v.end or seen.end) / 1e9 - offset)
+            Stay(v.state, v.start / 1e9 - offset, (v.end or seen.end) / 1e9 - offset)
             for v in seen.visits(form.states)
         )
         for name, form in result.scenario.drives.items()

@@ -32,7 +32,7 @@ from ravenchart.hw_can.bench.scenario import (
     Replay,
     Scenario,
     ScenarioError,
-    Send,
+    SendStep,
     TraceCheck,
     WaitFor,
     load_scenario,
@@ -77,7 +77,7 @@ def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
     check = _Check(source, system, Vocabulary.of(system))
     check.drives(scenario)
     for index, step in enumerate(scenario.steps):
-        if isinstance(step, Send):
+        if isinstance(step, SendStep):
             check.send(step, ("steps", index))
         elif isinstance(step, WaitFor):
             check.wait_for(step, ("steps", index))
@@ -123,7 +123,7 @@ class _Check:
             if drive.states is not None:
                 self.region(drive.states, (*path, "states"))
 
-    def send(self, step: Send, path: Place) -> None:
+    def send(self, step: SendStep, path: Place) -> None:
         """A message with all of its fields, each with a value that it has."""
         message = self.message(step.send, (*path, "send"))
         if message is None:

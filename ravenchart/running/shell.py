@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ravenchart.hw_can.bench.peer import Value, Values
+from ravenchart.hw_can.bench.peer import FrameValues, Value
 from ravenchart.hw_can.bench.quantities import time_of
 
 from .remote import PATIENCE, RemoteSystem
@@ -166,7 +166,7 @@ class Shell:
         """Whether a node of the model sends it."""
         return message not in self.words.outside()
 
-    def _with_units(self, message: str, values: Values) -> str:
+    def _with_units(self, message: str, values: FrameValues) -> str:
         units = {name: one.unit for name, one in self.words.fields(message).items()}
         named = {name: value for name, value in values.items() if name in units}
         told = (f"{n} {v}{f' {units[n]}' if units[n] else ''}" for n, v in named.items())

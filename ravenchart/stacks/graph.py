@@ -16,7 +16,7 @@ INDIRECT = "__indirect_call"
 """What GCC calls the target of a call through a pointer."""
 
 
-class Frame(Enum):
+class StackFrame(Enum):
     """What the compiler knows of the size of a frame, in the words of ``-fstack-usage``."""
 
     STATIC = "static"
@@ -31,7 +31,7 @@ class Function:
     name: str
     """The symbol."""
     size: int
-    frame: Frame = Frame.STATIC
+    frame: StackFrame = StackFrame.STATIC
     place: str = ""
     """``file:line:column``; empty in a library."""
     calls: dict[str, str] = field(default_factory=dict)
@@ -83,7 +83,7 @@ def _function(title: str, label: str) -> Function | None:
     assert match is not None
     place = parts[0] if sized > 0 and parts[0] != BUILT_IN else ""
     objects = tuple(part.strip() for part in parts[sized + 2 :])
-    return Function(symbol(title), int(match[1]), Frame(match[2]), place, {}, objects)
+    return Function(symbol(title), int(match[1]), StackFrame(match[2]), place, {}, objects)
 
 
 def symbol(title: str) -> str:

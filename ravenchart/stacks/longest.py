@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
-from .graph import INDIRECT, Frame, Function, Graph, plain
+from .graph import INDIRECT, Function, Graph, StackFrame, plain
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Rules:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class PathFrame:
     """A frame on a path."""
 
     title: str
@@ -88,7 +88,7 @@ class Missing:
     caller: str
 
 
-Problem = Recursion | Indirect | Unbounded | Missing
+StackProblem = Recursion | Indirect | Unbounded | Missing
 
 
 class _Best(NamedTuple):
@@ -107,7 +107,7 @@ class Depths:
     def __init__(self, graph: Graph, rules: Rules) -> None:
         self.graph = graph
         self.rules = rules
-        self.problems: dict[Problem, None] = {}
+        self.problems: dict[StackProblem, None] = {}
         self._endings = {t for t, f in graph.items() if plain(f.name) in rules.endings}
         self._ended: dict[str, _Best] = {}
         """Of an ending and what it calls."""
@@ -121,17 +121,17 @@ class Depths:
         self._walk(root, self._best, inside=False)
         return self._best[root].depth
 
-    def path(self, root: str) -> tuple[Step, ...]:
+    def path(self, root: str) -> tuple[PathFrame, ...]:
         """The frames of the longest path, the root first."""
         self.depth(root)
-        steps: list[Step] = []
+        steps: list[PathFrame] = []
         title, place, best = root, "", self._best
         while title:
             if title in self._endings:
                 best = self._ended
             below = best[title].callee
             rest = best[below].depth if below else 0
-            steps.append(Step(title, best[title].depth - rest, place))
+            steps.append(PathFrame(title, best[title].depth - rest, place))
             place = self.graph[title].calls.get(below, "") if title in self.graph else ""
             title = below
         return tuple(steps)
@@ -200,7 +200,7 @@ class Depths:
         function = self.graph[title]
         bound = self.rules.bounds.get(plain(function.name))
         extra = 0
-        if function.frame is Frame.DYNAMIC:
+        if function.frame is StackFrame.DYNAMIC:
             if bound is None:
                 self.problems[Unbounded(function.name, function.place, function.objects)] = None
             else:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from .graph import INDIRECT, Frame, Function, Graph
+from .graph import INDIRECT, Function, Graph, StackFrame
 
 _HEAD = re.compile(r"^[0-9a-f]+ <([^>]+)>:$")
 _LINE = re.compile(r"^\s*[0-9a-f]+:\s+(?:[0-9a-f]{2,8} )*\s*([a-z][a-z0-9.]*)\s*(.*)$")
@@ -66,7 +66,7 @@ def _function(name: str, lines: list[tuple[str, str]]) -> Function:
             made.calls.setdefault(INDIRECT, "")
         taken = _taken(mnemonic, operands)
         if taken is None:
-            made.frame = Frame.DYNAMIC
+            made.frame = StackFrame.DYNAMIC
         else:
             made.size += taken
     return made

@@ -16,7 +16,7 @@ REST = "tables of the linker, padding"
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class UsedMemory:
     """A part of the program and its bytes."""
 
     name: str
@@ -26,7 +26,7 @@ class Part:
 
 def parts(
     symbols: Iterable[Symbol], owners: Mapping[str, str], sections: Mapping[str, int]
-) -> tuple[Part, ...]:
+) -> tuple[UsedMemory, ...]:
     """Each part with its bytes, and the rest of the sections.
 
     ``owners``: prefix of symbols to the part they belong to; the longest prefix decides.
@@ -45,8 +45,8 @@ def parts(
         count[1] += one.size if one.kind in RAM or one.kind in BOTH else 0
     flash, ram = totals(sections)
     rest = flash - sum(f for f, _ in sums.values()), ram - sum(r for _, r in sums.values())
-    found = [Part(name, *count) for name, count in sums.items() if any(count)]
-    return (*found, Part(REST, max(rest[0], 0), max(rest[1], 0)))
+    found = [UsedMemory(name, *count) for name, count in sums.items() if any(count)]
+    return (*found, UsedMemory(REST, max(rest[0], 0), max(rest[1], 0)))
 
 
 UNLOADED = (".comment", ".debug", ".note.GNU", ".symtab", ".strtab", ".gnu_debug")

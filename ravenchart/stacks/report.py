@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from ravenchart.described import Described
 
@@ -91,3 +92,15 @@ class Memory(Described):
         if least is None:
             return text
         return f"tightest stack: {least.task}, {least.bound:,} of {least.size:,} bytes; {text}"
+
+
+def memory_of(entry: Any) -> Memory:
+    """The `Memory` that `asdict` has made such an entry of; KeyError or TypeError where none has.
+
+    What `building.stacks` reads may come from elsewhere: there every value is looked at.
+    """
+    stacks = [
+        Stack(**one | {"path": [PathStep(**step) for step in one["path"]]})
+        for one in entry["stacks"]
+    ]
+    return Memory(**entry | {"stacks": stacks, "parts": [MemoryPart(**p) for p in entry["parts"]]})

@@ -19,7 +19,7 @@ PROVING = ("read", "proved")
 _DONE = re.compile(r"completed (\d+) out of (\d+) \(\d+%\)\.\.\.\s*")
 
 
-class Steps:
+class Announced:
     """Tells after each unit how many are done, and how long the others of the last phase take at
     that pace.
     """

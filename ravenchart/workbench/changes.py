@@ -10,11 +10,11 @@ from ravenchart.gen.language.quantities import LONGEST, duration
 from . import edits
 from .edits import Document, LayoutError
 from .evaluation import Evaluation, Texts, content
-from .places import Entry, Places
+from .places import ModelPlaces, NamedEntry
 from .requests import Move, SetProcessor, SetTime
 
 
-class RefusedError(Exception):
+class ChangeRefusedError(Exception):
     """A change cannot be made; the text says why, and what to do."""
 
 
@@ -27,7 +27,7 @@ class Changed:
 
 
 def changed(state: Evaluation, wish: Move | SetTime | SetProcessor) -> Changed:
-    """The files with one change; `RefusedError` where it cannot be made in the text."""
+    """The files with one change; `ChangeRefusedError` where it cannot be made in the text."""
     try:
         match wish:
             case Move():
@@ -37,7 +37,7 @@ def changed(state: Evaluation, wish: Move | SetTime | SetProcessor) -> Changed:
             case SetProcessor():
                 return _set_up(state, wish)
     except LayoutError as problem:
-        raise RefusedError(str(problem)) from problem
+        raise ChangeRefusedError(str(problem)) from problem
 
 
 def _moved(state: Evaluation, wish: Move) -> Changed:
@@ -45,7 +45,7 @@ def _moved(state: Evaluation, wish: Move) -> Changed:
     places = state.places
     found = places.row_at(wish.row)
     if found is None:
-        raise RefusedError(f"no processor has the row {wish.row}")
+        raise ChangeRefusedError(f"no processor has the row {wish.row}")
     source, number = found
     target = _processor(places, wish.to)
     row = places.table(source)[number].value
@@ -55,7 +55,7 @@ def _moved(state: Evaluation, wish: Move) -> Changed:
     shorter, item = edits.without_item(
         _document(places, source.file), source.mapping, "activities", number, comment_stays=stays
     )
-    between = Places({**places.documents, source.file: shorter})
+    between = ModelPlaces({**places.documents, source.file: shorter})
     target = _processor(between, wish.to)
     place = min(wish.place, len(between.table(target)))
     longer = edits.with_item(
@@ -72,12 +72,12 @@ def _timed(state: Evaluation, wish: SetTime) -> Changed:
     """A time of what a row runs."""
     row = state.places.row(wish.row)
     if row is None:
-        raise RefusedError(f"the model does not declare {wish.row}")
+        raise ChangeRefusedError(f"the model does not declare {wish.row}")
     key = row.keys.get(wish.key)
     if key is None:
-        raise RefusedError(f"the {wish.key} of {wish.row} is that of its processor")
+        raise ChangeRefusedError(f"the {wish.key} of {wish.row} is that of its processor")
     if wish.value is None and wish.key != "deadline":
-        raise RefusedError(f"{row.owner}.{row.name} needs a {wish.key}")
+        raise ChangeRefusedError(f"{row.owner}.{row.name} needs a {wish.key}")
     name = f"{row.owner}.{row.name}" if row.kind != "receive" else row.owner
     value = None if wish.value is None else _duration(wish.value)
     return _entry(state, row.entry, name, key, value, ("wcet", "period"))
@@ -90,7 +90,7 @@ def _set_up(state: Evaluation, wish: SetProcessor) -> Changed:
     if wish.key == "priority":
         if value is not None and not (isinstance(value, int) and value in PRIORITIES):
             first, last = PRIORITIES[0], PRIORITIES[-1]
-            raise RefusedError(f"a priority is a whole number from {first} to {last}")
+            raise ChangeRefusedError(f"a priority is a whole number from {first} to {last}")
         text = None if value is None else str(value)
     else:
         text = None if value is None else _duration(str(value))
@@ -100,7 +100,7 @@ def _set_up(state: Evaluation, wish: SetProcessor) -> Changed:
 
 def _entry(
     state: Evaluation,
-    entry: Entry,
+    entry: NamedEntry,
     name: str,
     key: str,
     value: str | None,
@@ -124,22 +124,24 @@ def _duration(text: str) -> str:
     """A duration as it is written in the model."""
     value = duration(text.strip())
     if value is None:
-        raise RefusedError(
+        raise ChangeRefusedError(
             f"`{text}` is not a duration: write a number and ns, us, ms or s, such as `20 ms`"
         )
     if not 0 < value <= LONGEST:
-        raise RefusedError(f"`{text}` is outside the range: a duration is at most one hour, not 0")
+        raise ChangeRefusedError(
+            f"`{text}` is outside the range: a duration is at most one hour, not 0"
+        )
     return text.strip()
 
 
-def _processor(places: Places, name: str) -> Entry:
+def _processor(places: ModelPlaces, name: str) -> NamedEntry:
     found = places.processors.get(name.lower())
     if found is None:
-        raise RefusedError(f"there is no processor named {name}")
+        raise ChangeRefusedError(f"there is no processor named {name}")
     return found
 
 
-def _document(places: Places, file: str) -> Document:
+def _document(places: ModelPlaces, file: str) -> Document:
     found = places.documents[file]
     assert found is not None, "an entry stands in a document"
     return found

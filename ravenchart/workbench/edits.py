@@ -13,9 +13,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ravenchart.gen.files import spans
-from ravenchart.gen.files.spans import Mapping, Node, Plain, Scalar, plain
+from ravenchart.gen.files.spans import Plain, YamlMapping, YamlNode, YamlScalar, plain
 
-Exchange = Callable[[Node], Plain | None]
+Exchange = Callable[[YamlNode], Plain | None]
 """What a node says after a change; None where it says what it said."""
 
 _BREAK = re.compile(r"\r\n|\r|\n")
@@ -30,7 +30,7 @@ class Document:
     """The text of a file, and its tree."""
 
     text: str
-    root: Mapping
+    root: YamlMapping
 
     @classmethod
     def of(cls, text: str) -> Document | None:
@@ -47,7 +47,7 @@ class Document:
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class TakenItem:
     """An item of a list that was taken out: what it says, how, and what stood behind it."""
 
     says: Plain
@@ -55,17 +55,19 @@ class Item:
     comment: str = ""
 
 
-def with_value(document: Document, value: Scalar, new: str) -> Document:
+def with_value(document: Document, value: YamlScalar, new: str) -> Document:
     """The document with another scalar in place of ``value``."""
     text = document.text
     made = text[: value.start] + new + text[value.end :]
     return document.changed(made, lambda node: new if node is value else None)
 
 
-def with_entry(document: Document, mapping: Mapping, after: str, key: str, new: str) -> Document:
+def with_entry(
+    document: Document, mapping: YamlMapping, after: str, key: str, new: str
+) -> Document:
     """The document with an entry more, behind that of ``after``, whose value is a scalar."""
     text, found = document.text, mapping.entry(after)
-    if found is None or not isinstance(found[1], Scalar):
+    if found is None or not isinstance(found[1], YamlScalar):
         raise LayoutError(f"there is no `{after}` behind which `{key}` could stand")
     first, value = found
     place, added = value.end, f", {key}: {new}"
@@ -73,7 +75,7 @@ def with_entry(document: Document, mapping: Mapping, after: str, key: str, new: 
         margin = re.sub(r"[^ ]", " ", text[_line_start(text, first.start) : first.start])
         place, added = _below(text, value.end, f"{margin}{key}: {new}")
 
-    def exchange(node: Node) -> Plain | None:
+    def exchange(node: YamlNode) -> Plain | None:
         if node is not mapping:
             return None
         told = {name.value: plain(inner) for name, inner in mapping.entries}
@@ -82,7 +84,7 @@ def with_entry(document: Document, mapping: Mapping, after: str, key: str, new: 
     return document.changed(text[:place] + added + text[place:], exchange)
 
 
-def without_entry(document: Document, mapping: Mapping, key: str) -> Document:
+def without_entry(document: Document, mapping: YamlMapping, key: str) -> Document:
     """The document without an entry whose value is a scalar; a comment behind it stays."""
     text, found = document.text, mapping.entry(key)
     if found is None:
@@ -93,7 +95,7 @@ def without_entry(document: Document, mapping: Mapping, key: str) -> Document:
     else:
         made = _without_line(text, found[0].start, found[1].end, comment_stays=True)
 
-    def exchange(node: Node) -> Plain | None:
+    def exchange(node: YamlNode) -> Plain | None:
         if node is not mapping:
             return None
         return {name.value: plain(v) for name, v in mapping.entries if name is not found[0]}
@@ -102,8 +104,8 @@ def without_entry(document: Document, mapping: Mapping, key: str) -> Document:
 
 
 def without_item(
-    document: Document, mapping: Mapping, key: str, number: int, *, comment_stays: bool
-) -> tuple[Document, Item]:
+    document: Document, mapping: YamlMapping, key: str, number: int, *, comment_stays: bool
+) -> tuple[Document, TakenItem]:
     """The document without an item of the list at ``key``, and that item.
 
     In block style its line goes, and the comment at the end of the line with it unless
@@ -112,25 +114,29 @@ def without_item(
     text = document.text
     name, items = _list(mapping, key)
     taken = items.items[number]
-    item = Item(plain(taken), text[taken.start : taken.end])
+    item = TakenItem(plain(taken), text[taken.start : taken.end])
     if items.flow:
         made = _cut(text, [(one.start, one.end) for one in items.items], number)
     else:
         dash = _line_start(text, taken.start) + len(_dash(text, taken).rstrip(" ")) - 1
         if not comment_stays:
-            item = Item(item.says, item.text, text[taken.end : _line_end(text, taken.end)].rstrip())
+            item = TakenItem(
+                item.says, item.text, text[taken.end : _line_end(text, taken.end)].rstrip()
+            )
         made = _without_line(text, dash, taken.end, comment_stays=comment_stays)
         if len(items.items) == 1:
             colon = text.index(":", name.end) + 1
             made = f"{made[:colon]} []{made[colon:]}"
 
-    def exchange(node: Node) -> Plain | None:
+    def exchange(node: YamlNode) -> Plain | None:
         return [plain(one) for one in items.items if one is not taken] if node is items else None
 
     return document.changed(made, exchange), item
 
 
-def with_item(document: Document, mapping: Mapping, key: str, number: int, item: Item) -> Document:
+def with_item(
+    document: Document, mapping: YamlMapping, key: str, number: int, item: TakenItem
+) -> Document:
     """The document with an item more in the list at ``key``, before that of the number now.
 
     In block style it gets a line, below that of the item before it.
@@ -149,7 +155,7 @@ def with_item(document: Document, mapping: Mapping, key: str, number: int, item:
         place = _line_start(text, first.start)
         added = f"{_dash(text, first)}{item.text}{item.comment}{_break_of(text, first.end)}"
 
-    def exchange(node: Node) -> Plain | None:
+    def exchange(node: YamlNode) -> Plain | None:
         if node is not items:
             return None
         told = [plain(one) for one in items.items]
@@ -158,12 +164,12 @@ def with_item(document: Document, mapping: Mapping, key: str, number: int, item:
     return document.changed(text[:place] + added + text[place:], exchange)
 
 
-def is_flow(mapping: Mapping, key: str) -> bool:
+def is_flow(mapping: YamlMapping, key: str) -> bool:
     """Whether the list at ``key`` is written in brackets."""
     return _list(mapping, key)[1].flow
 
 
-def _list(mapping: Mapping, key: str) -> tuple[Scalar, spans.Sequence]:
+def _list(mapping: YamlMapping, key: str) -> tuple[YamlScalar, spans.Sequence]:
     """The list at a key of a mapping, with the key."""
     found = mapping.entry(key)
     if found is None or not isinstance(found[1], spans.Sequence):
@@ -171,15 +177,15 @@ def _list(mapping: Mapping, key: str) -> tuple[Scalar, spans.Sequence]:
     return found[0], found[1]
 
 
-def _exchanged(node: Node, exchange: Exchange) -> Plain:
+def _exchanged(node: YamlNode, exchange: Exchange) -> Plain:
     """What a tree says after a change."""
     new = exchange(node)
     if new is not None:
         return new
     match node:
-        case Scalar():
+        case YamlScalar():
             return node.value
-        case Mapping():
+        case YamlMapping():
             return {key.value: _exchanged(value, exchange) for key, value in node.entries}
         case spans.Sequence():
             return [_exchanged(item, exchange) for item in node.items]
@@ -210,7 +216,7 @@ def _below(text: str, place: int, line: str) -> tuple[int, str]:
     return _line_end(text, place), _break_of(text, place) + line
 
 
-def _dash(text: str, item: Node) -> str:
+def _dash(text: str, item: YamlNode) -> str:
     """What stands before an item in its line: its margin, the dash and spaces."""
     head = text[_line_start(text, item.start) : item.start]
     if re.fullmatch(r" *- +", head) is None:

@@ -9,13 +9,14 @@ from pathlib import Path
 
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.system.timing import Analysis, analyse
-from ravenchart.building.checking import identified, without_collector
+from ravenchart.building.checking import identified
+from ravenchart.building.garbage import without_collector
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.pipeline import Loaded, load
 
 from .edits import Document
-from .places import Places
+from .places import ModelPlaces
 
 Texts = Mapping[str, bytes]
 """The files of a model by the names that its messages use, main file first."""
@@ -50,9 +51,9 @@ class Evaluation:
         return (*self.loaded.diagnostics, *self.late)
 
     @cached_property
-    def places(self) -> Places:
+    def places(self) -> ModelPlaces:
         """Where the files say what."""
-        return Places({name: document(content) for name, content in self.texts.items()})
+        return ModelPlaces({name: document(content) for name, content in self.texts.items()})
 
 
 def document(content: bytes) -> Document | None:

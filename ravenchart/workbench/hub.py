@@ -12,9 +12,9 @@ from ravenchart.building import drawings
 from ravenchart.gen.draw.svg import mark
 
 from .aside import Aside
-from .changes import RefusedError
+from .changes import ChangeRefusedError
 from .evaluation import Evaluation
-from .requests import Message, Move, Save, SetProcessor, SetTime, Settle, Step
+from .requests import Move, PageRequest, Rewind, Save, SetProcessor, SetTime, Settle
 from .session import Session
 from .view import located, view
 
@@ -92,25 +92,25 @@ class Hub:
 
     # --- Changes
 
-    async def act(self, wish: Message) -> bytes:
-        """Do what a message asks for; the state after it. `RefusedError`, `OldError`."""
+    async def act(self, wish: PageRequest) -> bytes:
+        """Do what a message asks for; the state after it. `ChangeRefusedError`, `OldError`."""
         number = self.session.number
         try:
             state = await self._run(lambda: self._acted(wish))
-        except RefusedError:
+        except ChangeRefusedError:
             if self.session.number != number:  # a file was found to have changed outside
                 await self._publish(await self._run(self._dumped))
             raise
         await self._publish(state)
         return state
 
-    def _acted(self, wish: Message) -> bytes:
+    def _acted(self, wish: PageRequest) -> bytes:
         if wish.number != self.session.number:
             raise OldError
         match wish:
             case Move() | SetTime() | SetProcessor():
                 self.session.change(wish)
-            case Step(kind=kind):
+            case Rewind(kind=kind):
                 self.session.step(-1 if kind == "undo" else 1)
             case Save(late=late):
                 self.session.save(late=late)

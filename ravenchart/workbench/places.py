@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ravenchart.gen.files import spans
-from ravenchart.gen.files.spans import Scalar
+from ravenchart.gen.files.spans import YamlScalar
 
 from .edits import Document
 
@@ -20,12 +20,12 @@ TIMES = ("period", "wcet", "deadline")
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class NamedEntry:
     """A named entry of a section: the file that it stands in, its name, and what it says."""
 
     file: str
-    key: Scalar
-    mapping: spans.Mapping
+    key: YamlScalar
+    mapping: spans.YamlMapping
 
     @property
     def name(self) -> str:
@@ -34,7 +34,7 @@ class Entry:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class DeclaredRow:
     """What a row of a table runs: declared once, also where several instances have it.
 
     ``owner`` is the component, or the bus; ``keys`` are those for its times, by `TIMES`.
@@ -44,7 +44,7 @@ class Row:
     name: str
     kind: str
     """``ports``, ``region``, ``activity``, ``receive`` or ``watch``."""
-    entry: Entry
+    entry: NamedEntry
     keys: Mapping[str, str]
 
     def text(self, time: str) -> str | None:
@@ -55,51 +55,51 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Places:
+class ModelPlaces:
     """The files of a model by name, main file first; None where one is not YAML."""
 
     documents: Mapping[str, Document | None]
 
-    def section(self, name: str) -> Iterator[Entry]:
+    def section(self, name: str) -> Iterator[NamedEntry]:
         """The entries of a section, in the order of the files."""
         for file, document in self.documents.items():
             found = None if document is None else document.root.mapping(name)
             for key, mapping in () if found is None else found.mappings():
-                yield Entry(file, key, mapping)
+                yield NamedEntry(file, key, mapping)
 
     @cached_property
-    def processors(self) -> dict[str, Entry]:
+    def processors(self) -> dict[str, NamedEntry]:
         """The processors, by name in lower case."""
         return self._named("processors")
 
     @cached_property
-    def components(self) -> dict[str, Entry]:
+    def components(self) -> dict[str, NamedEntry]:
         """The components."""
         return self._named("components")
 
     @cached_property
-    def instances(self) -> dict[str, Entry]:
+    def instances(self) -> dict[str, NamedEntry]:
         """The instances."""
         return self._named("instances")
 
     @cached_property
-    def buses(self) -> dict[str, Entry]:
+    def buses(self) -> dict[str, NamedEntry]:
         """The buses."""
         return self._named("buses")
 
-    def _named(self, section: str) -> dict[str, Entry]:
-        found: dict[str, Entry] = {}
+    def _named(self, section: str) -> dict[str, NamedEntry]:
+        found: dict[str, NamedEntry] = {}
         for entry in self.section(section):
             found.setdefault(entry.name.lower(), entry)
         return found
 
-    def table(self, processor: Entry) -> list[Scalar]:
+    def table(self, processor: NamedEntry) -> list[YamlScalar]:
         """The rows of a processor."""
         found = processor.mapping.get("activities")
         items = found.items if isinstance(found, spans.Sequence) else []
-        return [item for item in items if isinstance(item, Scalar)]
+        return [item for item in items if isinstance(item, YamlScalar)]
 
-    def row_at(self, element: str) -> tuple[Entry, int] | None:
+    def row_at(self, element: str) -> tuple[NamedEntry, int] | None:
         """The processor whose table holds a row, and its number there."""
         wanted = element.lower()
         for processor in self.processors.values():
@@ -108,13 +108,13 @@ class Places:
                     return processor, number
         return None
 
-    def component_of(self, instance: str) -> Entry | None:
+    def component_of(self, instance: str) -> NamedEntry | None:
         """The component of an instance."""
         found = self.instances.get(instance.lower())
         name = None if found is None else found.mapping.scalar("component")
         return None if name is None else self.components.get(name.value.lower())
 
-    def row(self, element: str) -> Row | None:
+    def row(self, element: str) -> DeclaredRow | None:
         """What ``owner.name`` runs."""
         owner, _, name = element.lower().partition(".")
         component = self.component_of(owner)
@@ -122,11 +122,11 @@ class Places:
             return next((one for one in self.rows(component) if one.name.lower() == name), None)
         bus = self.buses.get(owner)
         if bus is not None and name == "receive":
-            return Row(bus.name, name, name, bus, {"wcet": "driver_wcet"})
+            return DeclaredRow(bus.name, name, name, bus, {"wcet": "driver_wcet"})
         watch = None if bus is None or name != "watch" else _inner(bus, name)
         return None if bus is None or watch is None else self._row(bus, name, name, watch)
 
-    def rows(self, component: Entry) -> Iterator[Row]:
+    def rows(self, component: NamedEntry) -> Iterator[DeclaredRow]:
         """What an instance of a component has to run."""
         ports = _inner(component, "port_region")
         if ports is not None:
@@ -134,15 +134,17 @@ class Places:
         for section, kind in (("regions", "region"), ("activities", "activity")):
             found = component.mapping.mapping(section)
             for key, mapping in () if found is None else found.mappings():
-                yield self._row(component, key.value, kind, Entry(component.file, key, mapping))
+                yield self._row(
+                    component, key.value, kind, NamedEntry(component.file, key, mapping)
+                )
 
-    def _row(self, owner: Entry, name: str, kind: str, entry: Entry) -> Row:
-        return Row(owner.name, name, kind, entry, {time: time for time in TIMES})
+    def _row(self, owner: NamedEntry, name: str, kind: str, entry: NamedEntry) -> DeclaredRow:
+        return DeclaredRow(owner.name, name, kind, entry, {time: time for time in TIMES})
 
 
-def _inner(around: Entry, name: str) -> Entry | None:
+def _inner(around: NamedEntry, name: str) -> NamedEntry | None:
     """A mapping inside an entry."""
     found = around.mapping.entry(name)
-    if found is None or not isinstance(found[1], spans.Mapping):
+    if found is None or not isinstance(found[1], spans.YamlMapping):
         return None
-    return Entry(around.file, found[0], found[1])
+    return NamedEntry(around.file, found[0], found[1])

@@ -10,7 +10,7 @@ Name = Annotated[str, Field(min_length=1, max_length=200)]
 Duration = Annotated[str, Field(min_length=1, max_length=40)]
 
 
-class Message(BaseModel):
+class PageRequest(BaseModel):
     """A message; ``number`` is the state that the page showed when it was asked for."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
@@ -18,7 +18,7 @@ class Message(BaseModel):
     number: int = Field(ge=0)
 
 
-class Move(Message):
+class Move(PageRequest):
     """Put a row into a table, where it then has the number ``place``, counted from 0."""
 
     kind: Literal["move"]
@@ -27,7 +27,7 @@ class Move(Message):
     place: int = Field(ge=0, le=1024)
 
 
-class SetTime(Message):
+class SetTime(PageRequest):
     """Change what a row takes: for all instances of its component. None: the key is removed."""
 
     kind: Literal["time"]
@@ -36,7 +36,7 @@ class SetTime(Message):
     value: Duration | None
 
 
-class SetProcessor(Message):
+class SetProcessor(PageRequest):
     """Change a processor. None: the key is removed, and the value follows from the table."""
 
     kind: Literal["processor"]
@@ -45,36 +45,36 @@ class SetProcessor(Message):
     value: Duration | int | None
 
 
-class Step(Message):
+class Rewind(PageRequest):
     """Go back by one change, or forward again."""
 
     kind: Literal["undo", "redo"]
 
 
-class Save(Message):
+class Save(PageRequest):
     """Write the files; with ``late`` also where a deadline or limit is not kept."""
 
     kind: Literal["save"]
     late: bool
 
 
-class Settle(Message):
+class Settle(PageRequest):
     """After files have changed outside: take them, or keep the changes made here."""
 
     kind: Literal["take", "keep"]
 
 
 Request = Annotated[
-    Move | SetTime | SetProcessor | Step | Save | Settle, Field(discriminator="kind")
+    Move | SetTime | SetProcessor | Rewind | Save | Settle, Field(discriminator="kind")
 ]
-_READER: TypeAdapter[Move | SetTime | SetProcessor | Step | Save | Settle] = TypeAdapter(Request)
+_READER: TypeAdapter[Move | SetTime | SetProcessor | Rewind | Save | Settle] = TypeAdapter(Request)
 
 
 class MalformedError(Exception):
     """A message has none of the forms above; the text says where it differs."""
 
 
-def read(body: bytes) -> Move | SetTime | SetProcessor | Step | Save | Settle:
+def read(body: bytes) -> Move | SetTime | SetProcessor | Rewind | Save | Settle:
     """The message of a request, or `MalformedError`."""
     try:
         return _READER.validate_json(body)

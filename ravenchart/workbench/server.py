@@ -16,7 +16,7 @@ from ravenchart.failures import Failure
 from ravenchart.reported import found_of
 
 from . import requests
-from .changes import RefusedError
+from .changes import ChangeRefusedError
 from .guard import LARGEST, Guard
 from .hub import Hub, OldError
 from .session import InvalidError
@@ -138,7 +138,7 @@ class _Application:
         except InvalidError as problem:
             found = [asdict(found_of(one)) for one in problem.found]
             return _error(422, str(problem), findings=found, late=problem.late)
-        except RefusedError as problem:
+        except ChangeRefusedError as problem:
             return _error(422, str(problem))
         return Response(state, media_type="application/json")
 

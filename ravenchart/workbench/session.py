@@ -19,7 +19,7 @@ from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.files.load import LARGEST, read_file
 
 from . import changes
-from .changes import RefusedError
+from .changes import ChangeRefusedError
 from .evaluation import Evaluation, Texts, evaluate, over
 from .requests import Move, SetProcessor, SetTime
 
@@ -30,7 +30,7 @@ Stamp = tuple[int, int, int] | None
 """Inode, size and time of a file; None of one that is not there."""
 
 
-class InvalidError(RefusedError):
+class InvalidError(ChangeRefusedError):
     """The files cannot be saved for what is wrong in them, which is with ``found``."""
 
     def __init__(self, text: str, found: Sequence[Diagnostic], *, late: bool) -> None:
@@ -41,7 +41,7 @@ class InvalidError(RefusedError):
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class SessionState:
     """The files after a change, and what the change was."""
 
     texts: Texts
@@ -72,7 +72,7 @@ class Session:
         """Of the state that is shown: counts everything that people can see change."""
         self.now = self.good = self.saved = evaluate(path, {})
         """The state, the last one without errors, and that of the disk."""
-        self._states = [State(self.now.texts, "")]
+        self._states = [SessionState(self.now.texts, "")]
         self._at = 0
         self._disk = _Disk(dict(self.now.texts))
         self._disk.stamps = {name: _stamp(name) for name in self._disk.texts}
@@ -114,7 +114,7 @@ class Session:
         made = changes.changed(self.now, wish)
         if made.texts == self.now.texts:
             return False
-        self._take(State(made.texts, made.label))
+        self._take(SessionState(made.texts, made.label))
         return True
 
     def step(self, by: int) -> bool:
@@ -168,7 +168,7 @@ class Session:
         fresh = evaluate(self.path, {})
         stamps |= {name: _stamp(name) for name in fresh.texts if name not in stamps}
         self._disk = _Disk(dict(fresh.texts), stamps)
-        self._take(State(fresh.texts, f"changed outside: {names}"), fresh)
+        self._take(SessionState(fresh.texts, f"changed outside: {names}"), fresh)
         self.saved = fresh if fresh.analysis is not None else self.saved
 
     def keep(self) -> None:
@@ -183,7 +183,7 @@ class Session:
     def save(self, *, late: bool) -> tuple[str, ...]:
         """Write the files that have changed; their names. `InvalidError` for wrong ones.
 
-        Where a file has changed outside, nothing is written (`RefusedError`).
+        Where a file has changed outside, nothing is written (`ChangeRefusedError`).
         """
         self._see_outside()
         self._judge(late=late)
@@ -198,7 +198,7 @@ class Session:
             except OSError as problem:
                 reason = problem.strerror or str(problem)
                 done = f"; written before that: {', '.join(written)}" if written else ""
-                raise RefusedError(f"cannot write {name}: {reason}{done}") from problem
+                raise ChangeRefusedError(f"cannot write {name}: {reason}{done}") from problem
             disk.texts[name], disk.stamps[name] = content, _stamp(name)
             written.append(name)
         if written:
@@ -223,7 +223,7 @@ class Session:
             raise InvalidError(text, missed, late=True)
 
     def _see_outside(self) -> None:
-        """`RefusedError` where a file on the disk is not what it was."""
+        """`ChangeRefusedError` where a file on the disk is not what it was."""
         for name, known in self._disk.texts.items():
             found = _read(name)
             if found != known:
@@ -231,7 +231,7 @@ class Session:
         if self._disk.outside:
             self.number += 1
             names = ", ".join(self._disk.outside)
-            raise RefusedError(f"{names} has changed on the disk, so nothing was saved")
+            raise ChangeRefusedError(f"{names} has changed on the disk, so nothing was saved")
 
     def _see_disk(self) -> None:
         """Analyse what is on the disk now."""
@@ -240,7 +240,7 @@ class Session:
 
     # --- States
 
-    def _take(self, state: State, found: Evaluation | None = None) -> None:
+    def _take(self, state: SessionState, found: Evaluation | None = None) -> None:
         """Go on to a new state; those that were taken back are forgotten."""
         self._states[self._at + 1 :] = [state]
         del self._states[: -MOST_STATES - 1]

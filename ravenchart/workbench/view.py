@@ -16,7 +16,7 @@ from ravenchart.analysis.system.latencies import Latency
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import microseconds, percent
 from ravenchart.building import drawings
-from ravenchart.gen.files.spans import Scalar
+from ravenchart.gen.files.spans import YamlScalar
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.system import Chain
 from ravenchart.gen.origins import Origin
@@ -24,7 +24,7 @@ from ravenchart.reported import found_of
 
 from . import pictures
 from .evaluation import Evaluation, document
-from .places import TIMES, Entry, Places, Row
+from .places import TIMES, DeclaredRow, ModelPlaces, NamedEntry
 from .session import Session
 
 Json = dict[str, Any]
@@ -68,13 +68,13 @@ class _Where:
     """The places of a state, with the line of each."""
 
     def __init__(self, now: Evaluation) -> None:
-        self.places: Places = now.places
+        self.places: ModelPlaces = now.places
         self.allocated: dict[str, str] = {}
         for processor in self.places.processors.values():
             for item in self.places.table(processor):
                 self.allocated.setdefault(item.value.lower(), processor.name)
 
-    def at(self, file: str, scalar: Scalar) -> Json:
+    def at(self, file: str, scalar: YamlScalar) -> Json:
         """The location of a scalar."""
         found = self.places.documents[file]
         before = "" if found is None else found.text[: scalar.start]
@@ -115,7 +115,7 @@ def _components(where: _Where) -> Iterator[Json]:
         }
 
 
-def _declared(where: _Where, row: Row) -> Json:
+def _declared(where: _Where, row: DeclaredRow) -> Json:
     """What is declared of a row: its kind and its times, as they are written."""
     return {
         "name": row.name,
@@ -155,13 +155,17 @@ def _processors(where: _Where, good: Analysis, saved: Analysis) -> Iterator[Json
         }
 
 
-def _written(entry: Entry, key: str) -> str | None:
+def _written(entry: NamedEntry, key: str) -> str | None:
     found = entry.mapping.scalar(key)
     return None if found is None else found.value
 
 
 def _row(
-    where: _Where, entry: Entry, item: Scalar, responses: dict[str, int], slots: dict[str, Any]
+    where: _Where,
+    entry: NamedEntry,
+    item: YamlScalar,
+    responses: dict[str, int],
+    slots: dict[str, Any],
 ) -> Json:
     """A row of a table: its times as written, or as they follow, and its response."""
     row, timing = where.places.row(item.value), slots.get(item.value.lower())

@@ -71,7 +71,7 @@ def large_models() -> None:
             path = Path(place) / "model.yaml"
             path.write_text(large_model(components, regions), encoding="utf-8")
             start = time.perf_counter()
-            checked = checking.check(path, patience=0.0)
+            checked = checking.check(path, effort=0)
             written = generation.write_program(checked)
             spent = time.perf_counter() - start
             start = time.perf_counter()

@@ -19,7 +19,14 @@ import can
 
 from ravenchart.hw_can.bench.bus_records import FD_LENGTHS
 from ravenchart.hw_can.bench.echo import Echo, Standing
-from ravenchart.hw_can.conformance.cases import SETTLING, Case, Failed, Skipped, exact, frame
+from ravenchart.hw_can.conformance.cases import (
+    SETTLING,
+    ConformanceCase,
+    Failed,
+    Skipped,
+    exact,
+    frame,
+)
 from ravenchart.hw_can.conformance.ends import Ends, Setup, opened
 
 INTERFACES = Path("/sys/class/net")
@@ -345,37 +352,41 @@ def _deaf(ends: Ends, driver: Driver) -> str:
     return "stopped; opened anew; then " + _answered(ends, [frame(0x20C)])
 
 
-def cases(driver: Driver) -> tuple[Case, ...]:
+def cases(driver: Driver) -> tuple[ConformanceCase, ...]:
     """All cases of its driver, for a program that has been started."""
     own = _of_socketcan if driver.name == "socketcan" else _of_ctucanfd
     return _of_all(driver) + own(driver)
 
 
-def _of_ctucanfd(driver: Driver) -> tuple[Case, ...]:
-    return (Case("card deaf and there again", lambda ends: _deaf(ends, driver)),)
+def _of_ctucanfd(driver: Driver) -> tuple[ConformanceCase, ...]:
+    return (ConformanceCase("card deaf and there again", lambda ends: _deaf(ends, driver)),)
 
 
-def _of_all(driver: Driver) -> tuple[Case, ...]:
+def _of_all(driver: Driver) -> tuple[ConformanceCase, ...]:
     return (
-        Case("an interface that is not there", lambda ends: _nowhere(driver)),
-        Case("standard data frames", lambda ends: _lengths(ends, extended=False)),
-        Case("extended data frames", lambda ends: _lengths(ends, extended=True)),
-        Case("remote frames that ask for nothing", _empty_remotes),
-        Case("standard remote frames", lambda ends: _remotes(ends, driver, extended=False)),
-        Case("extended remote frames", lambda ends: _remotes(ends, driver, extended=True)),
-        Case("identifiers at their limits", _identifiers),
-        Case("every byte value", _every_byte),
-        Case("burst", lambda ends: _burst(ends, driver)),
-        Case("acceptance filter", lambda ends: _filter(ends, driver)),
-        Case("FD frames", lambda ends: _fd(ends)),
+        ConformanceCase("an interface that is not there", lambda ends: _nowhere(driver)),
+        ConformanceCase("standard data frames", lambda ends: _lengths(ends, extended=False)),
+        ConformanceCase("extended data frames", lambda ends: _lengths(ends, extended=True)),
+        ConformanceCase("remote frames that ask for nothing", _empty_remotes),
+        ConformanceCase(
+            "standard remote frames", lambda ends: _remotes(ends, driver, extended=False)
+        ),
+        ConformanceCase(
+            "extended remote frames", lambda ends: _remotes(ends, driver, extended=True)
+        ),
+        ConformanceCase("identifiers at their limits", _identifiers),
+        ConformanceCase("every byte value", _every_byte),
+        ConformanceCase("burst", lambda ends: _burst(ends, driver)),
+        ConformanceCase("acceptance filter", lambda ends: _filter(ends, driver)),
+        ConformanceCase("FD frames", lambda ends: _fd(ends)),
     )
 
 
-def _of_socketcan(driver: Driver) -> tuple[Case, ...]:
+def _of_socketcan(driver: Driver) -> tuple[ConformanceCase, ...]:
     return (
-        Case("interface without room", lambda ends: _full(ends, driver)),
-        Case("error reports", lambda ends: _reports(ends, driver)),
-        Case("FD frames on a classic bus", lambda ends: _classic(ends, driver)),
-        Case("interface down and up", lambda ends: _down(ends, driver)),
-        Case("interface gone and there again", lambda ends: _gone(ends, driver)),
+        ConformanceCase("interface without room", lambda ends: _full(ends, driver)),
+        ConformanceCase("error reports", lambda ends: _reports(ends, driver)),
+        ConformanceCase("FD frames on a classic bus", lambda ends: _classic(ends, driver)),
+        ConformanceCase("interface down and up", lambda ends: _down(ends, driver)),
+        ConformanceCase("interface gone and there again", lambda ends: _gone(ends, driver)),
     )

@@ -27,7 +27,7 @@ from .workbench import Verdict
 
 UNITS = [
     path.relative_to(ROOT)
-    for folder in ("spark_runtime/src", "hw_can/hal")
+    for folder in ("spark_runtime/src", "hw_can/hal", "hw_can/drivers/serial")
     for path in sorted((ROOT / folder).glob("*.ad[bs]"))
 ]
 """What is broken."""
@@ -97,7 +97,7 @@ class Checkout:
     def _proved(self) -> Verdict:
         """All that `make prove ONLY=runtime-loopback` proves, with the verdicts of earlier runs."""
         objects = self.folder / "obj"
-        task = proving.Task(
+        task = proving.ProofTask(
             self.folder / "proofs" / "proofs.gpr",
             self._scenario,
             tuple(

@@ -17,7 +17,7 @@ from ravenchart.analysis.system.observed import Observation, TraceError, read_ma
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.region import Stuck
 from ravenchart.behaviour.interpreter.stimuli import Arrived, Raised, Stimuli
-from ravenchart.behaviour.interpreter.traces import Record
+from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.building import checking, generation, programs
 from ravenchart.commands import simulate
 from ravenchart.failures import ToolFailed
@@ -164,7 +164,7 @@ class Simulated(Observer):
     def _difference(self) -> str:
         return self._compared(lambda s: simulate.run_simulation(self.system, self.program, s))
 
-    def _compared(self, run: Callable[[Stimuli], Iterable[Record]]) -> str:
+    def _compared(self, run: Callable[[Stimuli], Iterable[StepRecord]]) -> str:
         for stimuli, expected in zip(self.stimuli, self.expected, strict=True):
             found = _records(run(stimuli))
             for one, other in zip(found, expected, strict=False):
@@ -175,7 +175,7 @@ class Simulated(Observer):
         return ""
 
 
-def _records(found: Iterable[Record]) -> list[str]:
+def _records(found: Iterable[StepRecord]) -> list[str]:
     return [one.text() for one in found]
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.rules import threads as thread_rules
-from ravenchart.behaviour.rules.clock import Clock
-from ravenchart.behaviour.rules.reach import Reach
+from ravenchart.behaviour.rules.budget import Budget
+from ravenchart.behaviour.rules.reach import Reachable
 from ravenchart.behaviour.rules.threads import Thread
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Shutdown, System
@@ -51,7 +51,7 @@ def test_every_configuration_and_transition_of_a_run_is_found(
     monkeypatch.setattr(thread_rules, "MOST_NODES", limits[0])
     monkeypatch.setattr(thread_rules, "MOST_CONFIGURATIONS", limits[1])
     system = _raised_outside(system_of(model_of([seed])))
-    reach = Reach(system.components[0], system, Clock(600))
+    reach = Reachable(system.components[0], system, Budget(300_000_000))
     threads = {t.name: t for t in reach.threads}
     found = {name: {n.configuration.active for n in t.nodes} for name, t in threads.items()}
     fired = {n: {f for e in t.edges for f in e.outcome.fired} for n, t in threads.items()}

@@ -17,10 +17,10 @@ from ravenchart.hw_can.bench.bus_records import (
     MARK,
     RECORD_BYTES,
     VERSION,
+    BusRecord,
     Flag,
     Greeting,
-    Kind,
-    Record,
+    RecordKind,
     Status,
     decode,
     encode,
@@ -48,7 +48,7 @@ class BusServer(Listener):
         """So many have said hello."""
         self.refuses: Status | None = None
         """With what the next frames are refused."""
-        self.harm: Callable[[Record], Record | None] = lambda record: record
+        self.harm: Callable[[BusRecord], BusRecord | None] = lambda record: record
         """What a frame becomes on its way; None for nothing."""
         self.clients: dict[int, tuple[socket.socket, bool]] = {}
         self._lock = threading.Lock()
@@ -61,7 +61,7 @@ class BusServer(Listener):
         """Bus time in ns."""
         return time.time_ns() - self._start
 
-    def inject(self, record: Record) -> None:
+    def inject(self, record: BusRecord) -> None:
         """Send ``record`` to every client, as of now."""
         with self._lock:
             self._to_all(replace(record, time=self.now))
@@ -80,7 +80,7 @@ class BusServer(Listener):
         node = 0
         with link, suppress(OSError):
             hello = _read(link)
-            if hello is None or hello.kind is not Kind.HELLO:
+            if hello is None or hello.kind is not RecordKind.HELLO:
                 return
             self.calls += 1
             if self.silent:
@@ -88,7 +88,7 @@ class BusServer(Listener):
                 link.recv(1)
                 return
             if hello.code != self._version and not self.first:
-                link.sendall(encode(Record(Kind.STATUS, code=Status.WRONG_VERSION)))
+                link.sendall(encode(BusRecord(RecordKind.STATUS, code=Status.WRONG_VERSION)))
                 return
             with self._lock:
                 self._joined = node = self._joined + 1
@@ -102,8 +102,8 @@ class BusServer(Listener):
 
     def _welcome(self, node: int) -> bytes:
         return encode(
-            Record(
-                Kind.WELCOME,
+            BusRecord(
+                RecordKind.WELCOME,
                 flags=self._flags,
                 length=len(NAME),
                 code=VERSION,
@@ -112,13 +112,13 @@ class BusServer(Listener):
                 number=node,
                 data=greeting_data(Greeting(NAME, start=self._start)),
             )
-        ) + encode(Record(Kind.STATE, time=self.now))
+        ) + encode(BusRecord(RecordKind.STATE, time=self.now))
 
-    def _answer(self, node: int, record: Record) -> None:
-        if record.kind is Kind.RECOVERY:
-            self._to_all(Record(Kind.STATE, time=self.now), only=node)
+    def _answer(self, node: int, record: BusRecord) -> None:
+        if record.kind is RecordKind.RECOVERY:
+            self._to_all(BusRecord(RecordKind.STATE, time=self.now), only=node)
         elif self.refuses is not None:
-            refusal = Record(Kind.STATUS, code=self.refuses, number=record.number)
+            refusal = BusRecord(RecordKind.STATUS, code=self.refuses, number=record.number)
             self._to_all(refusal, only=node)
         else:
             now = self.now
@@ -126,10 +126,10 @@ class BusServer(Listener):
             if arriving is not None:
                 self._to_all(arriving, but=node)
             if self.confirms:
-                confirmation = Record(Kind.CONFIRMATION, time=now, number=record.number)
+                confirmation = BusRecord(RecordKind.CONFIRMATION, time=now, number=record.number)
                 self._to_all(confirmation, only=node)
 
-    def _to_all(self, record: Record, *, but: int = 0, only: int = 0) -> None:
+    def _to_all(self, record: BusRecord, *, but: int = 0, only: int = 0) -> None:
         """To each client but one, or to one only; FD frames to those that take them."""
         octets = encode(record)
         for node, (link, fd) in self.clients.items():
@@ -138,7 +138,7 @@ class BusServer(Listener):
                     link.sendall(octets)
 
 
-def _read(link: socket.socket) -> Record | None:
+def _read(link: socket.socket) -> BusRecord | None:
     """The next record; None at the end."""
     octets = link.recv(RECORD_BYTES, socket.MSG_WAITALL)
     return decode(octets) if len(octets) == RECORD_BYTES else None

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ravenchart.building import checking, generation, programs
 from ravenchart.evidence import facts, folder, lists, records
-from ravenchart.evidence.folder import Made
+from ravenchart.evidence.folder import FolderTexts
 from ravenchart.gen.explanations import edited
 from ravenchart.paths import ROOT
 from ravenchart.proof import proving
@@ -97,7 +97,7 @@ def copy(home: Path, place: Path) -> Path:
     return place
 
 
-def made(home: Path, *, with_record: bool = True) -> Made:
+def made(home: Path, *, with_record: bool = True) -> FolderTexts:
     """The evidence of what is there."""
     given = [home / "proof.toml"] if with_record else []
     found = facts.gather(home / "model.yaml", None, given, home / "results.xml")
@@ -105,6 +105,6 @@ def made(home: Path, *, with_record: bool = True) -> Made:
     return folder.make(found, wanted)
 
 
-def verdicts(found: Made) -> dict[str, str]:
+def verdicts(found: FolderTexts) -> dict[str, str]:
     """The verdict of each claim."""
     return {claim.id: claim.verdict.value for claim in found.claims}

@@ -13,7 +13,7 @@ import can
 
 from ravenchart.building import checking
 from ravenchart.gen.model.system import System
-from ravenchart.hw_can.bench.peer import Value, Values
+from ravenchart.hw_can.bench.peer import FrameValues, Value
 from ravenchart.paths import ROOT
 from ravenchart.running.vocabulary import Vocabulary
 
@@ -48,10 +48,10 @@ class FarEnd:
         self,
         bus: can.BusABC,
         words: Vocabulary,
-        answer: Callable[[str, Values], list[Answer]] = lambda name, values: [],
+        answer: Callable[[str, FrameValues], list[Answer]] = lambda name, values: [],
     ) -> None:
         self.bus, self.words = bus, words
-        self.heard: list[tuple[str, Values]] = []
+        self.heard: list[tuple[str, FrameValues]] = []
         self._answer = answer
         self._ends = False
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -61,7 +61,7 @@ class FarEnd:
         """Send a message."""
         self.bus.send(self.words.codec.encode(name, values))
 
-    def hears(self, name: str, **wanted: Value) -> Values:
+    def hears(self, name: str, **wanted: Value) -> FrameValues:
         """The values of the last message of that name, once it has those that are ``wanted``."""
         end = time.monotonic() + LIMIT
         while time.monotonic() < end:
@@ -88,7 +88,7 @@ class FarEnd:
                         self.say(*one)
 
 
-def obedient(name: str, values: Values) -> list[Answer]:
+def obedient(name: str, values: FrameValues) -> list[Answer]:
     """A robot that is at once where a command wants it."""
     if name != "robot_command":
         return []

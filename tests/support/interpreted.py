@@ -11,7 +11,7 @@ import yaml
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.region import RegionRun
 from ravenchart.behaviour.interpreter.stimuli import Stimuli, read
-from ravenchart.behaviour.interpreter.traces import Record
+from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.gen.model.system import System
 from tests.support.pump import loaded
 
@@ -97,7 +97,7 @@ def events_text(*events: str, until: int) -> str:
     return yaml.safe_dump([*entries, {"until": f"{until} ms"}])
 
 
-def records(system: System, *events: str, until: int = 100) -> Iterator[Record]:
+def records(system: System, *events: str, until: int = 100) -> Iterator[StepRecord]:
     """The steps of a system under some events."""
     return Machine(system).run(stimuli_of(events_text(*events, until=until), system))
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ravenchart.analysis.exchange.mast_text import Attributes, Object, Value
+from ravenchart.analysis.exchange.mast_text import Attributes, MastObject, Value
 
 
-def by_kind(objects: tuple[Object, ...]) -> dict[str, list[Attributes]]:
+def by_kind(objects: tuple[MastObject, ...]) -> dict[str, list[Attributes]]:
     found: dict[str, list[Attributes]] = {}
     for one in objects:
         found.setdefault(one.kind, []).append(one.attributes)
@@ -44,7 +44,7 @@ KNOWN = {
 }
 
 
-def check_references(model: tuple[Object, ...]) -> None:
+def check_references(model: tuple[MastObject, ...]) -> None:
     """Every attribute is known, every name is there once, and whatever is named is there."""
     kinds = by_kind(model)
     names = {

@@ -57,8 +57,8 @@ SWITCHES = (
     "-c", "-gnatc", "-gnat2012", "-gnatwa", "-gnatwe", "-gnaty3abcdefhiIklM79nprSux",
     f"-gnatec={ROOT / 'spark_runtime' / 'ravenscar.adc'}",
 )  # fmt: skip
-PATIENCE = 1.0
-"""Seconds for the rules of behaviour, which decide nothing that the compiler sees."""
+EFFORT = 500_000
+"""Work of the rules of behaviour, which decide nothing that the compiler sees."""
 
 NUMBERS = (
     0, 1, -1, 2, 7, 8, 9, 15, 16, 31, 32, 63, 64, 65, 127, 255, 256, 1_024, 2_047, 4_096, 65_535,
@@ -196,7 +196,7 @@ def tried(seed: int) -> Outcome:
         model = Path(place) / "model.yaml"
         model.write_text(text, encoding="utf-8")
         try:
-            checked = checking.check(model, deadlines=False, patience=PATIENCE)
+            checked = checking.check(model, deadlines=False, effort=EFFORT)
             generation.without_clashes(checked)
             files = generate(checked.system, generation.claims(checked))
         except Refused as refused:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.bus import Bus, Errors, Frame
 from ravenchart.analysis.core.holistic import Network
-from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.tasks import TableRow, Task
 
 PERIODS = (100, 150, 200, 300, 400, 600, 1_000)
 
@@ -62,7 +62,7 @@ def _tasks(chance: random.Random, core: str, plain: bool) -> list[Task]:
 def _table(chance: random.Random, task: Task) -> Task:
     """The task with its cost in rows of different periods."""
     rows = tuple(
-        Row(f"r{n}", max(1, task.cost // 2), every, chance.randrange(every))
+        TableRow(f"r{n}", max(1, task.cost // 2), every, chance.randrange(every))
         for n, every in enumerate(chance.choices((1, 2, 3, 4), k=chance.randint(1, 3)))
     )
     own, sporadic = chance.randint(0, 2), chance.random() < 0.3

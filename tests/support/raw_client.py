@@ -9,10 +9,10 @@ from ravenchart.hw_can.bench.bus_records import (
     MARK,
     RECORD_BYTES,
     VERSION,
+    BusRecord,
     Flag,
     Greeting,
-    Kind,
-    Record,
+    RecordKind,
     decode,
     encode,
     greeting_data,
@@ -47,8 +47,8 @@ class RawClient:
         """Say hello, and hear welcome and state."""
         self.send(
             encode(
-                Record(
-                    Kind.HELLO,
+                BusRecord(
+                    RecordKind.HELLO,
                     flags=int(Flag.FD),
                     length=3,
                     code=VERSION,
@@ -57,9 +57,9 @@ class RawClient:
                 )
             )
         )
-        assert [self._read().kind, self._read().kind] == [Kind.WELCOME, Kind.STATE]
+        assert [self._read().kind, self._read().kind] == [RecordKind.WELCOME, RecordKind.STATE]
 
-    def last(self) -> Record:
+    def last(self) -> BusRecord:
         """The last record before the server closes."""
         record = self._read()
         while (octets := self._link.recv(RECORD_BYTES, socket.MSG_WAITALL)) != b"":
@@ -73,5 +73,5 @@ class RawClient:
             count += len(octets)
         return count // RECORD_BYTES
 
-    def _read(self) -> Record:
+    def _read(self) -> BusRecord:
         return decode(self._link.recv(RECORD_BYTES, socket.MSG_WAITALL))

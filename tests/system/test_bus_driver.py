@@ -10,7 +10,7 @@ import can
 import pytest
 
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
-from ravenchart.hw_can.bench.bus_records import Flag, Kind, Record, Status, encode
+from ravenchart.hw_can.bench.bus_records import BusRecord, Flag, RecordKind, Status, encode
 from ravenchart.running.server import running
 from tests.support.ada_programs import built
 from tests.support.bus_server import BusServer
@@ -265,9 +265,9 @@ def test_a_full_queue_rejects(echo: Path) -> None:
 GARBAGE = {
     "nothing known": bytes([255]) * 88,
     "zeroes": bytes(88),
-    "no welcome": encode(Record(Kind.STATE)),
-    "refused": encode(Record(Kind.STATUS, code=Status.NO_ROOM)),
-    "half a record, and then another": bytes(44) + encode(Record(Kind.STATE)) + bytes(44),
+    "no welcome": encode(BusRecord(RecordKind.STATE)),
+    "refused": encode(BusRecord(RecordKind.STATUS, code=Status.NO_ROOM)),
+    "half a record, and then another": bytes(44) + encode(BusRecord(RecordKind.STATE)) + bytes(44),
 }
 
 
@@ -287,7 +287,9 @@ def test_a_server_that_says_garbage_is_left_and_tried_again(echo: Path, first: b
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", [b"", encode(Record(Kind.STATE))[:44]], ids=["no", "half"])
+@pytest.mark.parametrize(
+    "first", [b"", encode(BusRecord(RecordKind.STATE))[:44]], ids=["no", "half"]
+)
 def test_a_server_that_says_no_record_is_left_and_tried_again(echo: Path, first: bytes) -> None:
     server = BusServer(first=first)
     server.silent = True
@@ -313,13 +315,13 @@ def test_a_server_of_another_version_is_left_and_tried_again(echo: Path) -> None
 @pytest.mark.parametrize(
     "bad",
     [
-        Record(Kind.CONFIRMATION, number=99),
-        Record(Kind.STATUS, code=Status.BUS_OFF, number=99),
-        Record(Kind.RECOVERY),
-        Record(Kind.FRAME, number=7),
+        BusRecord(RecordKind.CONFIRMATION, number=99),
+        BusRecord(RecordKind.STATUS, code=Status.BUS_OFF, number=99),
+        BusRecord(RecordKind.RECOVERY),
+        BusRecord(RecordKind.FRAME, number=7),
     ],
 )
-def test_what_a_server_must_not_say_ends_the_connection(echo: Path, bad: Record) -> None:
+def test_what_a_server_must_not_say_ends_the_connection(echo: Path, bad: BusRecord) -> None:
     server = BusServer()
     with node(echo, 0, server.channel) as a:
         a.wait_for("ERROR_ACTIVE")
@@ -334,9 +336,9 @@ def test_what_a_classic_node_knows_nothing_of_is_passed_over(echo: Path) -> None
     server = BusServer()
     with node(echo, 0, server.channel, CAN_ECHO_CLASSIC="1") as a:
         a.wait_for("ERROR_ACTIVE")
-        server.inject_bytes(encode(Record(Kind.FRAME, flags=int(Flag.FD), length=12)))
-        server.inject_bytes(encode(Record(Kind.ERROR_FRAME, identifier=8, flags=1)))
-        server.inject(Record(Kind.FRAME, identifier=1))
+        server.inject_bytes(encode(BusRecord(RecordKind.FRAME, flags=int(Flag.FD), length=12)))
+        server.inject_bytes(encode(BusRecord(RecordKind.ERROR_FRAME, identifier=8, flags=1)))
+        server.inject(BusRecord(RecordKind.FRAME, identifier=1))
         now = a.wait(lambda now: now.received == 1)
         assert (now.state, now.rejected) == ("ERROR_ACTIVE", 0)
     server.close()

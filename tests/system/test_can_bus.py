@@ -16,7 +16,14 @@ import pytest
 
 from ravenchart.command_line import main
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
-from ravenchart.hw_can.bench.bus_records import MARK, RECORD_BYTES, Kind, Record, Status, encode
+from ravenchart.hw_can.bench.bus_records import (
+    MARK,
+    RECORD_BYTES,
+    BusRecord,
+    RecordKind,
+    Status,
+    encode,
+)
 from tests.support.can_bus import Start, started, starter
 from tests.support.can_frames import WAIT, taken
 from tests.support.raw_client import RawClient
@@ -236,12 +243,12 @@ def test_three_processes_share_one_bus(start: Start) -> None:
 
 def test_a_malformed_record_ends_the_connection_and_disturbs_nobody(start: Start) -> None:
     channel = start()
-    good = encode(Record(Kind.FRAME, identifier=1, number=1))
+    good = encode(BusRecord(RecordKind.FRAME, identifier=1, number=1))
     for wrong in (bytes(RECORD_BYTES), b"GET / HTTP/1.1\r\n".ljust(RECORD_BYTES), good[:-1] + b"x"):
         with RawClient(channel) as raw:
             raw.greet()
             raw.send(wrong)
-            assert raw.last() == Record(Kind.STATUS, code=Status.MALFORMED_RECORD)
+            assert raw.last() == BusRecord(RecordKind.STATUS, code=Status.MALFORMED_RECORD)
     with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
         a.send(can.Message(arbitration_id=1), timeout=WAIT)
         assert b.recv(WAIT) is not None
@@ -251,8 +258,8 @@ def test_who_may_not_join_is_told_why(start: Start) -> None:
     channel = start("data_bitrate=0")
     with RawClient(channel) as raw:
         name = b"x".ljust(64, b"\0")
-        raw.send(encode(Record(Kind.HELLO, length=1, code=2, identifier=MARK, data=name)))
-        assert raw.last() == Record(Kind.STATUS, code=Status.WRONG_VERSION)
+        raw.send(encode(BusRecord(RecordKind.HELLO, length=1, code=2, identifier=MARK, data=name)))
+        assert raw.last() == BusRecord(RecordKind.STATUS, code=Status.WRONG_VERSION)
     with pytest.raises(can.CanInitializationError, match="the bus carries no FD frames"):
         RavenchartBus(channel, fd=True)
     with pytest.raises(can.CanInitializationError, match="wrong bit rate"):
@@ -276,7 +283,7 @@ def test_who_says_no_hello_is_told_so_and_holds_up_nobody(start: Start) -> None:
             assert b.recv(1) is not None
         assert time.monotonic() - began < 1
         for one in silent:
-            assert one.last() == Record(Kind.STATUS, code=Status.NO_HELLO_IN_TIME)
+            assert one.last() == BusRecord(RecordKind.STATUS, code=Status.NO_HELLO_IN_TIME)
         assert 1.5 < time.monotonic() - began < 4
         nodes = [stack.enter_context(RavenchartBus(channel)) for _ in range(15)]
         nodes[0].send(can.Message(arbitration_id=2), timeout=1)

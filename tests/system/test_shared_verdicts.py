@@ -40,7 +40,7 @@ def _proof(folder: Path, spec: str, shared: str | None = None) -> Results:
     (folder / "means.gpr").write_text(PROJECT)
     (folder / "means.ads").write_text(spec)
     results = folder / "obj" / "gnatprove"
-    task = proving.Task(folder / "means.gpr", {}, (results,), (folder,))
+    task = proving.ProofTask(folder / "means.gpr", {}, (results,), (folder,))
     where = None if shared is None else Memcached(shared)
     return proving.prove(task, memcached=where).results
 
@@ -58,7 +58,9 @@ def test_a_second_machine_starts_no_prover_and_finds_the_same(
         first = _proof(tmp_path / "here", SPEC, shared)
         monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "second"))
         answered: list[bytes] = []  # by a prover of the second machine
-        monkeypatch.setattr(verdicts.Server, "set", lambda *words: answered.append(words[-1]))
+        monkeypatch.setattr(
+            verdicts.VerdictServer, "set", lambda *words: answered.append(words[-1])
+        )
         second = _proof(tmp_path / "there", SPEC, shared)
     assert first == second
     assert first.checks > 0

@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 from ravenchart.behaviour.interpreter.machine import Machine
-from ravenchart.behaviour.interpreter.traces import Record
+from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.command_line import main
 from ravenchart.commands.simulate import build_simulation, run_simulation
 from ravenchart.gen.model.system import System
@@ -146,7 +146,7 @@ def test_the_arm_of_the_surgical_robot_moves_in_virtual_time(
     assert "there" in taken and "too_late" not in taken
 
 
-def _by_chart(records: Sequence[Record], seeds: Sequence[int]) -> dict[int, list[str]]:
+def _by_chart(records: Sequence[StepRecord], seeds: Sequence[int]) -> dict[int, list[str]]:
     own = {random_charts.instance_name(seed): seed for seed in seeds}
     found: dict[int, list[str]] = {seed: [] for seed in seeds}
     for record in records:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import pytest
 
 from ravenchart.behaviour.interpreter.stimuli import Arrived, Stimuli
-from ravenchart.behaviour.interpreter.traces import Record
+from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.building import checking
 from ravenchart.commands.simulate import build_simulation, run_simulation
 from ravenchart.gen.language.terms import Ns, Value
@@ -133,7 +133,7 @@ def entries(start: int, fault: Fault) -> list[Arrived]:
     return sorted(found, key=lambda entry: entry.at)
 
 
-def entered(records: list[Record], element: str, state: str) -> list[int]:
+def entered(records: list[StepRecord], element: str, state: str) -> list[int]:
     """When a region entered a state, in ms."""
     return [
         record.at // MS
@@ -142,7 +142,7 @@ def entered(records: list[Record], element: str, state: str) -> list[int]:
     ]
 
 
-def problem(records: list[Record], start: int, fault: Fault) -> str:
+def problem(records: list[StepRecord], start: int, fault: Fault) -> str:
     """What is wrong with an episode; "" where the right joints are safe in time, and once."""
     faults = {joint: entered(records, f"{joint}.Motion", "Fault") for joint in JOINTS}
     stops = entered(records, "coordinator.Mission", "Stopped")
@@ -164,7 +164,7 @@ def problem(records: list[Record], start: int, fault: Fault) -> str:
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Stimuli], list[Record]]:
+def run(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Stimuli], list[StepRecord]]:
     """The robot's program in virtual time."""
     checked = checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
     home = tmp_path_factory.mktemp("soak")
@@ -181,14 +181,14 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Stimuli], list[Re
     within="80 ms from silence, 40 ms from a report, 60 ms more for the mission, in virtual time",
 )
 def test_every_fault_of_a_soak_leads_to_the_safe_state(
-    run: Callable[[Stimuli], list[Record]],
+    run: Callable[[Stimuli], list[StepRecord]],
 ) -> None:
     chance = random.Random(SEED)
     starts = range(0, EPISODES * EPISODE, EPISODE)
     faults = {start: chosen(start, chance) for start in starts}
     assert len({fault.kind for fault in faults.values()}) == 7
     arriving = tuple(entry for start in starts for entry in entries(start, faults[start]))
-    episodes: dict[int, list[Record]] = {start: [] for start in starts}
+    episodes: dict[int, list[StepRecord]] = {start: [] for start in starts}
     for record in run(Stimuli(arriving, Ns(EPISODES * EPISODE * MS - 1))):
         episodes[record.at // (EPISODE * MS) * EPISODE].append(record)
     for start, fault in faults.items():
@@ -199,10 +199,10 @@ def test_every_fault_of_a_soak_leads_to_the_safe_state(
 def test_a_soak_sees_what_is_wrong() -> None:
     """The judge itself: a late, a missing and a needless safe state, and a second one."""
     silent = Fault("silent", 1_000, ("joint_x",), STALE)
-    homing = [Record(Ns(250 * MS), joint, "Motion", ("Homing.entry",)) for joint in JOINTS]
+    homing = [StepRecord(Ns(250 * MS), joint, "Motion", ("Homing.entry",)) for joint in JOINTS]
 
-    def record(at: int, instance: str, region: str, state: str) -> Record:
-        return Record(Ns(at * MS), instance, region, (f"{state}.entry",))
+    def record(at: int, instance: str, region: str, state: str) -> StepRecord:
+        return StepRecord(Ns(at * MS), instance, region, (f"{state}.entry",))
 
     safe = record(1_070, "joint_x", "Motion", "Fault")
     stop = record(1_100, "coordinator", "Mission", "Stopped")

@@ -250,7 +250,7 @@ def test_a_build_with_nothing_to_do_looks_at_nothing_again(
     program = _program(_devices(tmp_path))
     image = program.build()
 
-    def examined(made: stacks.Made) -> Memory:
+    def examined(made: stacks.BuiltProgram) -> Memory:
         raise AssertionError(made)
 
     monkeypatch.setattr(stacks, "examine", examined)

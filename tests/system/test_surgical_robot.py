@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import checking, generation, programs
+from ravenchart.building import checking, generation, programs, written
 from ravenchart.command_line import main
 from ravenchart.gen.emit.program import generate
 from ravenchart.paths import ROOT
@@ -193,4 +193,4 @@ def test_generated_files_are_those_in_the_repository() -> None:
     home = HERE / "generated"
     files = (p for p in home.rglob("*") if p.is_file())
     there = {p.relative_to(home).as_posix(): p.read_text() for p in files}
-    assert made == {name: text for name, text in there.items() if name != generation.MANIFEST}
+    assert made == {name: text for name, text in there.items() if name != written.MANIFEST}

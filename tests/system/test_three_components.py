@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from ravenchart.analysis.system.observed import Observation, Record, read_map, read_trace
+from ravenchart.analysis.system.observed import Observation, TraceRecord, read_map, read_trace
 from ravenchart.building import checking, generation, programs
 from ravenchart.gen.model.system import System
 
@@ -25,7 +25,7 @@ def _observed(checked: checking.Checked, executable: Path, folder: Path) -> Obse
     return read_trace(trace.read_text().splitlines(), names)
 
 
-def _first(records: list[Record], kind: str, element: str, start: int) -> int:
+def _first(records: list[TraceRecord], kind: str, element: str, start: int) -> int:
     """Index of the first such record from ``start`` on."""
     for index in range(start, len(records)):
         found = records[index]

@@ -14,7 +14,7 @@ from ravenchart.analysis.system.network import frame_length
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.gen.derive.ways import routed
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import Chain, System
+from ravenchart.gen.model.system import Carried, Chain, System
 from tests.support.plant_model import plant
 from tests.support.systems import HERE, bus, message, system
 
@@ -43,7 +43,7 @@ def test_the_graph_holds_every_kind_of_edge_in_its_direction() -> None:
     graph = dependencies(plant())
     edges = {(a, b): graph.edges[a, b]["kind"] for a, b in graph.edges}
     expected = {
-        ("message raw_level", "sensor.raw"): "carries",
+        (Carried("raw_level"), "sensor.raw"): "carries",
         ("sensor.raw", "sensor.ports"): "handles",
         ("sensor.raw", "sensor.filter"): "reads",
         ("sensor.filter", "sensor.filtered"): "writes",
@@ -51,7 +51,7 @@ def test_the_graph_holds_every_kind_of_edge_in_its_direction() -> None:
         ("sensor.publish", "sensor.level"): "sends",
         ("sensor.level", "pump.level"): "carries",
         ("pump.Mode", "pump.drive"): "reads",
-        ("pump.valve", "message valve_position"): "carries",
+        ("pump.valve", Carried("valve_position")): "carries",
         ("processor control", "pump.drive"): "runs",
         ("processor reception", "field.receive"): "runs",
         ("instance pump", "component Pump"): "is",
@@ -67,7 +67,7 @@ def test_parameters_are_no_nodes() -> None:
 def test_a_chain_leads_from_the_message_received_to_the_message_sent() -> None:
     assert Ways.of(plant()).between_messages() == (
         (
-            "message raw_level",
+            Carried("raw_level"),
             "sensor.raw",
             "sensor.filter",
             "sensor.filtered",
@@ -76,7 +76,7 @@ def test_a_chain_leads_from_the_message_received_to_the_message_sent() -> None:
             "pump.level",
             "pump.drive",
             "pump.valve",
-            "message valve_position",
+            Carried("valve_position"),
         ),
     )
 
@@ -85,7 +85,7 @@ def test_a_way_goes_through_the_places_named_or_says_where_it_is_broken() -> Non
     chains = (("raw_level", "pump.drive"), ("pump.drive", "raw_level"))
     one = replace(plant(), chains=tuple(Chain("c", HERE, path, Ns(1), None) for path in chains))
     whole, broken = routed(one).chains
-    assert (whole.way[0], whole.way[-1], whole.gap) == ("message raw_level", "pump.drive", None)
+    assert (whole.way[0], whole.way[-1], whole.gap) == (Carried("raw_level"), "pump.drive", None)
     assert (broken.way, broken.gap) == ((), ("pump.drive", "raw_level"))
 
 

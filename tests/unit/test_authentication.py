@@ -17,7 +17,7 @@ from ravenchart.gen.emit.program import first_versions, generate
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import load
-from ravenchart.hw_can.bench.peer import BenchError, Codec, Values
+from ravenchart.hw_can.bench.peer import BenchError, Codec, FrameValues
 from ravenchart.paths import ROOT
 from tests.support.secoc import VALVE, cmac
 
@@ -191,7 +191,7 @@ def test_the_bench_says_that_it_has_no_key(system: System, tmp_path: Path) -> No
     path = tmp_path / "line.dbc"
     path.write_text(emit_dbc(system, system.buses[0]))
     codec = Codec.from_file(path)
-    values: Values = {"level": 5, "mode": "Stop", "ready": "True"}
+    values: FrameValues = {"level": 5, "mode": "Stop", "ready": "True"}
     with pytest.raises(BenchError, match="no key for its MAC; give SecOC_Freshness and SecOC_MAC "):
         codec.encode("first_in", values)
     trailer = {"SecOC_Freshness": 0x12, "SecOC_MAC": 0x345678}

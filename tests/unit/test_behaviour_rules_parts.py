@@ -6,8 +6,8 @@ import pytest
 
 from ravenchart.behaviour.rules import findings
 from ravenchart.behaviour.rules import threads as thread_rules
-from ravenchart.behaviour.rules.clock import Clock
-from ravenchart.behaviour.rules.reach import Reach
+from ravenchart.behaviour.rules.budget import Budget
+from ravenchart.behaviour.rules.reach import Reachable
 from ravenchart.behaviour.rules.threads import Thread
 from ravenchart.gen.model.system import System
 from tests.bench.large_charts import orthogonal_chart
@@ -21,7 +21,7 @@ def test_120_leaves_in_four_regions_are_checked_to_the_end() -> None:
 
 
 def _thread(system: System) -> Thread:
-    return Reach(system.components[0], system, Clock(300.0)).threads[0]
+    return Reachable(system.components[0], system, Budget(150_000_000)).threads[0]
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ import can
 import pytest
 
 from ravenchart.hw_can.bench.drives import PERIOD, Bench
-from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer, Values
+from ravenchart.hw_can.bench.peer import BenchError, Codec, FrameValues, Peer
 from ravenchart.hw_can.bench.scenario import parse_scenario
 from tests.support.bench_files import scenario_text
 from tests.support.robot_files import dbc
@@ -67,8 +67,8 @@ def server() -> Iterator[Server]:
     one.close()
 
 
-def collect(peer: Peer, seconds: float) -> list[tuple[str, Values]]:
-    got: list[tuple[str, Values]] = []
+def collect(peer: Peer, seconds: float) -> list[tuple[str, FrameValues]]:
+    got: list[tuple[str, FrameValues]] = []
     peer.receive_until(time.monotonic() + seconds, lambda name, values: got.append((name, values)))
     return got
 

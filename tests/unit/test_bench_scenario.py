@@ -12,7 +12,7 @@ from ravenchart.hw_can.bench.scenario import (
     Hold,
     LetGo,
     ScenarioError,
-    Send,
+    SendStep,
     WaitFor,
     load_scenario,
     parse_scenario,
@@ -67,7 +67,7 @@ def test_every_step_reads_as_a_sentence(tmp_path: Path) -> None:
         "replay field.log",
     ]
     assert {type(step) for step in scenario.steps} == set(STEPS.values())
-    assert isinstance(scenario.steps[0], Send)
+    assert isinstance(scenario.steps[0], SendStep)
     assert isinstance(scenario.steps[1], WaitFor)
     first = scenario.lines[0]
     assert scenario.lines == tuple(range(first, first + len(steps.splitlines())))

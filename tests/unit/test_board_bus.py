@@ -13,7 +13,7 @@ import pytest
 from ravenchart.hw_can.bench.peer import BenchError, Codec
 from ravenchart.paths import ROOT
 from ravenchart.running import board_bus
-from ravenchart.running.board_bus import BoardPeer, Link, frame_of, line_of
+from ravenchart.running.board_bus import BoardLink, BoardPeer, frame_of, line_of
 
 DBC = ROOT / "examples" / "cartesian_robot" / "generated" / "robot_bus.dbc"
 SET_POINT = b"t11030080FF\r"
@@ -53,7 +53,7 @@ def started(tmp_path: Path) -> Iterator[Callable[[list[bytes]], tuple[Board, Boa
         def start(said: list[bytes]) -> tuple[Board, BoardPeer]:
             board = Board(tmp_path, said)
             board.thread.start()
-            return board, BoardPeer([Link(ends, lambda: board.alive)], Codec.from_file(DBC))
+            return board, BoardPeer([BoardLink(ends, lambda: board.alive)], Codec.from_file(DBC))
 
         yield start
     assert not (tmp_path / board_bus.TO_BOARD).exists()
@@ -140,7 +140,7 @@ def test_the_end_of_the_board_ends_the_bench(started: Start) -> None:
 def test_an_emulator_that_does_not_start_is_noticed(tmp_path: Path) -> None:
     ended = pytest.raises(BenchError, match="the emulator has ended")
     with board_bus.pipes(tmp_path) as ends, ended:
-        BoardPeer([Link(ends, lambda: False)], Codec.from_file(DBC))
+        BoardPeer([BoardLink(ends, lambda: False)], Codec.from_file(DBC))
 
 
 def test_a_flexible_frame_is_refused() -> None:
@@ -171,7 +171,7 @@ def test_boards_hear_each_other_a_look_later_each_in_order_and_urgent_frames_fir
             home.mkdir()
             ends = stack.enter_context(board_bus.pipes(home))
             boards.append(Board(home, texts))
-            links.append(Link(ends, lambda: True))
+            links.append(BoardLink(ends, lambda: True))
             boards[-1].thread.start()
         peer = BoardPeer(links, Codec.from_file(DBC), lambda f: heard.append(f"{f}"[33:43].strip()))
         peer.receive_until(0.003, lambda name, values: None)

@@ -13,7 +13,7 @@ import can
 import pytest
 
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
-from ravenchart.hw_can.bench.bus_records import Flag, Kind, Record, Status, encode
+from ravenchart.hw_can.bench.bus_records import BusRecord, Flag, RecordKind, Status, encode
 from tests.support.bus_server import BusServer
 from tests.support.can_frames import WAIT, taken
 
@@ -34,7 +34,9 @@ def test_filters_are_for_frames_and_not_for_errors(
     for identifier, extended in ((0x0FF, False), (0x123, False), (0x100, True), (0x200, False)):
         a.send(can.Message(arbitration_id=identifier, is_extended_id=extended), timeout=WAIT)
     server.inject(
-        Record(Kind.ERROR_FRAME, Flag.EXTENDED, 8, identifier=8, data=b"\1".ljust(64, b"\0"))
+        BusRecord(
+            RecordKind.ERROR_FRAME, Flag.EXTENDED, 8, identifier=8, data=b"\1".ljust(64, b"\0")
+        )
     )
     got = taken(b, 2)
     assert [(m.arbitration_id, m.is_error_frame) for m in got] == [(0x123, False), (8, True)]
@@ -50,10 +52,10 @@ def test_the_bus_state_follows_the_node(
         return within(lambda: bus.state is state)
 
     assert becomes(can.BusState.ACTIVE)
-    server.inject(Record(Kind.STATE, code=1, transmit_errors=130, receive_errors=3))
+    server.inject(BusRecord(RecordKind.STATE, code=1, transmit_errors=130, receive_errors=3))
     assert becomes(can.BusState.PASSIVE)
     assert bus.error_counters == (130, 3)
-    server.inject(Record(Kind.STATE, code=2, transmit_errors=256))
+    server.inject(BusRecord(RecordKind.STATE, code=2, transmit_errors=256))
     assert becomes(can.BusState.ERROR)
     bus.state = can.BusState.ACTIVE
     assert becomes(can.BusState.ACTIVE)
@@ -189,9 +191,12 @@ def test_the_notifier_hands_on_that_the_server_is_gone(
     [
         (bytes(88), "bus protocol: there is no kind 0"),
         (b"HTTP/1.1 400 Bad Request\r\n" * 5, "bus protocol: there is no kind 72"),
-        (encode(Record(Kind.RECOVERY)), "bus protocol: a recovery came"),
-        (encode(Record(Kind.CONFIRMATION, number=7)), "bus protocol: no request 7 is open"),
-        (encode(Record(Kind.STATUS, code=Status.CLOSING)), "the bus server ends: closing"),
+        (encode(BusRecord(RecordKind.RECOVERY)), "bus protocol: a recovery came"),
+        (
+            encode(BusRecord(RecordKind.CONFIRMATION, number=7)),
+            "bus protocol: no request 7 is open",
+        ),
+        (encode(BusRecord(RecordKind.STATUS, code=Status.CLOSING)), "the bus server ends: closing"),
     ],
 )
 def test_garbage_ends_the_connection_in_words(
@@ -208,7 +213,7 @@ def test_garbage_ends_the_connection_in_words(
     [
         ({"version": 2}, "refused: wrong version"),
         ({"first": b"SSH-2.0-OpenSSH\r\n".ljust(88)}, "there is no kind 83"),
-        ({"first": encode(Record(Kind.STATE))}, "STATE is no welcome"),
+        ({"first": encode(BusRecord(RecordKind.STATE))}, "STATE is no welcome"),
         ({"fd": False}, "the bus carries no FD frames"),
     ],
 )

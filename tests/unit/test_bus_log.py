@@ -16,9 +16,9 @@ from ravenchart.failures import Unusable
 from ravenchart.hw_can.bench.bus_records import (
     MARK,
     VERSION,
+    BusRecord,
     Greeting,
-    Kind,
-    Record,
+    RecordKind,
     encode,
     greeting_data,
 )
@@ -115,8 +115,8 @@ def test_a_bus_does_not_wait_for_a_log_that_is_full(
     """More records than a pipe holds: the server would be blocked."""
     full = Full()
     monkeypatch.setattr(can, "Logger", lambda _path: full)
-    hello = Record(
-        Kind.WELCOME,
+    hello = BusRecord(
+        RecordKind.WELCOME,
         length=4,
         code=VERSION,
         identifier=MARK,
@@ -126,7 +126,7 @@ def test_a_bus_does_not_wait_for_a_log_that_is_full(
     with bus_log.written(Path("bus.blf")) as descriptor:
         os.write(descriptor, encode(hello))
         for number in range(2_000):
-            os.write(descriptor, encode(Record(Kind.FRAME, time=number)))
+            os.write(descriptor, encode(BusRecord(RecordKind.FRAME, time=number)))
     assert full.frames == 3
     said = capsys.readouterr().err
     assert said == "ravenchart: error: the log ends: No space left on device\n"

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from ravenchart.hw_can.bench.bus_records import (
     MARK,
     RECORD_BYTES,
+    BusRecord,
     Flag,
     Greeting,
-    Kind,
-    Record,
-    State,
+    MemberState,
+    RecordKind,
     Status,
     confirmed_in,
     decode,
@@ -39,14 +39,14 @@ def valid() -> list[bytes]:
     """One record of each kind."""
     greeting = greeting_data(Greeting("bench", 500_000, 2_000_000))
     return [
-        encode(Record(Kind.HELLO, Flag.FD, 5, 1, MARK, data=greeting)),
-        encode(Record(Kind.WELCOME, Flag.FD, 5, 1, MARK, 7, 2, data=greeting)),
+        encode(BusRecord(RecordKind.HELLO, Flag.FD, 5, 1, MARK, data=greeting)),
+        encode(BusRecord(RecordKind.WELCOME, Flag.FD, 5, 1, MARK, 7, 2, data=greeting)),
         encode(record_of(can.Message(arbitration_id=0x123, data=b"abc"), 1)),
-        encode(Record(Kind.ERROR_FRAME, Flag.EXTENDED, 8, identifier=0x88, time=5)),
-        encode(Record(Kind.STATE, code=1, transmit_errors=128)),
-        encode(Record(Kind.CONFIRMATION, time=9, number=3)),
-        encode(Record(Kind.STATUS, code=Status.NO_ROOM, number=3)),
-        encode(Record(Kind.RECOVERY)),
+        encode(BusRecord(RecordKind.ERROR_FRAME, Flag.EXTENDED, 8, identifier=0x88, time=5)),
+        encode(BusRecord(RecordKind.STATE, code=1, transmit_errors=128)),
+        encode(BusRecord(RecordKind.CONFIRMATION, time=9, number=3)),
+        encode(BusRecord(RecordKind.STATUS, code=Status.NO_ROOM, number=3)),
+        encode(BusRecord(RecordKind.RECOVERY)),
     ]
 
 
@@ -62,13 +62,24 @@ def accepted(octets: bytes) -> bool:
 
 def test_the_layout_is_that_of_the_page() -> None:
     octets = encode(
-        Record(Kind.FRAME, 1, 2, 0, 0x1234_5678, 0x0102, 0x0A0B, data=b"\x55\xaa".ljust(64, b"\0"))
+        BusRecord(
+            RecordKind.FRAME,
+            1,
+            2,
+            0,
+            0x1234_5678,
+            0x0102,
+            0x0A0B,
+            data=b"\x55\xaa".ljust(64, b"\0"),
+        )
     )
     assert octets[:26] == bytes.fromhex(
         "03 01 02 00 78563412 0201000000000000 0b0a0000 0000 0000 55aa"
     )
     assert len(octets) == RECORD_BYTES == 88
-    assert encode(Record(Kind.STATE, 0, 0, 2, 0, 0, 0, 256, 0))[20:24] == b"\x00\x01\x00\x00"
+    assert (
+        encode(BusRecord(RecordKind.STATE, 0, 0, 2, 0, 0, 0, 256, 0))[20:24] == b"\x00\x01\x00\x00"
+    )
 
 
 def test_a_thousand_frames_come_back_as_they_were() -> None:
@@ -83,8 +94,8 @@ def test_any_bytes_are_a_record_or_refused(octets: bytes) -> None:
     accepted(octets)
 
 
-def quick(octets: bytes) -> Record | can.Message | int | None:
-    """What the ways without a `Record` make of it."""
+def quick(octets: bytes) -> BusRecord | can.Message | int | None:
+    """What the ways without a `BusRecord` make of it."""
     (fields,) = split(octets)
     return frame_in(fields, 0, "x") or confirmed_in(fields) or None
 
@@ -99,7 +110,7 @@ def test_the_quick_ways_accept_what_is_sound_and_nothing_else(
     octets = bytearray(
         encode(record_of(mixed_frames(1, seed=seed)[0], 7))
         if kind
-        else encode(Record(Kind.CONFIRMATION, time=9, number=3))
+        else encode(BusRecord(RecordKind.CONFIRMATION, time=9, number=3))
     )
     for place, value in zip(at, to, strict=False):
         octets[place % RECORD_BYTES] = value
@@ -109,10 +120,10 @@ def test_the_quick_ways_accept_what_is_sound_and_nothing_else(
     except can.CanOperationError:
         assert found is None
         return
-    if record.kind is Kind.FRAME:
+    if record.kind is RecordKind.FRAME:
         assert isinstance(found, can.Message)
         assert found.equals(message_of(record, 0), check_channel=False, timestamp_delta=0)
-    elif record.kind is Kind.CONFIRMATION:
+    elif record.kind is RecordKind.CONFIRMATION:
         assert found == record.number
     else:
         assert found is None
@@ -143,24 +154,27 @@ def test_every_kind_flag_length_and_code() -> None:
 @pytest.mark.parametrize(
     ("record", "words"),
     [
-        (Record(Kind.FRAME, identifier=0x800), "standard identifier 0x800"),
-        (Record(Kind.FRAME, Flag.FD | Flag.REMOTE), "a remote frame in the FD format"),
-        (Record(Kind.FRAME, Flag.FD, 9), "length 9 in the FD format"),
-        (Record(Kind.FRAME, 0, 9), "length 9 in the classic format"),
-        (Record(Kind.FRAME, Flag.BRS), "BRS or ESI in the classic format"),
-        (Record(Kind.FRAME, data=b"\1".ljust(64, b"\0")), "data beyond the length"),
-        (Record(Kind.FRAME, code=1), "code 1 in frame"),
-        (Record(Kind.FRAME, time=2**63), f"time {2**63} in frame"),
-        (Record(Kind.ERROR_FRAME, Flag.FD), "flags 4 in error frame"),
-        (Record(Kind.STATE, code=0, transmit_errors=128), "state 0 with counters 128, 0"),
-        (Record(Kind.STATUS, code=0), "code 0 in status"),
-        (Record(Kind.CONFIRMATION), "number 0 in confirmation"),
-        (Record(Kind.RECOVERY, data=b"\1" * 64), "data in recovery"),
-        (Record(Kind.HELLO, 0, 1, 1, MARK), "a name has a character that is not from ! to ~"),
-        (Record(Kind.HELLO, 0, 1, 1, 5), "identifier 5 in hello"),
+        (BusRecord(RecordKind.FRAME, identifier=0x800), "standard identifier 0x800"),
+        (BusRecord(RecordKind.FRAME, Flag.FD | Flag.REMOTE), "a remote frame in the FD format"),
+        (BusRecord(RecordKind.FRAME, Flag.FD, 9), "length 9 in the FD format"),
+        (BusRecord(RecordKind.FRAME, 0, 9), "length 9 in the classic format"),
+        (BusRecord(RecordKind.FRAME, Flag.BRS), "BRS or ESI in the classic format"),
+        (BusRecord(RecordKind.FRAME, data=b"\1".ljust(64, b"\0")), "data beyond the length"),
+        (BusRecord(RecordKind.FRAME, code=1), "code 1 in frame"),
+        (BusRecord(RecordKind.FRAME, time=2**63), f"time {2**63} in frame"),
+        (BusRecord(RecordKind.ERROR_FRAME, Flag.FD), "flags 4 in error frame"),
+        (BusRecord(RecordKind.STATE, code=0, transmit_errors=128), "state 0 with counters 128, 0"),
+        (BusRecord(RecordKind.STATUS, code=0), "code 0 in status"),
+        (BusRecord(RecordKind.CONFIRMATION), "number 0 in confirmation"),
+        (BusRecord(RecordKind.RECOVERY, data=b"\1" * 64), "data in recovery"),
+        (
+            BusRecord(RecordKind.HELLO, 0, 1, 1, MARK),
+            "a name has a character that is not from ! to ~",
+        ),
+        (BusRecord(RecordKind.HELLO, 0, 1, 1, 5), "identifier 5 in hello"),
     ],
 )
-def test_each_rule_is_said_in_words(record: Record, words: str) -> None:
+def test_each_rule_is_said_in_words(record: BusRecord, words: str) -> None:
     with pytest.raises(can.CanOperationError, match=f"bus protocol: {words}"):
         encode(record)
 
@@ -178,12 +192,14 @@ def test_a_message_that_is_no_frame_is_refused() -> None:
 
 
 def test_the_state_goes_with_the_counters() -> None:
-    assert state_of(127, 127) is State.ERROR_ACTIVE
-    assert state_of(128, 0) is state_of(0, 128) is state_of(255, 0) is State.ERROR_PASSIVE
-    assert state_of(256, 0) is State.BUS_OFF
+    assert state_of(127, 127) is MemberState.ERROR_ACTIVE
+    assert state_of(128, 0) is state_of(0, 128) is state_of(255, 0) is MemberState.ERROR_PASSIVE
+    assert state_of(256, 0) is MemberState.BUS_OFF
 
 
 def test_a_greeting_comes_back() -> None:
     greeting = Greeting("bench", 500_000, 2_000_000, 0)
-    record = decode(encode(Record(Kind.HELLO, 0, 5, 1, MARK, data=greeting_data(greeting))))
+    record = decode(
+        encode(BusRecord(RecordKind.HELLO, 0, 5, 1, MARK, data=greeting_data(greeting)))
+    )
     assert greeting_of(record) == greeting

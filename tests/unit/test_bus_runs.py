@@ -11,7 +11,7 @@ import pytest
 
 from ravenchart.command_line import main
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
-from ravenchart.hw_can.bench.peer import Values
+from ravenchart.hw_can.bench.peer import FrameValues
 from ravenchart.paths import ROOT
 from tests.support.answers import answered
 from tests.support.bus_server import BusServer
@@ -115,7 +115,7 @@ def test_a_step_that_fails_fails_the_run(
 def test_a_bus_that_goes_away_fails_the_run_and_is_named(
     tmp_path: Path, server: BusServer, capsys: PRINTED
 ) -> None:
-    def leave(_name: str, _values: Values) -> list[Answer]:
+    def leave(_name: str, _values: FrameValues) -> list[Answer]:
         threading.Thread(target=server.cut).start()
         return []
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.behaviour.cases.goals import Coverage, Kind, goals
-from ravenchart.behaviour.cases.search import Found, Search
+from ravenchart.behaviour.cases.goals import GoalCoverage, GoalKind, goals
+from ravenchart.behaviour.cases.search import CaseSearch, Found
 from ravenchart.behaviour.cases.watched import watched
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.stimuli import read, written
-from ravenchart.behaviour.interpreter.traces import Record
+from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.command_line import main
 from ravenchart.commands import simulate
 from ravenchart.commands import tests as command
@@ -60,11 +60,11 @@ def system() -> System:
 @pytest.fixture(scope="module")
 def found(system: System) -> Found:
     """What a search finds for it."""
-    return Search(system, 60_000).found()
+    return CaseSearch(system, 60_000).found()
 
 
 def _shown(system: System, events: str) -> set[str]:
-    coverage = Coverage()
+    coverage = GoalCoverage()
     for _ in watched(system, coverage).run(stimuli_of(events, system)):
         pass
     return {g.text() for g in goals(system.instances[0].component) if coverage.shows(g)}
@@ -74,7 +74,7 @@ def test_every_goal_is_named_once(system: System) -> None:
     every = list(goals(system.instances[0].component))
     kinds = [goal.kind for goal in every]
     assert len(set(every)) == len(every)
-    assert [kinds.count(kind) for kind in Kind] == [4, 2, 2, 3, 1]
+    assert [kinds.count(kind) for kind in GoalKind] == [4, 2, 2, 3, 1]
 
 
 def test_one_execution_shows_what_it_executes_and_nothing_else(system: System) -> None:
@@ -105,7 +105,7 @@ def test_a_search_shows_every_goal(found: Found) -> None:
 
 
 def test_each_case_shows_what_it_says(system: System, found: Found) -> None:
-    coverage = Coverage()
+    coverage = GoalCoverage()
     for case in found.cases:
         before = {goal for goal in found.goals if coverage.shows(goal)}
         for _ in watched(system, coverage).run(case.stimuli):
@@ -116,12 +116,12 @@ def test_each_case_shows_what_it_says(system: System, found: Found) -> None:
 
 def test_to_be_watched_changes_nothing(system: System, found: Found) -> None:
     for case in found.cases:
-        seen = list(watched(system, Coverage()).run(case.stimuli))
+        seen = list(watched(system, GoalCoverage()).run(case.stimuli))
         assert seen == list(Machine(system).run(case.stimuli))
 
 
 def test_the_same_effort_finds_the_same_cases(system: System, found: Found) -> None:
-    assert Search(system, 60_000).found() == found
+    assert CaseSearch(system, 60_000).found() == found
 
 
 def test_what_cannot_be_is_left_open() -> None:
@@ -131,7 +131,7 @@ def test_what_cannot_be_is_left_open() -> None:
         "      home: {from: C, to: A, on: Go, guard: level > 5}\n"
         "      stay: {from: C, to: B, on: Go, guard: level <= 5}\n",
     )
-    left = [goal for goal in Search(component_system(part, more=BUS), 30_000).found().open]
+    left = [goal for goal in CaseSearch(component_system(part, more=BUS), 30_000).found().open]
     assert "the guard of Part.Main.stay is false" in [goal.text() for goal in left]
 
 
@@ -150,7 +150,7 @@ regions:
 
 
 def test_a_choice_without_a_way_out_is_told_once_and_ends_no_search() -> None:
-    found = Search(component_system(STUCK), 20_000).found()
+    found = CaseSearch(component_system(STUCK), 20_000).found()
     assert [str(one) for one in found.stuck] == ["P has no way out: no guard holds"]
     #  what ends so is no case
     assert "Part.Main.go is taken" in [goal.text() for goal in found.open]
@@ -167,7 +167,7 @@ regions:
     states: {A: {}, B: {}}
     transitions: {late: {from: A, to: B, after: 2 s}, back: {from: B, to: A, after: 10 ms}}
 """
-    assert Search(component_system(part), 20_000).found().open == []
+    assert CaseSearch(component_system(part), 20_000).found().open == []
 
 
 def test_an_effort_is_a_whole_number_from_1(capsys: pytest.CaptureFixture[str]) -> None:
@@ -204,7 +204,7 @@ def test_the_program_plays_the_cases_as_the_interpreter_does(
     #  a program that leaves one step out
     honest = simulate.simulated_by_interpreter
 
-    def more(*given: object) -> list[Record]:
+    def more(*given: object) -> list[StepRecord]:
         return honest(*given)[:-1]  # type: ignore[arg-type]
 
     monkeypatch.setattr(command, "simulated_by_interpreter", more)

@@ -23,9 +23,9 @@ def looked(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
     names: list[str] = []
     findings = rules.findings
 
-    def counted(system: System, seconds: float) -> tuple[Diagnostic, ...]:
+    def counted(system: System, effort: int) -> tuple[Diagnostic, ...]:
         names.append(system.name)
-        return findings(system, seconds)
+        return findings(system, effort)
 
     monkeypatch.setattr("ravenchart.behaviour.rules.findings", counted)
     return names
@@ -73,12 +73,12 @@ def test_unfinished_check_is_kept_and_finished_by_check_alone(
     looked: list[str], path: Path
 ) -> None:
     for _ in range(2):
-        assert "RV-1110" in checking.check(path, patience=0.0).warnings
+        assert "RV-1110" in checking.check(path, effort=0).warnings
     assert len(looked) == 1
-    assert "RV-1110" in checking.check(path, patience=0.0, finish=True).warnings
+    assert "RV-1110" in checking.check(path, effort=0, finish=True).warnings
     assert len(looked) == 2
     assert "RV-1110" not in checking.check(path).warnings
-    assert "RV-1110" not in checking.check(path, patience=0.0).warnings
+    assert "RV-1110" not in checking.check(path, effort=0).warnings
     assert len(looked) == 3
 
 

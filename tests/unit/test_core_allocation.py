@@ -9,8 +9,8 @@ from fractions import Fraction
 import pytest
 
 from ravenchart.analysis.core.allocation import (
-    Activity,
     Allocation,
+    Movable,
     Strategy,
     Table,
     allocate,
@@ -27,7 +27,7 @@ def names(tables: Sequence[Table]) -> list[list[str]]:
     return [[activity.name for activity in table] for table in tables]
 
 
-def partitions(items: Sequence[Activity]) -> Iterator[list[Table]]:
+def partitions(items: Sequence[Movable]) -> Iterator[list[Table]]:
     """Every way to put the activities together, possible or not."""
     if not items:
         yield []
@@ -39,17 +39,17 @@ def partitions(items: Sequence[Activity]) -> Iterator[list[Table]]:
             yield [*tables[:n], (first, *table), *tables[n + 1 :]]
 
 
-def some_activities(chance: random.Random, count: int, load: float) -> list[Activity]:
+def some_activities(chance: random.Random, count: int, load: float) -> list[Movable]:
     found = []
     for n in range(count):
         period = 100 * chance.choice((1, 2, 3, 4, 6, 8))
         cost = max(1, int(period * load / count * chance.uniform(0.4, 1.6)))
         deadline = chance.choice((period, max(cost, period // 2)))
-        found.append(Activity(f"a{n}", period, cost, deadline, f"o{chance.randint(0, 2)}"))
+        found.append(Movable(f"a{n}", period, cost, deadline, f"o{chance.randint(0, 2)}"))
     return found
 
 
-def consistent(found: Allocation, activities: Sequence[Activity]) -> None:
+def consistent(found: Allocation, activities: Sequence[Movable]) -> None:
     """Every activity is in one table, and the tasks execute the tables as they are."""
     assert sorted(a.name for table in found.tables for a in table) == sorted(
         a.name for a in activities
@@ -66,35 +66,35 @@ def consistent(found: Allocation, activities: Sequence[Activity]) -> None:
 
 def test_by_period_there_is_one_task_for_each_period() -> None:
     activities = [
-        Activity("a", 10, 1, 10, "x"),
-        Activity("b", 20, 1, 20, "x"),
-        Activity("c", 10, 1, 10, "y"),
-        Activity("d", 15, 1, 15, "y"),
+        Movable("a", 10, 1, 10, "x"),
+        Movable("b", 20, 1, 20, "x"),
+        Movable("c", 10, 1, 10, "y"),
+        Movable("d", 15, 1, 15, "y"),
     ]
     assert names(by_period(activities)) == [["a", "c"], ["d"], ["b"]]
 
 
 def test_by_locality_an_owners_activities_share_where_their_rates_fit() -> None:
     activities = [
-        Activity("slow", 40, 1, 40, "x"),
-        Activity("fast", 10, 1, 10, "x"),
-        Activity("odd", 15, 1, 15, "x"),
-        Activity("rare", 10 * 17, 1, 170, "x"),
-        Activity("other", 10, 1, 10, "y"),
+        Movable("slow", 40, 1, 40, "x"),
+        Movable("fast", 10, 1, 10, "x"),
+        Movable("odd", 15, 1, 15, "x"),
+        Movable("rare", 10 * 17, 1, 170, "x"),
+        Movable("other", 10, 1, 10, "y"),
     ]
     assert names(by_locality(activities)) == [["fast", "slow"], ["odd"], ["rare"], ["other"]]
 
 
 def test_phases_level_what_a_job_costs() -> None:
-    activities = tuple(Activity(f"a{n}", 40, 5, 40) for n in range(4))
-    found = checked([(Activity("fast", 10, 1, 10), *activities)])
+    activities = tuple(Movable(f"a{n}", 40, 5, 40) for n in range(4))
+    found = checked([(Movable("fast", 10, 1, 10), *activities)])
     (task,) = found.tasks
     assert sorted(row.phase for row in task.rows if row.every == 4) == [0, 1, 2, 3]
     assert found.responses[0].bound == 6
 
 
 def test_an_activitys_own_deadline_counts_and_the_urgent_one_runs_first() -> None:
-    activities = (Activity("late", 10, 5, 10), Activity("soon", 10, 2, 3))
+    activities = (Movable("late", 10, 5, 10), Movable("soon", 10, 2, 3))
     found = checked([activities])
     assert (found.response("soon"), found.response("late")) == (2, 7)
     assert (found.met, found.slack) == (True, Fraction(3, 10))
@@ -103,7 +103,7 @@ def test_an_activitys_own_deadline_counts_and_the_urgent_one_runs_first() -> Non
 
 
 def test_cores_are_kept_apart() -> None:
-    activities = [Activity(f"a{n}", 10, 4, 10, core=f"c{n % 2}") for n in range(4)]
+    activities = [Movable(f"a{n}", 10, 4, 10, core=f"c{n % 2}") for n in range(4)]
     for strategy in Strategy:
         found = allocate(activities, strategy)
         consistent(found, activities)
@@ -112,15 +112,15 @@ def test_cores_are_kept_apart() -> None:
 
 def test_what_is_impossible_is_refused() -> None:
     with pytest.raises(ValueError, match=r"period of b must be a multiple of 10, .* not 15"):
-        checked([(Activity("a", 10, 1, 10), Activity("b", 15, 1, 15))])
+        checked([(Movable("a", 10, 1, 10), Movable("b", 15, 1, 15))])
     with pytest.raises(ValueError, match="two activities have the name a"):
-        allocate([Activity("a", 10, 1, 10)] * 2, Strategy.BY_PERIOD)
+        allocate([Movable("a", 10, 1, 10)] * 2, Strategy.BY_PERIOD)
     with pytest.raises(ValueError, match="cost of activity a must be an integer above 0"):
-        Activity("a", 10, 0, 10)
+        Movable("a", 10, 0, 10)
 
 
 def test_an_overload_is_no_allocation_that_meets_deadlines() -> None:
-    activities = [Activity(f"a{n}", 10, 6, 10) for n in range(3)]
+    activities = [Movable(f"a{n}", 10, 6, 10) for n in range(3)]
     for strategy in Strategy:
         found = allocate(activities, strategy)
         consistent(found, activities)
@@ -131,7 +131,7 @@ def test_an_overload_is_no_allocation_that_meets_deadlines() -> None:
 
 
 def best(
-    activities: Sequence[Activity], sections: Sequence[Section], platforms: dict[str, Platform]
+    activities: Sequence[Movable], sections: Sequence[Section], platforms: dict[str, Platform]
 ) -> tuple[int, object]:
     """Fewest tasks and most slack over all partitions that meet every deadline."""
     fewest, slack = len(activities) + 1, None
@@ -187,7 +187,7 @@ def test_forty_activities_are_searched_in_seconds() -> None:
 
 def test_whole_jobs_have_the_shortest_deadline_and_no_phases() -> None:
     """b comes with every second a, in the first release too, and is done by the deadline of a."""
-    activities = [Activity("a", 100, 20, 60), Activity("b", 200, 30, 200)]
+    activities = [Movable("a", 100, 20, 60), Movable("b", 200, 30, 200)]
     found = checked([tuple(activities)], whole=True)
     assert [(row.every, row.phase) for row in found.tasks[0].rows] == [(1, 0), (2, 0)]
     assert (found.tasks[0].deadline, found.slack) == (60, Fraction(10, 60))
@@ -197,7 +197,7 @@ def test_whole_jobs_have_the_shortest_deadline_and_no_phases() -> None:
 
 def test_tasks_above_delay_every_table() -> None:
     above = [Task("driver", 1, 100, 100, 10), Task("probe", 2, 100, 100, 5)]
-    activities = [Activity("a", 100, 20, 100), Activity("b", 200, 30, 200)]
+    activities = [Movable("a", 100, 20, 100), Movable("b", 200, 30, 200)]
     for strategy in Strategy:
         found = allocate(activities, strategy, above=above)
         consistent(found, activities)

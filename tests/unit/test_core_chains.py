@@ -10,7 +10,7 @@ import pytest
 
 from ravenchart.analysis.core import holistic
 from ravenchart.analysis.core.bus import Bus, Frame
-from ravenchart.analysis.core.chains import Chain, Hop, Latency, Step, latency
+from ravenchart.analysis.core.chains import ChainStep, HopKind, Latency, TimedChain, latency
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Reason
@@ -21,12 +21,12 @@ def task(name: str, cost: int, period: int, core: str, priority: int = 1, **more
     return Task(name, priority, period, more.pop("deadline", period), cost, core=core, **more)
 
 
-def of(network: Network, *steps: tuple[str, Hop], **limits: int) -> Latency:
-    chain = Chain("chain", tuple(Step(name, hop) for name, hop in steps), **limits)
+def of(network: Network, *steps: tuple[str, HopKind], **limits: int) -> Latency:
+    chain = TimedChain("chain", tuple(ChainStep(name, hop) for name, hop in steps), **limits)
     return latency(chain, network, holistic.analyse(network))
 
 
-SAMPLED, RELEASED, QUEUED = Hop.SAMPLED, Hop.RELEASED, Hop.QUEUED
+SAMPLED, RELEASED, QUEUED = HopKind.SAMPLED, HopKind.RELEASED, HopKind.QUEUED
 
 LINE = Network(
     tasks=(task("read", 2, 10, "a"), task("plan", 5, 20, "b"), task("move", 3, 50, "c")),
@@ -117,7 +117,7 @@ def test_a_queue_waits_for_a_burst() -> None:
     #  three items may come at once; the third waits for three jobs, and so does each later
     assert (found.hops[1].wait, found.hops[1].backlog) == (10 * 4 - 5, 7)
     assert found.reaction == 26 + 35 + 2
-    two = Chain("two", (Step("write", RELEASED), Step("take", QUEUED, takes=2)))
+    two = TimedChain("two", (ChainStep("write", RELEASED), ChainStep("take", QUEUED, takes=2)))
     assert latency(two, network, holistic.analyse(network)).hops[1].wait == 20
 
 
@@ -193,7 +193,10 @@ def test_what_is_released_without_bound_takes_those_below_with_it() -> None:
             lambda: of(LINE, ("read", SAMPLED), ("plan", RELEASED)),
             "step plan of chain chain is not released by read",
         ),
-        (lambda: Step("a", QUEUED, takes=0), "takes of step a must be an integer above 0, not 0"),
+        (
+            lambda: ChainStep("a", QUEUED, takes=0),
+            "takes of step a must be an integer above 0, not 0",
+        ),
     ],
 )
 def test_what_has_no_meaning_is_refused_by_name(made: Any, message: str) -> None:
@@ -219,14 +222,14 @@ def test_releases_of_a_task_without_bound_take_the_bounds_of_all_above_it() -> N
 
 def test_several_values_at_once_wait_for_each_other() -> None:
     network = Network((task("write", 1, 40, "a"), task("take", 2, 10, "b")))
-    chain = Chain("many", (Step("write", RELEASED), Step("take", QUEUED, puts=3)))
+    chain = TimedChain("many", (ChainStep("write", RELEASED), ChainStep("take", QUEUED, puts=3)))
     hop = latency(chain, network, holistic.analyse(network)).hops[1]
     #  jitter of 1: the third is taken by the third job; 3 more come 39 later at the soonest
     assert (hop.wait, hop.backlog) == (30, 3)
-    full = Chain("full", (Step("write", RELEASED), Step("take", QUEUED, puts=5)))
+    full = TimedChain("full", (ChainStep("write", RELEASED), ChainStep("take", QUEUED, puts=5)))
     assert latency(full, network, holistic.analyse(network)).reaction is None
     with pytest.raises(ValueError, match="takes several items or is given several, not both"):
-        Step("take", QUEUED, takes=2, puts=2)
+        ChainStep("take", QUEUED, takes=2, puts=2)
 
 
 def test_what_follows_every_second_job_only_waits_for_one_of_those() -> None:
@@ -255,12 +258,12 @@ def test_a_queue_repeats_its_last_item_until_there_is_a_next_one() -> None:
 
 def test_what_keeps_its_old_output_ages_without_bound() -> None:
     network = Network((task("in", 1, 10, "a"), task("act", 3, 10, "c")))
-    steps = (Step("in", RELEASED, keeps="it may"), Step("act", SAMPLED))
-    found = latency(Chain("c", steps), network, holistic.analyse(network))
+    steps = (ChainStep("in", RELEASED, keeps="it may"), ChainStep("act", SAMPLED))
+    found = latency(TimedChain("c", steps), network, holistic.analyse(network))
     assert found.age is None and found.reaction is not None
-    last = (Step("in", RELEASED), Step("act", SAMPLED, keeps="it may"))
-    found = latency(Chain("c", last), network, holistic.analyse(network))
+    last = (ChainStep("in", RELEASED), ChainStep("act", SAMPLED, keeps="it may"))
+    found = latency(TimedChain("c", last), network, holistic.analyse(network))
     assert found.age is not None and found.held is None
-    waits = (Step("in", RELEASED), Step("act", SAMPLED, waits="for others"))
-    found = latency(Chain("c", waits), network, holistic.analyse(network))
+    waits = (ChainStep("in", RELEASED), ChainStep("act", SAMPLED, waits="for others"))
+    found = latency(TimedChain("c", waits), network, holistic.analyse(network))
     assert found.age is not None and found.reaction is None

@@ -12,7 +12,7 @@ from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.bus import Bus, Frame
 from ravenchart.analysis.core.changes import (
     STEPS,
-    Kind,
+    ChangeKind,
     moved,
     parts,
     ranked,
@@ -23,7 +23,7 @@ from ravenchart.analysis.core.changes import (
     stretched,
 )
 from ravenchart.analysis.core.holistic import Network, met
-from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.tasks import TableRow, Task
 from tests.support.random_networks import random_network
 
 #  b needs 5 + 2 x 3 = 11 us within 10.
@@ -96,7 +96,7 @@ def test_an_inverted_order_is_put_right() -> None:
         ceilings={"o": 2},
     )
     (change,) = reordered(network, {"slow", "fast"}, met)
-    assert (change.kind, change.enough, change.order) == (Kind.ORDER, True, ("fast", "slow"))
+    assert (change.kind, change.enough, change.order) == (ChangeKind.ORDER, True, ("fast", "slow"))
 
 
 def test_a_late_frame_moves_up_as_few_places_as_do() -> None:
@@ -112,7 +112,7 @@ def test_a_late_frame_moves_up_as_few_places_as_do() -> None:
 
 def test_rows_shrink_alone_and_sections_with_their_job() -> None:
     network = Network(
-        (Task("a", 1, 100, 100, rows=(Row("r", 10), Row("s", 40))),),
+        (Task("a", 1, 100, 100, rows=(TableRow("r", 10), TableRow("s", 40))),),
         sections=(Section("o", "a", 45),),
     )
     less = shrunk(network, [("a", "s")], Fraction(1, 4))

@@ -19,7 +19,7 @@ from ravenchart.analysis.core import can
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.bus import Bus, Frame
 from ravenchart.analysis.core.fixed_priority import analyse
-from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.tasks import TableRow, Task
 from tests.support.exhaustive import Toy, longest_responses
 
 pytestmark = pytest.mark.slow
@@ -87,7 +87,7 @@ def task_of(number: int, shape: Shape, priority: int) -> Task:
     if len(frames) == 1 and len(frames[0]) == 1:
         return Task(f"t{number}", priority, period, FAR, frames[0][0], late)
     rows = tuple(
-        Row(f"r{k}.{i}", cost, len(frames), k)
+        TableRow(f"r{k}.{i}", cost, len(frames), k)
         for k, costs in enumerate(frames)
         for i, cost in enumerate(costs)
     )

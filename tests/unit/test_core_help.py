@@ -22,7 +22,7 @@ from ravenchart.analysis.core.assignment import (
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.bus import Bus, Frame
 from ravenchart.analysis.core.sensitivity import growth, scaled, scaling, tightest
-from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.tasks import TableRow, Task
 
 
 def met(tasks: list[Task] | tuple[Task, ...], sections: list[Section]) -> bool:
@@ -128,7 +128,7 @@ def test_sections_and_rows_grow_with_the_rest() -> None:
     tasks = [Task("a", 2, 100, 30, 10), Task("b", 1, 1_000, 1_000, 10)]
     found = scaling(tasks, [Section("o", "a", 1), Section("o", "b", 10)])
     assert found is not None and found.factor == Fraction(3, 2)
-    table = Task("t", 1, 10, 10, 1, rows=(Row("r", 3),))
+    table = Task("t", 1, 10, 10, 1, rows=(TableRow("r", 3),))
     grown = scaled(table, Fraction(3, 2))
     assert (grown.cost, grown.rows[0].cost) == (2, 5)
 

@@ -17,7 +17,7 @@ from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.fixed_priority import analyse, bounds
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Response
-from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.tasks import TableRow, Task
 
 NEVER = 10**9
 
@@ -160,7 +160,7 @@ def test_what_is_not_plain_is_left_to_the_general_analysis() -> None:
     plain = [Task(f"t{n}", 50 - n, 1_000, 1_000, 10) for n in range(40)]
     for other in (
         Task("x", 99, 1_000, 1_000, 10, jitter=5),
-        Task("x", 99, 1_000, 1_000, 10, rows=(Row("r", 9, 2, 1),)),
+        Task("x", 99, 1_000, 1_000, 10, rows=(TableRow("r", 9, 2, 1),)),
     ):
         compare([*plain, other])
     compare(plain, platform=Platform(release=1))

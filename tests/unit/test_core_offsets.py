@@ -17,7 +17,7 @@ from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.core.sensitivity import network_scaling
-from ravenchart.analysis.core.tasks import Row, Task, plain
+from ravenchart.analysis.core.tasks import TableRow, Task, plain
 
 
 def task(name: str, priority: int, cost: int, period: int, offset: int | None) -> Task:
@@ -49,8 +49,8 @@ def test_a_busy_period_may_begin_before_the_worst_job_arrives() -> None:
 
 def test_rows_count_in_their_own_release() -> None:
     """The long rows of both tables are due in turns, so they never meet."""
-    rows = Row("short", 1), Row("long", 4, every=2, phase=0)
-    other = Row("short", 1), Row("long", 4, every=2, phase=1)
+    rows = TableRow("short", 1), TableRow("long", 4, every=2, phase=0)
+    other = TableRow("short", 1), TableRow("long", 4, every=2, phase=1)
     a = Task("a", 2, 10, 10, rows=rows, offset=0)
     b = Task("b", 1, 10, 10, rows=other, offset=0)
     assert found(a, b)["b"].bound == 1 + 5

@@ -18,7 +18,7 @@ from ravenchart.analysis.core.assignment import (
     with_ranks,
 )
 from ravenchart.analysis.core.bus import Bus, Frame
-from ravenchart.analysis.core.chains import Chain, Hop, Step, latency
+from ravenchart.analysis.core.chains import ChainStep, HopKind, TimedChain, latency
 from ravenchart.analysis.core.frames import classic_bits
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.core.sensitivity import network_scaling
@@ -189,8 +189,8 @@ def test_two_nodes_as_mast_has_them() -> None:
 
 def test_two_nodes_chain_is_its_holistic_response() -> None:
     network = two_nodes()
-    steps = tuple(Step(name, Hop.RELEASED) for name in ("sense", "frame_cmd", "wheel"))
-    found = latency(Chain("control", steps), network, holistic.analyse(network))
+    steps = tuple(ChainStep(name, HopKind.RELEASED) for name in ("sense", "frame_cmd", "wheel"))
+    found = latency(TimedChain("control", steps), network, holistic.analyse(network))
     assert [hop.response for hop in found.hops] == [2100, 540, 710]
     assert (found.reaction, found.age, found.held) == (3350, 3350, 13_350)
 

@@ -15,7 +15,7 @@ from ravenchart.analysis.core.fixed_priority import analyse, response_under
 from ravenchart.analysis.core.multiframe import Demand
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Reason, Response
-from ravenchart.analysis.core.tasks import Row, Task, plain
+from ravenchart.analysis.core.tasks import TableRow, Task, plain
 from tests.support.core_cases import cases, sections_of, tasks_of
 
 
@@ -32,14 +32,14 @@ def task(name: str, priority: int, cost: int, period: int, **more: Any) -> Task:
         (lambda: task("a", 1, 1, 9, deadline=0), "deadline of task a must be an integer above 0"),
         (lambda: task("a", 1, 1, 9, jitter=-1), "jitter of task a must be an integer from 0 up"),
         (lambda: task("a", 1, 1, 9.5), "period of task a must be an integer above 0, not 9.5"),  # type: ignore[arg-type]
-        (lambda: Row("r", 0), "cost of row r must be an integer above 0, not 0"),
-        (lambda: Row("r", 1, 2, 2), "phase of row r must be below 2, not 2"),
+        (lambda: TableRow("r", 0), "cost of row r must be an integer above 0, not 0"),
+        (lambda: TableRow("r", 1, 2, 2), "phase of row r must be below 2, not 2"),
         (lambda: Section("o", "a", 0), "length of the section of a on o must be an integer above"),
         (lambda: Platform(tick_cost=1), "tick_period of the platform must be above 0"),
         (lambda: Platform(release=-1), "release of the platform must be an integer from 0 up"),
         (lambda: analyse([task("a", 1, 1, 9)] * 2), "two tasks have the name a"),
         (
-            lambda: task("a", 1, 0, 9, rows=(Row("r", 1), Row("r", 2))),
+            lambda: task("a", 1, 0, 9, rows=(TableRow("r", 1), TableRow("r", 2))),
             "two rows of task a have the name r",
         ),
         (
@@ -140,7 +140,7 @@ def test_demand_is_the_worst_of_all_first_frames() -> None:
 
 
 def test_a_table_runs_as_it_is_and_beside_it_the_plain_sum() -> None:
-    rows = (Row("fast", 2), Row("slow", 3, 4, 1), Row("other", 4, 4, 3))
+    rows = (TableRow("fast", 2), TableRow("slow", 3, 4, 1), TableRow("other", 4, 4, 3))
     table = task("table", 2, 1, 20, rows=rows)
     assert [sum(r.cost for r in frame) for frame in table.frames] == [2, 5, 2, 6]
     below = task("below", 1, 14, 80)
@@ -156,7 +156,7 @@ def test_a_table_runs_as_it_is_and_beside_it_the_plain_sum() -> None:
 
 
 def test_a_table_that_hardly_repeats_counts_in_full() -> None:
-    rows = tuple(Row(f"r{n}", 1, n) for n in (7, 11, 13, 17))
+    rows = tuple(TableRow(f"r{n}", 1, n) for n in (7, 11, 13, 17))
     long = task("long", 1, 1, 100, rows=rows)
     assert long.frame_count == 1
     assert analyse([long])[0].bound == analyse([plain(long)])[0].bound == 5
@@ -216,7 +216,7 @@ def systems(draw: st.DrawFn) -> tuple[list[Task], list[Section], Platform]:
     tasks = []
     for index in range(draw(st.integers(1, 4))):
         rows = tuple(
-            Row(f"r{n}", draw(st.integers(1, 3)), every, draw(st.integers(0, every - 1)))
+            TableRow(f"r{n}", draw(st.integers(1, 3)), every, draw(st.integers(0, every - 1)))
             for n, every in enumerate(draw(st.lists(st.integers(1, 3), max_size=3)))
         )
         period = draw(st.integers(4, 30))

@@ -9,7 +9,7 @@ from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.gen.derive.completion import on_one_node, programs
 from ravenchart.gen.emit.program import generate
-from ravenchart.gen.model.system import System
+from ravenchart.gen.model.system import Carried, System
 from tests.support.two_nodes import BUS, RECEPTION, TOGETHER, loaded, said, system_of
 
 
@@ -112,9 +112,8 @@ def test_a_message_reaches_every_node_that_listens() -> None:
     found = analyse(system)
     assert found.schedulable
     assert {"link.supervisor_order.log", "link.supervisor_order.drive"} <= set(found.deliveries)
-    steps = [
-        hop.step.name for hop in found.latency(("message supervisor_order", "listener.order")).hops
-    ]
+    way = Carried("supervisor_order"), "listener.order"
+    steps = [hop.step.name for hop in found.latency(way).hops]
     assert "link.driver_rx.supervisor_order.log" in steps
     assert "Link_Supervisor_Order_Log_Handed" in _certificate(system)
 

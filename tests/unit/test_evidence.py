@@ -16,7 +16,7 @@ import pytest
 from ravenchart.behaviour import rules
 from ravenchart.command_line import main
 from ravenchart.evidence import facts, folder, ledger, records, standards
-from ravenchart.evidence.claim import Kind
+from ravenchart.evidence.claim import ClaimKind
 from ravenchart.gen.diagnostics import warning
 from ravenchart.paths import ROOT
 from ravenchart.proof import proving
@@ -442,7 +442,7 @@ def test_every_row_of_a_standard_names_kinds_of_claims_that_exist() -> None:
     text = (ROOT / "ravenchart" / "evidence" / "objectives.toml").read_text(encoding="utf-8")
     for one in tomllib.loads(text)["standard"]:
         for row in one["rows"]:
-            assert {*row["claims"]} <= {*Kind.__members__, standards.REQUIREMENTS}
+            assert {*row["claims"]} <= {*ClaimKind.__members__, standards.REQUIREMENTS}
 
 
 def test_an_entry_of_the_ledger_that_nobody_knows_is_in_use() -> None:

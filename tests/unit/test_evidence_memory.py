@@ -30,7 +30,7 @@ def _memory(home: Path, library: int | None = None) -> Path:
     return file
 
 
-def _stack_claims(home: Path, file: Path) -> tuple[dict[str, str], folder.Made]:
+def _stack_claims(home: Path, file: Path) -> tuple[dict[str, str], folder.FolderTexts]:
     gathered = facts.gather(home / "model.yaml", None, [home / "proof.toml"], memory=[file])
     found = folder.make(gathered)
     return {id_: v for id_, v in verdicts(found).items() if id_.startswith("stack-")}, found

@@ -12,10 +12,10 @@ import pytest
 from ravenchart.analysis.core import holistic
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.bus import Bus, Errors, Frame
-from ravenchart.analysis.core.chains import Chain, Hop, Step
+from ravenchart.analysis.core.chains import ChainStep, HopKind, TimedChain
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
-from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.tasks import TableRow, Task
 from ravenchart.analysis.exchange import FORMATS, Unfit, cheddar, mast, pycpa
 from ravenchart.analysis.exchange.mast_text import parse
 from ravenchart.analysis.exchange.shapes import background, in_queues, spelled_out, unqueued
@@ -212,9 +212,9 @@ def test_a_user_that_is_no_task_becomes_one_below_all_with_the_same_blocking() -
 
 def test_what_is_said_in_other_words_stands_in_the_head() -> None:
     frames = [replace(FRAME, name=n, rank=k, queue="q") for k, n in enumerate("ab")]
-    rows = (Row("r", 1), Row("s", 1, 2))
+    rows = (TableRow("r", 1), TableRow("s", 1, 2))
     network = replace(on_bus(Bus(1), *frames), tasks=(replace(TASK, rows=rows, name="t"),))
-    chain = Chain("way", (Step("a", Hop.RELEASED), Step("t", Hop.QUEUED)))
+    chain = TimedChain("way", (ChainStep("a", HopKind.RELEASED), ChainStep("t", HopKind.QUEUED)))
     for name, export in FORMATS.items():
         text = export(network, (chain,), "x")
         assert "Of table t every row counts in every job." in text, name
@@ -271,7 +271,9 @@ def test_names_that_mean_something_to_the_script_are_changed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     tasks = (Task("model", 1, 10, 10, 1), Task("class", 2, 10, 10, 1), Task("1 b-c", 3, 10, 10, 1))
-    chain = Chain("x", (Step("model", Hop.RELEASED), Step("class", Hop.SAMPLED)))
+    chain = TimedChain(
+        "x", (ChainStep("model", HopKind.RELEASED), ChainStep("class", HopKind.SAMPLED))
+    )
     text = pycpa.export(Network(tasks), (chain,), "x")
     calls = run_script(text, monkeypatch)
     names = [c["args"][0] for name, c in calls if name == "Task"]

@@ -12,9 +12,9 @@ from ravenchart.analysis.core import holistic
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
-from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.tasks import TableRow, Task
 from ravenchart.analysis.exchange import Unfit, mast
-from ravenchart.analysis.exchange.mast_text import Attributes, Object, parse, printed
+from ravenchart.analysis.exchange.mast_text import Attributes, MastObject, parse, printed
 from tests.support.core_cases import REFERENCE, two_nodes
 from tests.support.mast_models import by_kind, check_references, inner, number
 from tests.support.random_networks import random_network
@@ -80,7 +80,7 @@ def test_the_exported_model_of_the_published_system_says_the_same() -> None:
     check_references(theirs)
     check_references(ours)
 
-    def essence(model: tuple[Object, ...]) -> Any:
+    def essence(model: tuple[MastObject, ...]) -> Any:
         kinds = by_kind(model)
         return (
             sorted(
@@ -159,7 +159,7 @@ def test_several_followers_are_released_by_a_multicast() -> None:
 
 
 def test_a_table_counts_as_its_sum_and_releases_as_interrupts() -> None:
-    rows = (Row("r", 3), Row("s", 4, 2, 1))
+    rows = (TableRow("r", 3), TableRow("s", 4, 2, 1))
     network = Network((Task("a", 1, 100, 100, 1, rows=rows),), platforms={"": Platform(release=2)})
     model = parse(mast.export(network, (), "x"))
     check_references(model)

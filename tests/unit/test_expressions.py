@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from ravenchart.gen.files.located import Place
+from ravenchart.gen.files.located import TextPlace
 from ravenchart.gen.language.expressions import Malformed, Term, parse
 from ravenchart.gen.language.intervals import apply, quotient
-from ravenchart.gen.language.names import Findings, Scope
+from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     BUILT_IN,
@@ -28,7 +28,7 @@ from ravenchart.gen.origins import Origin
 from ravenchart.gen.resolve.typed import fitting, read
 from ravenchart.gen.resolve.vocabulary import Checked, Vocabulary
 
-PLACE = Place(Origin("m.yaml", 7, 11), exact=True)
+PLACE = TextPlace(Origin("m.yaml", 7, 11), exact=True)
 LENGTH = IntegerType("Length", BUILT_IN, -100, 100, "mm")
 SPEED = IntegerType("Speed", BUILT_IN, -10, 10, "mm/s")
 COUNT = IntegerType("Count", BUILT_IN, 1, 5, None)
@@ -41,7 +41,7 @@ POSE = RecordType(
 
 def vocabulary() -> Vocabulary:
     """A few names of every kind."""
-    readable: Scope[tuple[Reading, str, Type]] = Scope("name")
+    readable: NameScope[tuple[Reading, str, Type]] = NameScope("name")
     for kind, name, type_ in (
         (Reading.DATA, "length", LENGTH),
         (Reading.DATA, "other", LENGTH),
@@ -52,11 +52,11 @@ def vocabulary() -> Vocabulary:
         (Reading.PORT, "pose", POSE),
     ):
         readable.declare(name, None, (kind, name, type_))
-    inputs: Scope[str] = Scope("input port")
+    inputs: NameScope[str] = NameScope("input port")
     inputs.declare("pose", None, "pose")
-    states: Scope[str] = Scope("state of Motion")
+    states: NameScope[str] = NameScope("state of Motion")
     states.declare("Idle", None, "Idle")
-    regions: Scope[Scope[str]] = Scope("region")
+    regions: NameScope[NameScope[str]] = NameScope("region")
     regions.declare("Motion", None, states)
     return Vocabulary(readable, inputs, regions, frozenset(("red", "green", "stop")))
 
@@ -145,6 +145,8 @@ def test_number_and_boolean_stand_for_themselves() -> None:
         ("done && done", 5),
         ("1.5", 1),
         ("length length", 7),
+        ("done ordone", 5),
+        ("done and if done then done else done", 9),
         ("min(1,)", 6),
         ("if done then 1", 13),
         ("in(Motion)", 9),
@@ -256,7 +258,7 @@ def test_errors_of_both_operands_are_reported() -> None:
 
 def test_text_in_several_lines_is_located_at_its_beginning() -> None:
     findings = Findings()
-    read("length +\n lenght", Place(PLACE.origin, exact=False), vocabulary(), findings)
+    read("length +\n lenght", TextPlace(PLACE.origin, exact=False), vocabulary(), findings)
     assert findings.items[0].origin == PLACE.origin
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import checking, generation
+from ravenchart.building import checking, generation, written
 from ravenchart.command_line import main
 from ravenchart.failures import OK
 from ravenchart.gen.emit.program import generate
@@ -26,10 +26,10 @@ def _files(name: str) -> dict[str, str]:
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_generated_files_are_those_in_the_repository(name: str) -> None:
     folder = ROOT / "examples" / name / "generated"
-    files = [p for p in folder.rglob("*") if p.is_file() and p.name != generation.MANIFEST]
+    files = [p for p in folder.rglob("*") if p.is_file() and p.name != written.MANIFEST]
     there = {p.relative_to(folder).as_posix(): p.read_text() for p in files}
     assert _files(name) == there
-    listed = (folder / generation.MANIFEST).read_text().splitlines()
+    listed = (folder / written.MANIFEST).read_text().splitlines()
     assert listed == [
         f"{hashlib.sha256(text.encode()).hexdigest()}  {name}"
         for name, text in sorted(there.items())
@@ -66,7 +66,7 @@ def test_a_file_that_is_no_longer_generated_goes_and_a_strange_one_stays(tmp_pat
     generated = folder / "generated"
     (generated / "old_unit.ads").write_text("package Old_Unit is end Old_Unit;")
     (generated / "keep.txt").write_text("keep")
-    manifest = generated / generation.MANIFEST
+    manifest = generated / written.MANIFEST
     manifest.write_text(manifest.read_text() + "old_unit.ads\n../user/evil.adb\n")
     generation.write_program(checked)
     assert not (generated / "old_unit.ads").exists()
@@ -100,6 +100,6 @@ def test_a_generation_that_was_cut_short_leaves_no_edits(tmp_path: Path) -> None
     shutil.copytree(ROOT / "examples" / "three_components", folder)
     checked = checking.check(folder / "model.yaml")
     generation.write_program(checked)
-    manifest = folder / "generated" / generation.MANIFEST
+    manifest = folder / "generated" / written.MANIFEST
     manifest.write_text(manifest.read_text().replace(manifest.read_text()[:64], "0" * 64))
     assert generation.write_program(checked).edited == ()

@@ -55,7 +55,7 @@ def test_many_processes_make_the_same_as_one(monkeypatch: pytest.MonkeyPatch) ->
         return ProcessPoolExecutor(mp_context=mp_context, initializer=initializer)
 
     monkeypatch.setattr("ravenchart.gen.emit.program.MANY", 8)
-    monkeypatch.setattr("ravenchart.gen.parallel.ProcessPoolExecutor", counted)
+    monkeypatch.setattr("concurrent.futures.ProcessPoolExecutor", counted)
     _without_claims.cache_clear()
     assert generate(system, Claims()) == alone
     assert started

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from ravenchart.analysis.core import can
 from ravenchart.analysis.core.assignment import audsley_frames
 from ravenchart.analysis.core.bus import Bus, Frame
-from ravenchart.analysis.system.identifiers import Places
+from ravenchart.analysis.system.identifiers import IdentifierPlaces
 from ravenchart.analysis.system.timing import Verdict, analyse
 from ravenchart.building.checking import check, identified
 from ravenchart.failures import Refused
@@ -236,7 +236,7 @@ def test_an_order_beside_given_identifiers_is_found_exactly_when_there_is_one(
         ranked = [replace(named[name], rank=n) for n, name in enumerate(order)]
         return all(r.met for r in can.analyse(ranked, bus))
 
-    places = Places(tuple("abcd"), frozenset(fixed))
+    places = IdentifierPlaces(tuple("abcd"), frozenset(fixed))
     found = audsley_frames(frames, bus, places.candidates)
     some = any(possible(order) and good(order) for order in permutations("abcd"))
     assert found.complete == some

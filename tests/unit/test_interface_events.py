@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -34,11 +35,15 @@ def _system(*replacements: tuple[str, str]) -> System:
     return found.system
 
 
+PLACE = re.compile(r" *--  \[\w+\] \S+:\d+$", re.M)
+"""Where a transition or state stands in the model."""
+
+
 def _program(system: System) -> dict[str, str]:
     """What is generated, but for the text of the model: its digest, and where elements stand."""
     system = replace(system, digest="")
     files = generate(system, claims_of(analyse(system)))
-    return {name: text for name, text in files.items() if not name.endswith("trace.json")}
+    return {n: PLACE.sub("", text) for n, text in files.items() if not n.endswith("trace.json")}
 
 
 def test_an_event_is_brought_as_by_a_connection_on_one_node() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.behaviour.interpreter.stimuli import Raised, read
-from ravenchart.behaviour.interpreter.traces import Record, seconds
+from ravenchart.behaviour.interpreter.traces import StepRecord, seconds
 from ravenchart.command_line import main
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
@@ -170,7 +170,9 @@ def test_times_are_exact(time: int, text: str) -> None:
 
 
 def test_a_step_is_one_line_of_text_or_json() -> None:
-    record = Record(Ns(20_000_000), "motor", "Motion", ("Idle.exit", "T3.effect", "Moving.entry"))
+    record = StepRecord(
+        Ns(20_000_000), "motor", "Motion", ("Idle.exit", "T3.effect", "Moving.entry")
+    )
     assert record.text() == "0.020 motor.Motion: Idle.exit, T3.effect, Moving.entry"
     assert json.loads(record.json()) == {
         "at_ns": 20_000_000,

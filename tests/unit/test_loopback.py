@@ -13,11 +13,17 @@ import pytest
 from ravenchart.command_line import main
 from ravenchart.commands import loopback_files
 from ravenchart.commands.loopback import verdict_line
-from ravenchart.hw_can.bench.bus_records import NO_DATA, Flag, Kind, Record
+from ravenchart.hw_can.bench.bus_records import NO_DATA, BusRecord, Flag, RecordKind
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.conformance.cases import CASES
 from ravenchart.hw_can.conformance.ends import Ends, Setup, open_ends
-from ravenchart.hw_can.conformance.suite import CaseResult, LoopbackResult, Verdict, histogram, run
+from ravenchart.hw_can.conformance.suite import (
+    CaseResult,
+    CaseVerdict,
+    LoopbackResult,
+    histogram,
+    run,
+)
 from tests.support.bus_server import BusServer
 from tests.support.slcan_relay import SlcanRelay
 
@@ -28,11 +34,11 @@ def on(server: BusServer) -> Ends:
     return open_ends(setup, patience=0.3)
 
 
-def verdicts(result: LoopbackResult) -> dict[str, Verdict]:
+def verdicts(result: LoopbackResult) -> dict[str, CaseVerdict]:
     return {case.name: case.verdict for case in result.cases}
 
 
-def named(verdict: Verdict, result: LoopbackResult) -> set[str]:
+def named(verdict: CaseVerdict, result: LoopbackResult) -> set[str]:
     return {case.name for case in result.cases if case.verdict is verdict}
 
 
@@ -67,7 +73,7 @@ def test_slcan_passes_and_says_what_it_cannot(relay: SlcanRelay) -> None:
     finally:
         ends.close()
     assert result.passed, result.cases
-    assert named(Verdict.SKIPPED, result) == {
+    assert named(CaseVerdict.SKIPPED, result) == {
         "FD frames, error state indicated", "error frame", "echo", "error state",
     }  # fmt: skip
 
@@ -80,9 +86,9 @@ def test_slcan_that_is_cut_fails_in_words(relay: SlcanRelay) -> None:
     finally:
         ends.close()
     found = verdicts(result)
-    assert found["every byte value"] is Verdict.PASSED
-    assert found["burst"] is Verdict.FAILED
-    assert found["throughput"] is Verdict.SKIPPED
+    assert found["every byte value"] is CaseVerdict.PASSED
+    assert found["burst"] is CaseVerdict.FAILED
+    assert found["throughput"] is CaseVerdict.SKIPPED
     assert not result.passed
 
 
@@ -91,28 +97,28 @@ def test_a_cable_cut_in_the_middle_fails_and_skips_the_rest(server: BusServer) -
     result = run(ends, lambda name: server.cut() if name == "burst" else None)
     ends.close()
     burst = next(case for case in result.cases if case.name == "burst")
-    assert burst.verdict is Verdict.FAILED
+    assert burst.verdict is CaseVerdict.FAILED
     assert burst.detail == "the bus server closed the connection"
     after = result.cases[result.cases.index(burst) + 1 :]
-    assert {case.verdict for case in after} == {Verdict.SKIPPED}
+    assert {case.verdict for case in after} == {CaseVerdict.SKIPPED}
     assert {case.detail for case in after} == {"the bus was lost before"}
     assert not result.passed
 
 
-def lost(record: Record) -> Record | None:
+def lost(record: BusRecord) -> BusRecord | None:
     return None if record.identifier % 16 == 3 else record
 
 
-def changed(record: Record) -> Record:
-    plain = record.kind is Kind.FRAME and not Flag.REMOTE & record.flags and record.length > 1
+def changed(record: BusRecord) -> BusRecord:
+    plain = record.kind is RecordKind.FRAME and not Flag.REMOTE & record.flags and record.length > 1
     return replace(record, data=b"\xee" + record.data[1:]) if plain else record
 
 
-def without_brs(record: Record) -> Record:
+def without_brs(record: BusRecord) -> BusRecord:
     return replace(record, flags=record.flags & ~Flag.BRS)
 
 
-def remote_as_data(record: Record) -> Record:
+def remote_as_data(record: BusRecord) -> BusRecord:
     return replace(record, flags=record.flags & ~Flag.REMOTE, data=NO_DATA)
 
 
@@ -126,18 +132,18 @@ def remote_as_data(record: Record) -> Record:
     ],
 )
 def test_a_bus_that_harms_frames_fails(
-    server: BusServer, harm: Callable[[Record], Record | None], failing: set[str]
+    server: BusServer, harm: Callable[[BusRecord], BusRecord | None], failing: set[str]
 ) -> None:
     server.harm = harm
     ends = on(server)
     result = run(ends, cases=[case for case in CASES if case.name in failing | {"error state"}])
     ends.close()
-    assert named(Verdict.PASSED, result) == {"error state"}
-    assert named(Verdict.FAILED, result) == failing
+    assert named(CaseVerdict.PASSED, result) == {"error state"}
+    assert named(CaseVerdict.FAILED, result) == failing
 
 
 def test_one_late_frame_in_two_hundred_fails(server: BusServer) -> None:
-    def hold_up(record: Record) -> Record:
+    def hold_up(record: BusRecord) -> BusRecord:
         if record.data[0] == 77:
             time.sleep(0.3)
         return record
@@ -147,7 +153,7 @@ def test_one_late_frame_in_two_hundred_fails(server: BusServer) -> None:
     ends.patience = 2.0
     result = run(ends, cases=[case for case in CASES if case.name == "latency"])
     ends.close()
-    assert result.cases[0].verdict is Verdict.FAILED
+    assert result.cases[0].verdict is CaseVerdict.FAILED
     assert result.cases[0].detail.startswith("1 of 200 frames took longer than 200 ms, the longest")
     assert result.cases[0].detail.endswith("the first of them frame 78")
 
@@ -157,13 +163,13 @@ def test_a_node_that_nobody_acknowledges_is_told_at_once(server: BusServer) -> N
     server.confirms = False
     setup = Setup("ravenchart", server.channel, "ravenchart", server.channel, echo=True)
     ends = open_ends(setup, patience=0.3)
-    server.inject(Record(Kind.STATE, code=1, transmit_errors=128))
+    server.inject(BusRecord(RecordKind.STATE, code=1, transmit_errors=128))
     began = time.monotonic()
     result = run(ends)
     ends.close()
     assert time.monotonic() - began < 5
     first, *others = result.cases
-    assert first.verdict is Verdict.FAILED
+    assert first.verdict is CaseVerdict.FAILED
     assert first.detail == (
         "0 of 9 frames arrived; no other node acknowledges a frame: connect one, or check the cable"
     )
@@ -171,7 +177,7 @@ def test_a_node_that_nobody_acknowledges_is_told_at_once(server: BusServer) -> N
 
 
 def test_frames_that_change_places_fail(server: BusServer) -> None:
-    def swap(record: Record) -> Record:
+    def swap(record: BusRecord) -> BusRecord:
         """The 1st and the 65th of the burst have one identifier; each comes as the other."""
         other = {0: 64, 64: 0}.get(record.data[0]) if record.length else None
         return record if other is None else replace(record, data=bytes([other]).ljust(64, b"\0"))
@@ -184,8 +190,8 @@ def test_frames_that_change_places_fail(server: BusServer) -> None:
 
 
 def test_error_frames_and_states_are_seen(server: BusServer) -> None:
-    server_error = Record(Kind.ERROR_FRAME, Flag.EXTENDED, 8, identifier=8)
-    passive = Record(Kind.STATE, code=1, transmit_errors=128)
+    server_error = BusRecord(RecordKind.ERROR_FRAME, Flag.EXTENDED, 8, identifier=8)
+    passive = BusRecord(RecordKind.STATE, code=1, transmit_errors=128)
     ends = on(server)
 
     def disturb(name: str) -> None:
@@ -197,14 +203,14 @@ def test_error_frames_and_states_are_seen(server: BusServer) -> None:
         ends, disturb, [c for c in CASES if c.name in ("error state", "error frames seen")]
     )
     ends.close()
-    assert [case.verdict for case in result.cases] == [Verdict.FAILED, Verdict.FAILED]
+    assert [case.verdict for case in result.cases] == [CaseVerdict.FAILED, CaseVerdict.FAILED]
     assert result.cases[0].detail == "state PASSIVE, PASSIVE on a sound bus"
     assert result.cases[1].detail.startswith("2 error frames came, the first 00000008 E [8]")
 
 
 def test_nothing_passed_is_not_a_pass() -> None:
     setup = Setup("virtual", "x", "virtual", "x")
-    case = CaseResult("burst", Verdict.SKIPPED, "not today", 0.0)
+    case = CaseResult("burst", CaseVerdict.SKIPPED, "not today", 0.0)
     result = LoopbackResult(setup, (case,), (), None)
     assert not result.passed
     assert verdict_line(result) == "FAIL: 0 passed, 0 failed, 1 skipped"
@@ -213,7 +219,7 @@ def test_nothing_passed_is_not_a_pass() -> None:
 
 def test_a_failure_is_told_in_each_form() -> None:
     setup = Setup("virtual", 'a<b>&"c', "virtual", "x")
-    cases = (CaseResult("burst", Verdict.FAILED, "sent <1> & lost", 0.5),)
+    cases = (CaseResult("burst", CaseVerdict.FAILED, "sent <1> & lost", 0.5),)
     result = LoopbackResult(setup, cases, (1_500, 1_700, 9_000), 10.0)
     suite = ElementTree.fromstring(loopback_files.junit(result).encode())
     failure = suite.find(".//failure")

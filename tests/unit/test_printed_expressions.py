@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 
 from ravenchart.gen.emit.ada.layout import laid_out
-from ravenchart.gen.emit.ada.syntax import Chain, Expr, Prefix, Ref, call
+from ravenchart.gen.emit.ada.syntax import Expr, OperatorChain, Prefix, Ref, call
 from ravenchart.gen.emit.ada.text import expression
 
 A, B, C = Ref("A"), Ref("B"), Ref("C")
 
 
-def _both(operator: str, left: Expr, right: Expr) -> Chain:
-    return Chain(operator, (left, right))
+def _both(operator: str, left: Expr, right: Expr) -> OperatorChain:
+    return OperatorChain(operator, (left, right))
 
 
 @pytest.mark.parametrize(
@@ -42,7 +42,7 @@ def test_parentheses_stand_where_the_precedence_asks_for_them(made: Expr, text: 
 
 def test_operands_and_positional_arguments_fill_lines() -> None:
     names = [Ref(f"Name_{n}") for n in range(8)]
-    assert laid_out(expression(Chain("+", tuple(names))), 40) == (
+    assert laid_out(expression(OperatorChain("+", tuple(names))), 40) == (
         "Name_0 + Name_1 + Name_2 + Name_3\n+ Name_4 + Name_5 + Name_6 + Name_7"
     )
     assert laid_out(expression(call("Sum_Of", *names)), 40) == (

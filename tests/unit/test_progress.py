@@ -7,13 +7,13 @@ import time
 import pytest
 
 from ravenchart import terminal
-from ravenchart.tools.steps import COMPILING, PROVING, Steps
+from ravenchart.tools.steps import COMPILING, PROVING, Announced
 
 
 def _told(phases: tuple[str, ...], times: list[float], counts: list[tuple[int, int]]) -> list[str]:
     told: list[str] = []
     clock = iter(times)
-    steps = Steps(phases, told.append, lambda: next(clock))
+    steps = Announced(phases, told.append, lambda: next(clock))
     for done, units in counts:
         assert steps.takes(f"completed {done} out of {units} ({done * 100 // units}%)...\n")
     assert not steps.takes("unit.adb:1:2: medium: overflow check might fail\n")

@@ -33,7 +33,6 @@ WORDS = {
 
 EXCEPTIONS = {
     "ravenchart": "the exit statuses are a table, printed as one paragraph",
-    "gen/language/expressions.py": "a grammar, not a sentence",
     "gen/language/names.py": "lists of reserved words",
     "gen/files/reference.py": "tables and paragraphs of one page in one text",
     "analysis/exchange/pycpa.py": "a program for pyCPA",

@@ -16,7 +16,7 @@ def test_sources_that_change_during_a_proof_give_no_result(
 ) -> None:
     source, results = tmp_path / "unit.ads", tmp_path / "results"
     source.write_text("package Unit is\nend Unit;\n")
-    task = proving.Task(tmp_path / "unit.gpr", {}, (results,), (tmp_path,))
+    task = proving.ProofTask(tmp_path / "unit.gpr", {}, (results,), (tmp_path,))
     empty = Results(1, 0, (), 0, (), frozenset({"unit.ads"}), ())
     stored: list[str] = []
     monkeypatch.setattr(ages, "version", lambda: "version")
@@ -25,7 +25,7 @@ def test_sources_that_change_during_a_proof_give_no_result(
     monkeypatch.setattr(earlier, "store", lambda key, _: stored.append(key))
     monkeypatch.setattr(spark_results, "read_results", lambda *_: empty)
 
-    def run(_task: proving.Task, _server: object, _tell: object) -> None:
+    def run(_task: proving.ProofTask, _server: object, _tell: object) -> None:
         source.write_text(text)
 
     monkeypatch.setattr(proving, "_run", run)

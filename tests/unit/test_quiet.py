@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from ravenchart.gen.emit.language.quiet import has_decided_conditions
+from ravenchart.gen.emit.language.quiet import words_of_system
 from tests.support.interpreted import component_system
 
 PART = """
@@ -34,4 +34,4 @@ def test_state_around_everything_is_always_active(
     more: tuple[str, str], state: str, decided: bool
 ) -> None:
     system = component_system(PART % (*more, state), "[unit.Main, unit.work]")
-    assert has_decided_conditions(system) == decided
+    assert ("'Valid attribute" in words_of_system(system)) == decided

@@ -17,7 +17,7 @@ from ravenchart.gen.derive.completion import on_one_node, programs
 from ravenchart.gen.diagnostics import render
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.commands import Remote, RemoteRead, Server
-from ravenchart.gen.model.system import System
+from ravenchart.gen.model.system import Carried, System
 from ravenchart.gen.pipeline import Loaded, load
 from ravenchart.paths import ROOT
 
@@ -100,11 +100,11 @@ def test_the_way_of_a_call_and_its_reply_is_a_chain_within_the_time_limit() -> N
     chain = next(chain for chain in system.chains if chain.name == "boss_1_Home")
     assert chain.reaction == 60_000_000
     assert chain.way == (
-        "message boss_1_Home",
+        Carried("boss_1_Home"),
         "mover_1.Motion",
         "mover_1.Serve",
         "mover_1.boss_1_Home_Reply",
-        "message boss_1_Home_Reply",
+        Carried("boss_1_Home_Reply"),
     )
     found = analyse(system)
     assert found.schedulable
@@ -149,7 +149,7 @@ def test_what_is_read_comes_to_all_readers_of_other_nodes_in_one_message() -> No
     assert isinstance(system.bound["boss_2", "Get_Place"].provider, Server)
     (chain,) = [chain for chain in system.chains if chain.name == "boss_3_Get_Place"]
     assert (chain.reaction, chain.age) == (None, 60_000_000)
-    assert chain.way == ("message mover_1_Get_Place", "boss_3.Get_Place", "boss_3.Plan")
+    assert chain.way == (Carried("mover_1_Get_Place"), "boss_3.Get_Place", "boss_3.Plan")
 
 
 SERVED = "period: 10 ms\n        wcet: 200 us"

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.core.can_response import FrameResponse
-from ravenchart.analysis.findings.differences import Word, differences
+from ravenchart.analysis.findings.differences import Wording, differences
 from ravenchart.analysis.plain.build import PlainSystem, load
 from ravenchart.analysis.plain.results import PlainResult, analyse, everything
 from ravenchart.analysis.present.page import both
@@ -107,8 +107,8 @@ def test_a_longer_execution_is_worse_and_a_shorter_one_better() -> None:
     before = everything(result(TEXT))
     longer = everything(result(TEXT.replace("10000,900,50", "10000,1900,50")))
     there, back = differences("old", before, longer), differences("old", longer, before)
-    worse = [row.element for row in there.rows if row.word is Word.WORSE]
-    better = [row.element for row in back.rows if row.word is Word.BETTER]
+    worse = [row.element for row in there.rows if row.word is Wording.WORSE]
+    better = [row.element for row in back.rows if row.word is Wording.BETTER]
     assert worse == better
     assert {"task sense", "message frame_cmd", "chain control", "obc"} <= set(worse)
     assert "task sense: R 2100 us -> 3110 us (+48.1 %), worse" in list(there.lines())

@@ -14,7 +14,7 @@ from ravenchart.analysis.core.fixed_priority import analyse, response_under
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Response
-from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.tasks import TableRow, Task
 from ravenchart.analysis.simulation import worst
 from ravenchart.analysis.simulation.engine import simulate
 from ravenchart.analysis.simulation.phases import Inside, Phase, Scenario, chance_scenario
@@ -59,7 +59,7 @@ def test_equals_run_first_in_first_out() -> None:
 
 
 def test_rows_run_in_their_frames_and_each_is_timed() -> None:
-    rows = (Row("fast", 2), Row("slow", 5, every=2, phase=1))
+    rows = (TableRow("fast", 2), TableRow("slow", 5, every=2, phase=1))
     task = Task("t", 1, 10, 10, 1, rows=rows)
     seen = simulate(Network((task,)), Scenario(), 40)
     assert seen.rows == {("t", "fast"): 3, ("t", "slow"): 8}
@@ -168,7 +168,7 @@ def test_every_task_attains_a_bound_that_comes_of_offsets() -> None:
     for seed in range(SYSTEMS // 2):
         chance = random.Random(seed)
         plain = replace(random_network(chance, plain=True), sections=())
-        rows = (Row("r0", 5), Row("r1", 9, 2, seed % 2))
+        rows = (TableRow("r0", 5), TableRow("r1", 9, 2, seed % 2))
         tasks = tuple(
             replace(task, rows=rows) if number % 2 else task
             for number, task in enumerate(plain.tasks)

@@ -12,7 +12,7 @@ import pytest
 
 from ravenchart.analysis.core import holistic
 from ravenchart.analysis.core.bus import Bus, Frame
-from ravenchart.analysis.core.chains import Chain, Hop, Latency, Step, latency
+from ravenchart.analysis.core.chains import ChainStep, HopKind, Latency, TimedChain, latency
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.exchange import cheddar, mast, pycpa
@@ -24,7 +24,7 @@ from ravenchart.analysis.simulation.phases import Phase, Scenario
 from tests.support.certificates import certificate, compiled
 from tests.support.timing_models import QUEUE, analysed
 
-RELEASED, SAMPLED, QUEUED = Hop.RELEASED, Hop.SAMPLED, Hop.QUEUED
+RELEASED, SAMPLED, QUEUED = HopKind.RELEASED, HopKind.SAMPLED, HopKind.QUEUED
 
 
 def network(*, sporadic: bool) -> Network:
@@ -46,8 +46,8 @@ def network(*, sporadic: bool) -> Network:
     )
 
 
-def of(system: Network, *steps: tuple[str, Hop]) -> Latency:
-    chain = Chain("chain", tuple(Step(name, hop) for name, hop in steps))
+def of(system: Network, *steps: tuple[str, HopKind]) -> Latency:
+    chain = TimedChain("chain", tuple(ChainStep(name, hop) for name, hop in steps))
     return latency(chain, system, holistic.analyse(system))
 
 
@@ -171,7 +171,7 @@ def test_exports_say_it_where_the_format_can() -> None:
     assert word in pycpa.export(system, (), "a") and word in cheddar.export(system, (), "a")
     assert "sporadic" not in pycpa.export(network(sporadic=False), (), "a")
     rare = replace(system, tasks=(replace(system.tasks[0], sporadic=True), *system.tasks[1:]))
-    chain = Chain("way", (Step("other", SAMPLED), Step("act", SAMPLED)))
+    chain = TimedChain("way", (ChainStep("other", SAMPLED), ChainStep("act", SAMPLED)))
     assert "EffectChain" in pycpa.export(system, (chain,), "a")
     assert "Left out: chain way" in pycpa.export(rare, (chain,), "a")
 

@@ -54,7 +54,7 @@ def test_the_frame_and_the_calls_of_a_unit_are_read() -> None:
     found = graph.read([text])
     assert list(found) == ["/x/a.adb:p__inner.3"]
     one = found["/x/a.adb:p__inner.3"]
-    assert (one.name, one.size, one.frame) == ("p__inner.3", 48, graph.Frame.DYNAMIC)
+    assert (one.name, one.size, one.frame) == ("p__inner.3", 48, graph.StackFrame.DYNAMIC)
     assert (one.place, one.objects) == ("a.adb:1:1", ("T1b a.adb:9:3",))
     assert one.calls == {"q__leaf": "a.adb:7:8"}
 
@@ -239,7 +239,7 @@ def test_frames_and_calls_of_a_library_are_read_in_its_code() -> None:
     found = machine.read(CODE.splitlines())
     assert (found["start"].size, set(found["start"].calls)) == (80, {"leaf", "tail"})
     assert (found["leaf"].size, set(found["leaf"].calls)) == (4096, {graph.INDIRECT})
-    assert found["tail"].frame is graph.Frame.DYNAMIC
+    assert found["tail"].frame is graph.StackFrame.DYNAMIC
     assert not found["tail"].calls  # a table of jumps is no call
 
 

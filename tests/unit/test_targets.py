@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import checking, images, programs, targets
+from ravenchart.building import checking, images, programs, targets, variants
 from ravenchart.failures import Refused, ToolFailed, Unusable
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
@@ -38,11 +38,11 @@ def model(tmp_path: Path, *changes: tuple[str, str]) -> System:
 
 
 def test_every_folder_with_a_file_is_a_target() -> None:
-    assert targets.names() == ("native", "zynqmp")
-    for name in targets.names():
+    assert variants.targets() == ("native", "zynqmp")
+    for name in variants.targets():
         facts = targets.target(name).facts
-        assert set(facts.drivers) <= set(programs.DRIVERS)
-    assert set(targets.target("native").facts.drivers) == set(programs.DRIVERS) - {"xilinx"}
+        assert set(facts.drivers) <= set(variants.DRIVERS)
+    assert set(targets.target("native").facts.drivers) == set(variants.DRIVERS) - {"xilinx"}
     with pytest.raises(Unusable, match="there is no target moon; the targets are native, zynqmp"):
         targets.target("moon")
 
@@ -51,7 +51,7 @@ def test_a_wrong_file_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     (tmp_path / "moon").mkdir()
     file = tmp_path / "moon" / "target.toml"
     file.write_text('run_time = "light"\ndrivers = []\nclock = 1\n', encoding="utf-8")
-    monkeypatch.setattr(targets, "RUNTIME", tmp_path)
+    monkeypatch.setattr(variants, "RUNTIME", tmp_path)
     with pytest.raises(Unusable, match=r"target\.toml: 2 validation errors"):
         targets.target("moon")
 
@@ -59,11 +59,11 @@ def test_a_wrong_file_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 def test_a_board_needs_a_run_time_library_and_a_compiler(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.delenv(targets.RTS_VARIABLE, raising=False)
+    monkeypatch.delenv(variants.RTS_VARIABLE, raising=False)
     chosen = targets.target("zynqmp")
     with pytest.raises(Unusable, match="`--rts DIR` or RAVENCHART_RTS"):
         targets.board(chosen, None)
-    monkeypatch.setenv(targets.RTS_VARIABLE, str(tmp_path))
+    monkeypatch.setenv(variants.RTS_VARIABLE, str(tmp_path))
     with pytest.raises(Unusable, match="is no Ada run-time library: it has no folder adalib"):
         targets.board(chosen, None)
     (tmp_path / "adalib").mkdir()

@@ -7,10 +7,10 @@ import re
 
 import pytest
 
-from ravenchart.gen.files.spans import Mapping, Sequence, plain
+from ravenchart.gen.files.spans import Sequence, YamlMapping, plain
 from ravenchart.paths import ROOT
 from ravenchart.workbench import edits
-from ravenchart.workbench.edits import Document, Item, LayoutError
+from ravenchart.workbench.edits import Document, LayoutError, TakenItem
 
 BLOCK = """\
 processors:  # all of them
@@ -38,7 +38,7 @@ def document(text: str) -> Document:
     return made
 
 
-def mapping(made: Document, *names: str) -> Mapping:
+def mapping(made: Document, *names: str) -> YamlMapping:
     """The mapping at these keys."""
     found = made.root
     for name in names:
@@ -222,4 +222,4 @@ def test_random_moves_in_the_examples_lose_no_comment_and_no_word() -> None:
 def test_an_item_is_taken_with_its_quotes() -> None:
     made = document("p: {activities: ['a.x', b.y]}\n")
     _, item = edits.without_item(made, mapping(made, "p"), "activities", 0, comment_stays=True)
-    assert item == Item("a.x", "'a.x'")
+    assert item == TakenItem("a.x", "'a.x'")

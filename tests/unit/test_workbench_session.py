@@ -13,7 +13,7 @@ from ravenchart.analysis.present.figures import figures
 from ravenchart.building import checking
 from ravenchart.failures import Refused
 from ravenchart.paths import ROOT
-from ravenchart.workbench.changes import RefusedError
+from ravenchart.workbench.changes import ChangeRefusedError
 from ravenchart.workbench.requests import Move, SetProcessor, SetTime
 from ravenchart.workbench.session import InvalidError, Session
 
@@ -181,24 +181,24 @@ def test_a_processor_may_be_empty_for_a_while(session: Session) -> None:
 def test_a_wrong_duration_is_refused_with_the_reason(
     session: Session, value: str, why: str
 ) -> None:
-    with pytest.raises(RefusedError, match=why):
+    with pytest.raises(ChangeRefusedError, match=why):
         time(session, "joint_x.position_control", "wcet", value)
     assert not session.dirty
 
 
 def test_what_is_not_in_the_model_is_refused(session: Session) -> None:
-    with pytest.raises(RefusedError, match="no processor has the row"):
+    with pytest.raises(ChangeRefusedError, match="no processor has the row"):
         move(session, "joint_q.ports", "control", 0)
-    with pytest.raises(RefusedError, match="no processor named"):
+    with pytest.raises(ChangeRefusedError, match="no processor named"):
         move(session, "joint_x.ports", "elsewhere", 0)
-    with pytest.raises(RefusedError, match="does not declare"):
+    with pytest.raises(ChangeRefusedError, match="does not declare"):
         time(session, "joint_x.nothing", "wcet", "1 ms")
-    with pytest.raises(RefusedError, match="needs a wcet"):
+    with pytest.raises(ChangeRefusedError, match="needs a wcet"):
         time(session, "joint_x.ports", "wcet", None)
-    with pytest.raises(RefusedError, match="that of its processor"):
+    with pytest.raises(ChangeRefusedError, match="that of its processor"):
         time(session, "robot_bus.receive", "period", "1 ms")
     for wrong in (0, 31, "7", True):
-        with pytest.raises((RefusedError, ValueError)):
+        with pytest.raises((ChangeRefusedError, ValueError)):
             processor(session, "control", "priority", wrong)
 
 
@@ -239,7 +239,7 @@ def test_a_change_outside_is_never_overwritten_unseen(session: Session, folder: 
     time(session, "joint_x.position_control", "wcet", "400 us")
     theirs = path.read_bytes() + b"# theirs\n"
     path.write_bytes(theirs)
-    with pytest.raises(RefusedError, match="has changed on the disk"):
+    with pytest.raises(ChangeRefusedError, match="has changed on the disk"):
         session.save(late=True)
     assert path.read_bytes() == theirs and list(session.outside) == [str(path)]
     session.keep()
@@ -313,7 +313,7 @@ def test_a_file_that_cannot_be_written_is_told(
     monkeypatch.setattr(os, "fsync", full)
     time(session, "joint_x.position_control", "wcet", "400 us")
     before = {name: Path(name).read_bytes() for name in session.now.texts}
-    with pytest.raises(RefusedError, match=r"cannot write .*joint.yaml: No space left"):
+    with pytest.raises(ChangeRefusedError, match=r"cannot write .*joint.yaml: No space left"):
         session.save(late=False)
     assert {name: Path(name).read_bytes() for name in session.now.texts} == before
     assert session.dirty

@@ -5,11 +5,6 @@
 package Canopen_Device.Controller.Activities
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    procedure Serve
      (Request     : Canopen_Device.Transfer;
       Order       : Canopen_Device.Order;

@@ -5,11 +5,6 @@
 package Canopen_Device.Controller.Flows
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    procedure Respond
      (Answer            : Canopen_Device.Transfer;
       Answered          : in out Canopen_Device.Count;

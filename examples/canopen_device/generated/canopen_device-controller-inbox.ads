@@ -7,8 +7,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    use type Inbox_States.Leaf;
    use type Ravenchart.Number;
@@ -20,7 +18,12 @@ is
 
    --  [Controller.Inbox.transitions] in order of precedence, innermost
    --  source first
-   type Selection is (Initial_Entry, Ask, Order, Synchronise, None);
+   type Selection is
+     (Initial_Entry,
+      Ask,            --  [ask] device.yaml:105
+      Order,          --  [order] device.yaml:115
+      Synchronise,    --  [synchronise] device.yaml:122
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Synchronise;
    subtype Transition is Selection range Ask .. Synchronise;

@@ -7,8 +7,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    function Select_Transition
      (Leaf : Nmt_States.Leaf;
@@ -171,10 +169,12 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Exit_Initialisation
       with
         Post =>
@@ -189,6 +189,7 @@ is
          Active :=
            Chart.Moved (Active, Chart.Initialisation, Chart.Nowhere);
       end Exit_Initialisation;
+
       procedure Enter_Initialisation
       with
         Post =>
@@ -204,6 +205,7 @@ is
          Active :=
            Chart.Moved (Active, Chart.Nowhere, Chart.Initialisation);
       end Enter_Initialisation;
+
       procedure Enter_Boot_Up_Due
       with
         Post =>

@@ -9,8 +9,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    use type Nmt_States.Leaf;
    use type Ravenchart.Timers.Timer;
@@ -24,8 +22,15 @@ is
    --  [Controller.Nmt.transitions] in order of precedence, innermost source
    --  first
    type Selection is
-     (Initial_Entry, Initialised, Booted, Start, Stop, Prepare, Reset_Node,
-      Reset_Communication, None);
+     (Initial_Entry,
+      Initialised,          --  [initialised] device.yaml:66
+      Booted,               --  [booted] device.yaml:67
+      Start,                --  [start] device.yaml:68
+      Stop,                 --  [stop] device.yaml:73
+      Prepare,              --  [prepare] device.yaml:78
+      Reset_Node,           --  [reset_node] device.yaml:83
+      Reset_Communication,  --  [reset_communication] device.yaml:89
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Reset_Communication;
    subtype Transition is Selection range Initialised .. Reset_Communication;

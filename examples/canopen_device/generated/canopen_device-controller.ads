@@ -8,11 +8,6 @@ with Ravenchart.Port_Regions;
 package Canopen_Device.Controller
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  [Controller.events]
    type Event_Name is (Commanded, Sync_Came, Ordered, Asked);
 
@@ -37,14 +32,22 @@ is
    --  [Controller.Nmt.states]
    package Nmt_States is
       type Leaf is
-        (Initialisation, Boot_Up_Due, Pre_Operational, Operational, Stopped);
+        (Initialisation,   --  [Initialisation] device.yaml:56
+         Boot_Up_Due,      --  [Boot_Up_Due] device.yaml:57
+         Pre_Operational,  --  [Pre_Operational] device.yaml:62
+         Operational,      --  [Operational] device.yaml:63
+         Stopped           --  [Stopped] device.yaml:64
+        );
 
+      --  [Ready] device.yaml:59
       subtype Ready is Leaf range Pre_Operational .. Stopped;
    end Nmt_States;
 
    --  [Controller.Inbox.states]
    package Inbox_States is
-      type Leaf is (Open);
+      type Leaf is
+        (Open   --  [Open] device.yaml:103
+        );
    end Inbox_States;
 
    --  [Controller.nmt_in] what its readers see

@@ -21,8 +21,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    --  [device.nmt_in]
    package Nmt_In_Mailbox is new Ravenchart.Queues
@@ -172,6 +170,7 @@ is
 
    procedure Put_Nmt_In (Item : Canopen_Device.Nmt_Command) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Nmt_In_Mailbox.Put (Item, Status);
@@ -188,6 +187,7 @@ is
 
    procedure Put_Sync_In (Item : Canopen_Device.Sync_Count) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Sync_In_Mailbox.Put (Item, Status);
@@ -216,6 +216,7 @@ is
 
    procedure Put_Sdo_Request (Item : Canopen_Device.Sdo) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Sdo_Request_Mailbox.Put (Item, Status);
@@ -233,6 +234,7 @@ is
 
    procedure Offer (Item : Controller.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item.Name is
@@ -309,7 +311,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Nmt_In_Item : Canopen_Device.Nmt_Command;
       Nmt_In_Change : Controller.Nmt_In_Port.Change;
       Sync_In_Item : Canopen_Device.Sync_Count;
@@ -423,10 +427,13 @@ is
    procedure Step_Nmt (Ins : Controller.Nmt.Inputs) is
       Now : Controller.Nmt.Occurrence;
       Fired : Controller.Nmt.Selection;
+
       use type Controller.Nmt.Selection;
       use type Controller.Nmt.Occurrence;
+
       Event : Controller.Event := Controller.No_Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
    begin
       Controller.Nmt.Poll (Nmt_Region, Now);
@@ -466,10 +473,13 @@ is
    procedure Step_Inbox (Ins : Controller.Inbox.Inputs) is
       Now : Controller.Inbox.Occurrence;
       Fired : Controller.Inbox.Selection;
+
       use type Controller.Inbox.Selection;
       use type Controller.Inbox.Occurrence;
+
       Event : Controller.Event := Controller.No_Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
    begin
       Controller.Inbox.Poll (Inbox_Region, Now);

@@ -13,8 +13,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    function Frame_Of_Tpdo_1
      (Item : Canopen_Device.Status_Pdo)
@@ -30,6 +28,7 @@ is
 
    procedure Send_Tpdo_1 (Item : Canopen_Device.Status_Pdo) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Tpdo_1 (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -62,6 +61,7 @@ is
 
    procedure Send_Sdo_Response (Item : Canopen_Device.Sdo) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Sdo_Response (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -95,6 +95,7 @@ is
 
    procedure Send_Heartbeat (Item : Canopen_Device.Nmt_State) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Heartbeat (Item);
       Status : Ravenchart.Can.Send_Status;

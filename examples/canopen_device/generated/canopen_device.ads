@@ -7,11 +7,6 @@ with Ravenchart;
 package Canopen_Device
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  All values counted in 0.1 degC.
    type Unit_0_1_DegC is new Ravenchart.Number;
 

@@ -97,6 +97,7 @@ is
 
    procedure Put_Command (Item : Cartesian_Robot.Robot_Order) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Command_Mailbox.Put (Item, Status);
@@ -147,6 +148,7 @@ is
 
    procedure Offer (Item : Robot_Coordinator.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
@@ -219,7 +221,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Command_Item : Cartesian_Robot.Robot_Order;
       Command_Change : Robot_Coordinator.Command_Port.Change;
       Report_X_Item : Cartesian_Robot.Joint_Report;
@@ -327,11 +331,15 @@ is
    procedure Step_Mission (Ins : Robot_Coordinator.Mission.Inputs) is
       Now : Robot_Coordinator.Mission.Occurrence;
       Fired : Robot_Coordinator.Mission.Selection;
+
       use type Robot_Coordinator.Mission.Selection;
       use type Robot_Coordinator.Mission.Occurrence;
+
       Event : Robot_Coordinator.Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Box : Robot_Coordinator.Mission.Outbox;
    begin
       Robot_Coordinator.Mission.Poll (Mission_Region, Now);

@@ -82,10 +82,12 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Exit_Alarmed
       with
         Post =>
@@ -99,6 +101,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active := Chart.Moved (Active, Chart.Alarmed, Chart.Nowhere);
       end Exit_Alarmed;
+
       procedure Enter_Alarmed
       with
         Post =>

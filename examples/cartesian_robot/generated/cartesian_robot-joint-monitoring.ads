@@ -18,7 +18,12 @@ is
    --  [Joint.Monitoring.transitions] in order of precedence, innermost
    --  source first
    type Selection is
-     (Initial_Entry, Strayed, Limit_Hit, End_Reached, Drive_Failed, Calm,
+     (Initial_Entry,
+      Strayed,        --  [strayed] joint.yaml:122
+      Limit_Hit,      --  [limit_hit] joint.yaml:127
+      End_Reached,    --  [end_reached] joint.yaml:132
+      Drive_Failed,   --  [drive_failed] joint.yaml:137
+      Calm,           --  [calm] joint.yaml:142
       None);
 
    subtype Firing is Selection range Initial_Entry .. Calm;

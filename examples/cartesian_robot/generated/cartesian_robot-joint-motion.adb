@@ -171,10 +171,12 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Exit_Homing
       with
         Post =>
@@ -188,6 +190,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active := Chart.Moved (Active, Chart.Homing, Chart.Operational);
       end Exit_Homing;
+
       procedure Leave_Operational
       with
         Pre =>
@@ -224,6 +227,7 @@ is
                  Chart.Moved (Active, Chart.Moving, Chart.Operational);
          end case;
       end Leave_Operational;
+
       procedure Enter_Idle
       with
         Post =>
@@ -238,6 +242,7 @@ is
          Active := Chart.Moved (Active, Chart.Operational, Chart.Idle);
          Self.Data.Goal.Wanted := Cartesian_Robot.Hold;
       end Enter_Idle;
+
       procedure Enter_Homing
       with
         Post =>
@@ -251,6 +256,7 @@ is
          Ravenchart.Timers.Arm (Self.Timers (1), 1_000);
          Active := Chart.Moved (Active, Chart.Operational, Chart.Homing);
       end Enter_Homing;
+
       procedure Enter_Seeking
       with
         Post =>
@@ -266,6 +272,7 @@ is
          Self.Data.Homed := False;
          Self.Data.Goal.Wanted := Cartesian_Robot.Seek_Low_End;
       end Enter_Seeking;
+
       procedure Enter_Backing_Off
       with
         Post =>
@@ -280,6 +287,7 @@ is
          Active := Chart.Moved (Active, Chart.Homing, Chart.Backing_Off);
          Self.Data.Goal.Wanted := Cartesian_Robot.Leave_Low_End;
       end Enter_Backing_Off;
+
       procedure Enter_Moving
       with
         Post =>
@@ -297,6 +305,7 @@ is
               Ins.Travel);
          Self.Data.Goal.Wanted := Cartesian_Robot.Go;
       end Enter_Moving;
+
       procedure Enter_Fault
       with
         Post =>

@@ -20,9 +20,23 @@ is
    --  [Joint.Motion.transitions] in order of precedence, innermost source
    --  first
    type Selection is
-     (Initial_Entry, End_Found, End_Left, At_Speed, No_Cruise, Brake,
-      Start_Homing, No_End, Start_Move, Arrived, Halt, Lost, Failed,
-      Strayed, Limit, Reset, None);
+     (Initial_Entry,
+      End_Found,      --  [end_found] joint.yaml:81
+      End_Left,       --  [end_left] joint.yaml:83
+      At_Speed,       --  [at_speed] joint.yaml:95
+      No_Cruise,      --  [no_cruise] joint.yaml:96
+      Brake,          --  [brake] joint.yaml:97
+      Start_Homing,   --  [start_homing] joint.yaml:76
+      No_End,         --  [no_end] joint.yaml:82
+      Start_Move,     --  [start_move] joint.yaml:90
+      Arrived,        --  [arrived] joint.yaml:98
+      Halt,           --  [halt] joint.yaml:102
+      Lost,           --  [lost] joint.yaml:103
+      Failed,         --  [failed] joint.yaml:104
+      Strayed,        --  [strayed] joint.yaml:105
+      Limit,          --  [limit] joint.yaml:106
+      Reset,          --  [reset] joint.yaml:107
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Reset;
    subtype Transition is Selection range End_Found .. Reset;

@@ -17,18 +17,35 @@ is
    --  [Joint.Motion.states]
    package Motion_States is
       type Leaf is
-        (Idle, Seeking, Backing_Off, Accelerating, Cruising, Braking, Limit,
-         Drive);
+        (Idle,          --  [Idle] joint.yaml:37
+         Seeking,       --  [Seeking] joint.yaml:44
+         Backing_Off,   --  [Backing_Off] joint.yaml:50
+         Accelerating,  --  [Accelerating] joint.yaml:62
+         Cruising,      --  [Cruising] joint.yaml:63
+         Braking,       --  [Braking] joint.yaml:64
+         Limit,         --  [Limit] joint.yaml:73
+         Drive          --  [Drive] joint.yaml:74
+        );
 
+      --  [Operational] joint.yaml:34
       subtype Operational is Leaf range Idle .. Braking;
+
+      --  [Homing] joint.yaml:41
       subtype Homing is Operational range Seeking .. Backing_Off;
+
+      --  [Moving] joint.yaml:54
       subtype Moving is Operational range Accelerating .. Braking;
+
+      --  [Fault] joint.yaml:65
       subtype Fault is Leaf range Limit .. Drive;
    end Motion_States;
 
    --  [Joint.Monitoring.states]
    package Monitoring_States is
-      type Leaf is (Watching, Alarmed);
+      type Leaf is
+        (Watching,  --  [Watching] joint.yaml:119
+         Alarmed    --  [Alarmed] joint.yaml:120
+        );
    end Monitoring_States;
 
    --  [Joint.order] what its readers see

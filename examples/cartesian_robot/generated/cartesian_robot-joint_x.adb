@@ -107,6 +107,7 @@ is
 
    procedure Put_Order (Item : Cartesian_Robot.Joint_Order) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Order_Mailbox.Put (Item, Status);
@@ -134,6 +135,7 @@ is
 
    procedure Offer (Item : Joint.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
@@ -231,7 +233,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Order_Item : Cartesian_Robot.Joint_Order;
       Order_Change : Joint.Order_Port.Change;
       Feedback_Item : Cartesian_Robot.Drive_Feedback;
@@ -289,7 +293,9 @@ is
    procedure Step_Monitoring (Ins : Joint.Monitoring.Inputs) is
       Now : Joint.Monitoring.Occurrence;
       Fired : Joint.Monitoring.Selection;
+
       use type Joint.Monitoring.Selection;
+
       Box : Joint.Monitoring.Outbox;
    begin
       Joint.Monitoring.Poll (Monitoring_Region, Now);
@@ -351,10 +357,13 @@ is
    procedure Step_Motion (Ins : Joint.Motion.Inputs) is
       Now : Joint.Motion.Occurrence;
       Fired : Joint.Motion.Selection;
+
       use type Joint.Motion.Selection;
       use type Joint.Motion.Occurrence;
+
       Event : Joint.Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
    begin
       Joint.Motion.Poll (Motion_Region, Now);

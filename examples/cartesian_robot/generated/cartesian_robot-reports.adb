@@ -24,6 +24,7 @@ with SPARK_Mode
 is
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
+
       Item : Ravenchart.Traces.Trace_Record;
       Status : Ravenchart.Queueing.Take_Status;
    begin
@@ -38,6 +39,7 @@ is
 
    procedure Report_Reception is
       use type Ravenchart.Element_Id;
+
       Found : Reception.Processor.Statistics;
    begin
       Reception.Processor.Observe (Found);
@@ -53,6 +55,7 @@ is
 
    procedure Report_Trajectory is
       use type Ravenchart.Element_Id;
+
       Found : Trajectory.Processor.Statistics;
    begin
       Trajectory.Processor.Observe (Found);
@@ -68,6 +71,7 @@ is
 
    procedure Report_Control is
       use type Ravenchart.Element_Id;
+
       Found : Control.Processor.Statistics;
    begin
       Control.Processor.Observe (Found);
@@ -83,6 +87,7 @@ is
 
    procedure Report_Supervision is
       use type Ravenchart.Element_Id;
+
       Found : Supervision.Processor.Statistics;
    begin
       Supervision.Processor.Observe (Found);

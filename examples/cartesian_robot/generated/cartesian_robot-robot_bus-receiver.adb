@@ -27,6 +27,7 @@ is
    procedure Run_Receive (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
+
       Valid : Boolean;
       Robot_Command_Item : Cartesian_Robot.Robot_Order;
       X_Feedback_Item : Cartesian_Robot.Drive_Feedback;

@@ -25,6 +25,7 @@ is
 
    procedure Send_Robot_Status (Item : Cartesian_Robot.Robot_Report) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Robot_Status (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -58,6 +59,7 @@ is
 
    procedure Send_X_Set_Point (Item : Cartesian_Robot.Drive_Set_Point) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_X_Set_Point (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -91,6 +93,7 @@ is
 
    procedure Send_Y_Set_Point (Item : Cartesian_Robot.Drive_Set_Point) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Y_Set_Point (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -124,6 +127,7 @@ is
 
    procedure Send_Z_Set_Point (Item : Cartesian_Robot.Drive_Set_Point) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Z_Set_Point (Item);
       Status : Ravenchart.Can.Send_Status;

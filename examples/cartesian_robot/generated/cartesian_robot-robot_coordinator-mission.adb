@@ -184,10 +184,12 @@ is
               Self.Timers'Old (2))
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Exit_Departing
       with
         Post =>
@@ -203,6 +205,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active := Chart.Moved (Active, Chart.Departing, Chart.Travelling);
       end Exit_Departing;
+
       procedure Exit_Recovering
       with
         Post =>
@@ -218,6 +221,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (2));
          Active := Chart.Moved (Active, Chart.Recovering, Chart.Stopped);
       end Exit_Recovering;
+
       procedure Leave_Travelling
       with
         Pre =>
@@ -243,6 +247,7 @@ is
                  Chart.Moved (Active, Chart.Under_Way, Chart.Travelling);
          end case;
       end Leave_Travelling;
+
       procedure Leave_Active
       with
         Pre =>
@@ -273,6 +278,7 @@ is
                  Chart.Moved (Active, Chart.Travelling, Chart.Active);
          end case;
       end Leave_Active;
+
       procedure Enter_Homing
       with
         Post =>
@@ -298,6 +304,7 @@ is
             Target => 0);
          Box.Order_Z_Sent := True;
       end Enter_Homing;
+
       procedure Enter_Travelling
       with
         Post =>
@@ -322,6 +329,7 @@ is
             Target => Ins.Command.Value.Z);
          Box.Order_Z_Sent := True;
       end Enter_Travelling;
+
       procedure Enter_Departing
       with
         Post =>
@@ -338,6 +346,7 @@ is
          Ravenchart.Timers.Arm (Self.Timers (1), 5);
          Active := Chart.Moved (Active, Chart.Travelling, Chart.Departing);
       end Enter_Departing;
+
       procedure Enter_Stopped
       with
         Post =>
@@ -362,6 +371,7 @@ is
             Target => 0);
          Box.Order_Z_Sent := True;
       end Enter_Stopped;
+
       procedure Enter_Recovering
       with
         Post =>

@@ -19,10 +19,24 @@ is
    --  [Robot_Coordinator.Mission.transitions] in order of precedence,
    --  innermost source first
    type Selection is
-     (Initial_Entry, Under_Way, Arrived, Home, Home_Again, Homed, Move,
-      Halt, Halt_Homing, Shut_Down_Failed, Recover, Recovered,
-      Not_Recovered, Shut_Down_Recovering, Joint_Failed, Joint_Lost,
-      Shut_Down, None);
+     (Initial_Entry,
+      Under_Way,             --  [under_way] coordinator.yaml:68
+      Arrived,               --  [arrived] coordinator.yaml:69
+      Home,                  --  [home] coordinator.yaml:61
+      Home_Again,            --  [home_again] coordinator.yaml:62
+      Homed,                 --  [homed] coordinator.yaml:63
+      Move,                  --  [move] coordinator.yaml:67
+      Halt,                  --  [halt] coordinator.yaml:73
+      Halt_Homing,           --  [halt_homing] coordinator.yaml:74
+      Shut_Down_Failed,      --  [shut_down_failed] coordinator.yaml:81
+      Recover,               --  [recover] coordinator.yaml:82
+      Recovered,             --  [recovered] coordinator.yaml:83
+      Not_Recovered,         --  [not_recovered] coordinator.yaml:87
+      Shut_Down_Recovering,  --  [shut_down_recovering] coordinator.yaml:88
+      Joint_Failed,          --  [joint_failed] coordinator.yaml:75
+      Joint_Lost,            --  [joint_lost] coordinator.yaml:79
+      Shut_Down,             --  [shut_down] coordinator.yaml:80
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Shut_Down;
    subtype Transition is Selection range Under_Way .. Shut_Down;

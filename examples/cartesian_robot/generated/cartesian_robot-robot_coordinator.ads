@@ -19,11 +19,23 @@ is
    --  [Robot_Coordinator.Mission.states]
    package Mission_States is
       type Leaf is
-        (Waiting, Homing, Ready, Departing, Under_Way, Failed, Recovering,
-         Shut_Down);
+        (Waiting,     --  [Waiting] coordinator.yaml:29
+         Homing,      --  [Homing] coordinator.yaml:30
+         Ready,       --  [Ready] coordinator.yaml:35
+         Departing,   --  [Departing] coordinator.yaml:43
+         Under_Way,   --  [Under_Way] coordinator.yaml:44
+         Failed,      --  [Failed] coordinator.yaml:52
+         Recovering,  --  [Recovering] coordinator.yaml:54
+         Shut_Down    --  [Shut_Down] coordinator.yaml:59
+        );
 
+      --  [Active] coordinator.yaml:26
       subtype Active is Leaf range Waiting .. Under_Way;
+
+      --  [Travelling] coordinator.yaml:36
       subtype Travelling is Active range Departing .. Under_Way;
+
+      --  [Stopped] coordinator.yaml:45
       subtype Stopped is Leaf range Failed .. Shut_Down;
    end Mission_States;
 

@@ -5,11 +5,6 @@
 package Crossing_System.Crossing.Flows
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    procedure Show
      (Cars_See       : Crossing_System.Car_Light;
       Walkers_See    : Crossing_System.Walk_Light;

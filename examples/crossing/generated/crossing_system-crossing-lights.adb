@@ -10,8 +10,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    function Select_Cars
      (Place : Lights_States.Configuration;
@@ -207,6 +205,7 @@ is
        and then Is_Safe (Self.Place, Self.Data)
    is
       use type Chart.Node;
+
       Active_Cars : Chart.Node :=
         (if Self.Started then Chart.Innermost_Cars (Self.Place)
          else Chart.Nowhere)
@@ -219,12 +218,15 @@ is
         (if Self.Started then Chart.Innermost_Top (Self.Place)
          else Chart.Nowhere)
       with Ghost;
+
       function Data_After_Exit_Held (Data : Variables) return Variables is
         ((Data with delta Cars_Stopped => False)) with Ghost;
+
       function Data_After_Exit_On_The_Road
         (Data : Variables)
         return Variables is
         ((Data with delta Road_Free => True)) with Ghost;
+
       function Data_After_Leave_Red (Data : Variables) return Variables is
         (case Lights_States.Red'(Self.Place.In_Cars) is
            when Lights_States.Stopping => Data,
@@ -234,6 +236,7 @@ is
         Pre =>
           Self.Place.Top = Lights_States.Working
           and then Self.Place.In_Cars in Lights_States.Red;
+
       function Data_After_Leave_Cars (Data : Variables) return Variables is
         (case Self.Place.In_Cars is
            when Lights_States.Red => Data_After_Leave_Red (Data),
@@ -241,44 +244,58 @@ is
            when Lights_States.Green => Data,
            when Lights_States.Yellow => Data)
       with Ghost, Pre => Self.Place.Top = Lights_States.Working;
+
       function Data_After_Leave_Walkers (Data : Variables) return Variables is
         (case Self.Place.In_Walkers is
            when Lights_States.Dont_Walk => Data,
            when Lights_States.On_The_Road =>
               Data_After_Exit_On_The_Road (Data))
       with Ghost, Pre => Self.Place.Top = Lights_States.Working;
+
       function Data_After_Enter_Blinking (Data : Variables) return Variables is
         ((Data with delta
             Cars_See => Crossing_System.Slow,
             Walkers_See => Crossing_System.Dark)) with Ghost;
+
       function Data_After_Enter_Red (Data : Variables) return Variables is
         ((Data with delta Cars_See => Crossing_System.Stop)) with Ghost;
+
       function Data_After_Enter_Held (Data : Variables) return Variables is
         ((Data with delta Cars_Stopped => True)) with Ghost;
+
       function Data_After_Enter_Red_Yellow
         (Data : Variables)
         return Variables is
         ((Data with delta Cars_See => Crossing_System.Ready)) with Ghost;
+
       function Data_After_Enter_Green (Data : Variables) return Variables is
         ((Data with delta Cars_See => Crossing_System.Go)) with Ghost;
+
       function Data_After_Enter_Yellow (Data : Variables) return Variables is
         ((Data with delta Cars_See => Crossing_System.Slow)) with Ghost;
+
       function Data_After_Enter_Dont_Walk
         (Data : Variables)
         return Variables is
         ((Data with delta Walkers_See => Crossing_System.Wait)) with Ghost;
+
       function Data_After_Enter_Nobody (Data : Variables) return Variables is
         ((Data with delta Requested => False)) with Ghost;
+
       function Data_After_Enter_Waiting (Data : Variables) return Variables is
         ((Data with delta Requested => True)) with Ghost;
+
       function Data_After_Enter_On_The_Road
         (Data : Variables)
         return Variables is
         ((Data with delta Road_Free => False)) with Ghost;
+
       function Data_After_Enter_Walking (Data : Variables) return Variables is
         ((Data with delta Walkers_See => Crossing_System.Walk)) with Ghost;
+
       function Data_After_Enter_Leaving (Data : Variables) return Variables is
         ((Data with delta Walkers_See => Crossing_System.Wait)) with Ghost;
+
       procedure Exit_Blinking
       with
         Post =>
@@ -296,6 +313,7 @@ is
          Active_Top :=
            Chart.Moved (Active_Top, Chart.Blinking, Chart.Nowhere);
       end Exit_Blinking;
+
       procedure Exit_Stopping
       with
         Post =>
@@ -313,6 +331,7 @@ is
          Active_Cars :=
            Chart.Moved (Active_Cars, Chart.Stopping, Chart.Red);
       end Exit_Stopping;
+
       procedure Exit_Held
       with
         Post =>
@@ -327,6 +346,7 @@ is
          Self.Data.Cars_Stopped := False;
          Active_Cars := Chart.Moved (Active_Cars, Chart.Held, Chart.Red);
       end Exit_Held;
+
       procedure Exit_Red_Yellow
       with
         Post =>
@@ -344,6 +364,7 @@ is
          Active_Cars :=
            Chart.Moved (Active_Cars, Chart.Red_Yellow, Chart.Nowhere);
       end Exit_Red_Yellow;
+
       procedure Exit_Least
       with
         Post =>
@@ -360,6 +381,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (4));
          Active_Cars := Chart.Moved (Active_Cars, Chart.Least, Chart.Green);
       end Exit_Least;
+
       procedure Exit_Yellow
       with
         Post =>
@@ -377,6 +399,7 @@ is
          Active_Cars :=
            Chart.Moved (Active_Cars, Chart.Yellow, Chart.Nowhere);
       end Exit_Yellow;
+
       procedure Exit_On_The_Road
       with
         Post =>
@@ -396,6 +419,7 @@ is
          Active_Walkers :=
            Chart.Moved (Active_Walkers, Chart.On_The_Road, Chart.Nowhere);
       end Exit_On_The_Road;
+
       procedure Exit_Walking
       with
         Post =>
@@ -414,6 +438,7 @@ is
          Active_Walkers :=
            Chart.Moved (Active_Walkers, Chart.Walking, Chart.On_The_Road);
       end Exit_Walking;
+
       procedure Leave_On_The_Road
       with
         Pre =>
@@ -443,6 +468,7 @@ is
                     Chart.On_The_Road);
          end case;
       end Leave_On_The_Road;
+
       procedure Leave_Green
       with
         Pre =>
@@ -471,6 +497,7 @@ is
                  Chart.Moved (Active_Cars, Chart.Longer, Chart.Green);
          end case;
       end Leave_Green;
+
       procedure Leave_Red
       with
         Pre =>
@@ -498,6 +525,7 @@ is
                Exit_Held;
          end case;
       end Leave_Red;
+
       procedure Leave_Cars
       with
         Pre =>
@@ -548,6 +576,7 @@ is
                Exit_Yellow;
          end case;
       end Leave_Cars;
+
       procedure Leave_Walkers
       with
         Pre =>
@@ -592,6 +621,7 @@ is
                Exit_On_The_Road;
          end case;
       end Leave_Walkers;
+
       procedure Enter_Blinking
       with
         Post =>
@@ -613,6 +643,7 @@ is
          Self.Data.Cars_See := Crossing_System.Slow;
          Self.Data.Walkers_See := Crossing_System.Dark;
       end Enter_Blinking;
+
       procedure Enter_Red
       with
         Post =>
@@ -633,6 +664,7 @@ is
             else Chart.Disorder);
          Self.Data.Cars_See := Crossing_System.Stop;
       end Enter_Red;
+
       procedure Enter_Stopping
       with
         Post =>
@@ -652,6 +684,7 @@ is
          Active_Cars :=
            Chart.Moved (Active_Cars, Chart.Red, Chart.Stopping);
       end Enter_Stopping;
+
       procedure Enter_Held
       with
         Post =>
@@ -668,6 +701,7 @@ is
          Active_Cars := Chart.Moved (Active_Cars, Chart.Red, Chart.Held);
          Self.Data.Cars_Stopped := True;
       end Enter_Held;
+
       procedure Enter_Red_Yellow
       with
         Post =>
@@ -694,6 +728,7 @@ is
             else Chart.Disorder);
          Self.Data.Cars_See := Crossing_System.Ready;
       end Enter_Red_Yellow;
+
       procedure Enter_Green
       with
         Post =>
@@ -714,6 +749,7 @@ is
             else Chart.Disorder);
          Self.Data.Cars_See := Crossing_System.Go;
       end Enter_Green;
+
       procedure Enter_Least
       with
         Post =>
@@ -732,6 +768,7 @@ is
          Ravenchart.Timers.Arm (Self.Timers (4), 100);
          Active_Cars := Chart.Moved (Active_Cars, Chart.Green, Chart.Least);
       end Enter_Least;
+
       procedure Enter_Yellow
       with
         Post =>
@@ -757,6 +794,7 @@ is
             else Chart.Disorder);
          Self.Data.Cars_See := Crossing_System.Slow;
       end Enter_Yellow;
+
       procedure Enter_Dont_Walk
       with
         Post =>
@@ -778,6 +816,7 @@ is
             else Chart.Disorder);
          Self.Data.Walkers_See := Crossing_System.Wait;
       end Enter_Dont_Walk;
+
       procedure Enter_Nobody
       with
         Post =>
@@ -796,6 +835,7 @@ is
            Chart.Moved (Active_Walkers, Chart.Dont_Walk, Chart.Nobody);
          Self.Data.Requested := False;
       end Enter_Nobody;
+
       procedure Enter_Waiting
       with
         Post =>
@@ -814,6 +854,7 @@ is
            Chart.Moved (Active_Walkers, Chart.Dont_Walk, Chart.Waiting);
          Self.Data.Requested := True;
       end Enter_Waiting;
+
       procedure Enter_On_The_Road
       with
         Post =>
@@ -838,6 +879,7 @@ is
             else Chart.Disorder);
          Self.Data.Road_Free := False;
       end Enter_On_The_Road;
+
       procedure Enter_Walking
       with
         Post =>
@@ -859,6 +901,7 @@ is
            Chart.Moved (Active_Walkers, Chart.On_The_Road, Chart.Walking);
          Self.Data.Walkers_See := Crossing_System.Walk;
       end Enter_Walking;
+
       procedure Enter_Leaving
       with
         Post =>
@@ -967,6 +1010,7 @@ is
       Item  : Event;
       Fired : out Firing_List) is
       C : Choice;
+
       procedure Fire_Whole (T : Firing)
       with
         Pre =>

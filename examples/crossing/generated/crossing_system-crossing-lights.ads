@@ -12,8 +12,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    use type Lights_States.Leaf;
    use type Lights_States.Cars_Leaf;
@@ -31,8 +29,20 @@ is
    --  [Crossing.Lights.transitions] in order of precedence, innermost
    --  source first
    type Selection is
-     (Initial_Entry, Stopped, Get_Ready, Long_Enough, Slow_Down, Start,
-      Stop, Ask, Walk, Last_Call, Gone, Into_Service, Out_Of_Service, Blink,
+     (Initial_Entry,
+      Stopped,         --  [stopped] model.yaml:115
+      Get_Ready,       --  [get_ready] model.yaml:116
+      Long_Enough,     --  [long_enough] model.yaml:118
+      Slow_Down,       --  [slow_down] model.yaml:119
+      Start,           --  [start] model.yaml:117
+      Stop,            --  [stop] model.yaml:120
+      Ask,             --  [ask] model.yaml:123
+      Walk,            --  [walk] model.yaml:124
+      Last_Call,       --  [last_call] model.yaml:125
+      Gone,            --  [gone] model.yaml:126
+      Into_Service,    --  [into_service] model.yaml:107
+      Out_Of_Service,  --  [out_of_service] model.yaml:108
+      Blink,           --  [blink] model.yaml:109
       None);
 
    subtype Firing is Selection range Initial_Entry .. Blink;

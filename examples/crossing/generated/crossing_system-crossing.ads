@@ -8,11 +8,6 @@ with Ravenchart.Port_Regions;
 package Crossing_System.Crossing
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  [Crossing.events]
    type Event_Name is (Wish, Ordered);
 
@@ -32,15 +27,37 @@ is
 
    --  [Crossing.Lights.states]
    package Lights_States is
-      type Leaf is (Blinking, Working);
+      type Leaf is
+        (Blinking,  --  [Blinking] model.yaml:54
+         Working    --  [Working] model.yaml:58
+        );
 
-      type Walkers_Leaf is (Nobody, Waiting, Walking, Leaving);
+      type Walkers_Leaf is
+        (Nobody,   --  [Nobody] model.yaml:91
+         Waiting,  --  [Waiting] model.yaml:93
+         Walking,  --  [Walking] model.yaml:100
+         Leaving   --  [Leaving] model.yaml:103
+        );
 
-      type Cars_Leaf is (Stopping, Held, Red_Yellow, Least, Longer, Yellow);
+      type Cars_Leaf is
+        (Stopping,    --  [Stopping] model.yaml:68
+         Held,        --  [Held] model.yaml:70
+         Red_Yellow,  --  [Red_Yellow] model.yaml:73
+         Least,       --  [Least] model.yaml:80
+         Longer,      --  [Longer] model.yaml:81
+         Yellow       --  [Yellow] model.yaml:82
+        );
 
+      --  [Red] model.yaml:63
       subtype Red is Cars_Leaf range Stopping .. Held;
+
+      --  [Green] model.yaml:75
       subtype Green is Cars_Leaf range Least .. Longer;
+
+      --  [Dont_Walk] model.yaml:87
       subtype Dont_Walk is Walkers_Leaf range Nobody .. Waiting;
+
+      --  [On_The_Road] model.yaml:95
       subtype On_The_Road is Walkers_Leaf range Walking .. Leaving;
 
       type Configuration is record

@@ -7,11 +7,6 @@ with Ravenchart;
 package Crossing_System.Elements
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  Numbers of the model's elements; trace.json has their names and
    --  places.
    Reception_Processor : constant Ravenchart.Element_Id := 1;

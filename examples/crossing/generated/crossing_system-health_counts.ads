@@ -8,11 +8,6 @@ with System;
 package Crossing_System.Health_Counts
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    package Counters is new Ravenchart.Health_Counters
      (Ceiling => System.Default_Priority + 2);
 end Crossing_System.Health_Counts;

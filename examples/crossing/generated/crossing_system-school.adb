@@ -19,8 +19,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    --  [school.button]
    package Button_Mailbox is new Ravenchart.Queues
@@ -82,6 +80,7 @@ is
 
    procedure Put_Button (Item : Crossing_System.Press) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Button_Mailbox.Put (Item, Status);
@@ -98,6 +97,7 @@ is
 
    procedure Put_Order (Item : Crossing_System.Order) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Order_Mailbox.Put (Item, Status);
@@ -114,6 +114,7 @@ is
 
    procedure Offer (Item : Crossing.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item.Name is
@@ -166,7 +167,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Button_Item : Crossing_System.Press;
       Button_Change : Crossing.Button_Port.Change;
       Order_Item : Crossing_System.Order;
@@ -224,10 +227,13 @@ is
    procedure Step_Lights is
       Now : Crossing.Lights.Occurrence;
       Fired : Crossing.Lights.Firing_List;
+
       use type Crossing.Lights_States.Leaf;
       use type Crossing.Lights.Occurrence;
+
       Event : Crossing.Event := Crossing.No_Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
    begin
       Crossing.Lights.Poll (Lights_Region, Now);

@@ -13,8 +13,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    function Frame_Of_Car_Lamp
      (Item : Crossing_System.Car_Light)
@@ -30,6 +28,7 @@ is
 
    procedure Send_Car_Lamp (Item : Crossing_System.Car_Light) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Car_Lamp (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -63,6 +62,7 @@ is
 
    procedure Send_Walk_Lamp (Item : Crossing_System.Walk_Light) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Walk_Lamp (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -96,6 +96,7 @@ is
 
    procedure Send_Sign (Item : Boolean) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Sign (Item);
       Status : Ravenchart.Can.Send_Status;

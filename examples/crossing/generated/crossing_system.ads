@@ -5,11 +5,6 @@
 package Crossing_System
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    type Press is (Pressed);
 
    type Order is (Blink, Work);

@@ -11,8 +11,6 @@ with SPARK_Mode, Pure
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    use type Interfaces.Unsigned_16;
    use type Interfaces.Unsigned_32;

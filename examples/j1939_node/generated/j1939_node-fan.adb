@@ -21,8 +21,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    --  [fan.rival]
    package Rival_Mailbox is new Ravenchart.Queues
@@ -128,6 +126,7 @@ is
 
    procedure Put_Rival (Item : J1939_Node.Name) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Rival_Mailbox.Put (Item, Status);
@@ -143,6 +142,7 @@ is
 
    procedure Put_Request_To_All (Item : J1939_Node.Pgn_Octets) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Request_To_All_Mailbox.Put (Item, Status);
@@ -160,6 +160,7 @@ is
 
    procedure Put_Request_To_Us (Item : J1939_Node.Pgn_Octets) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Request_To_Us_Mailbox.Put (Item, Status);
@@ -177,6 +178,7 @@ is
 
    procedure Put_Request_By_Null (Item : J1939_Node.Pgn_Octets) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Request_By_Null_Mailbox.Put (Item, Status);
@@ -204,6 +206,7 @@ is
 
    procedure Offer (Item : Fan_Controller.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item.Name is
@@ -304,7 +307,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Rival_Item : J1939_Node.Name;
       Rival_Change : Fan_Controller.Rival_Port.Change;
       Request_To_All_Item : J1939_Node.Pgn_Octets;
@@ -442,11 +447,15 @@ is
    procedure Step_Address (Ins : Fan_Controller.Address.Inputs) is
       Now : Fan_Controller.Address.Occurrence;
       Fired : Fan_Controller.Address.Selection;
+
       use type Fan_Controller.Address.Selection;
       use type Fan_Controller.Address.Occurrence;
+
       Event : Fan_Controller.Event := Fan_Controller.No_Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Box : Fan_Controller.Address.Outbox;
    begin
       Fan_Controller.Address.Poll (Address_Region, Now);
@@ -491,11 +500,15 @@ is
    procedure Step_Answers (Ins : Fan_Controller.Answers.Inputs) is
       Now : Fan_Controller.Answers.Occurrence;
       Fired : Fan_Controller.Answers.Selection;
+
       use type Fan_Controller.Answers.Selection;
       use type Fan_Controller.Answers.Occurrence;
+
       Event : Fan_Controller.Event := Fan_Controller.No_Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Box : Fan_Controller.Answers.Outbox;
    begin
       Fan_Controller.Answers.Poll (Answers_Region, Now);

@@ -5,11 +5,6 @@
 package J1939_Node.Fan_Controller.Activities
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    procedure Regulate
      (Engine  : Fan_Controller.Engine_View;
       Setting : in out J1939_Node.Fan_Setting)

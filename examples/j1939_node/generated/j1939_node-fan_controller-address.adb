@@ -7,8 +7,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    function Select_Transition
      (Leaf : Address_States.Leaf;
@@ -139,10 +137,12 @@ is
               Self.Timers'Old (3))
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Exit_Before
       with
         Post =>
@@ -158,6 +158,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active := Chart.Moved (Active, Chart.Before, Chart.Nowhere);
       end Exit_Before;
+
       procedure Exit_Claiming
       with
         Post =>
@@ -173,6 +174,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (2));
          Active := Chart.Moved (Active, Chart.Claiming, Chart.Contending);
       end Exit_Claiming;
+
       procedure Exit_Yielding
       with
         Post =>
@@ -188,6 +190,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (3));
          Active := Chart.Moved (Active, Chart.Yielding, Chart.Nowhere);
       end Exit_Yielding;
+
       procedure Leave_Contending
       with
         Pre =>
@@ -213,6 +216,7 @@ is
                  Chart.Moved (Active, Chart.Claimed, Chart.Contending);
          end case;
       end Leave_Contending;
+
       procedure Enter_Before
       with
         Post =>
@@ -229,6 +233,7 @@ is
          Ravenchart.Timers.Arm (Self.Timers (1), 20);
          Active := Chart.Moved (Active, Chart.Nowhere, Chart.Before);
       end Enter_Before;
+
       procedure Enter_Claiming
       with
         Post =>
@@ -245,6 +250,7 @@ is
          Ravenchart.Timers.Arm (Self.Timers (2), 25);
          Active := Chart.Moved (Active, Chart.Contending, Chart.Claiming);
       end Enter_Claiming;
+
       procedure Enter_Yielding
       with
         Post =>

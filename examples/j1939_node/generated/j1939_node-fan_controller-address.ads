@@ -9,8 +9,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    use type Address_States.Leaf;
    use type Ravenchart.Timers.Timer;
@@ -26,8 +24,18 @@ is
    --  [Fan_Controller.Address.transitions] in order of precedence,
    --  innermost source first
    type Selection is
-     (Initial_Entry, Granted, Claim, Yield, Defend, Give_Up, Tell_All,
-      Tell_Us, Tell_Null, Tell_Lost, Tell_Lost_Null, None);
+     (Initial_Entry,
+      Granted,         --  [granted] fan.yaml:56
+      Claim,           --  [claim] fan.yaml:51
+      Yield,           --  [yield] fan.yaml:57
+      Defend,          --  [defend] fan.yaml:62
+      Give_Up,         --  [give_up] fan.yaml:68
+      Tell_All,        --  [tell_all] fan.yaml:73
+      Tell_Us,         --  [tell_us] fan.yaml:78
+      Tell_Null,       --  [tell_null] fan.yaml:83
+      Tell_Lost,       --  [tell_lost] fan.yaml:88
+      Tell_Lost_Null,  --  [tell_lost_null] fan.yaml:93
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Tell_Lost_Null;
    subtype Transition is Selection range Granted .. Tell_Lost_Null;

@@ -7,8 +7,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    function Select_Transition
      (Leaf : Answers_States.Leaf;
@@ -93,10 +91,12 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Exit_Sending
       with
         Post =>
@@ -110,6 +110,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active := Chart.Moved (Active, Chart.Sending, Chart.Nowhere);
       end Exit_Sending;
+
       procedure Enter_Sending
       with
         Post =>

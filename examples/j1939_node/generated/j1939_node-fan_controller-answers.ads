@@ -9,8 +9,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    use type Answers_States.Leaf;
    use type Ravenchart.Timers.Timer;
@@ -26,8 +24,14 @@ is
    --  [Fan_Controller.Answers.transitions] in order of precedence,
    --  innermost source first
    type Selection is
-     (Initial_Entry, With_Address, Without_Address, Cyclic, Answer_All,
-      Answer, Refuse, None);
+     (Initial_Entry,
+      With_Address,     --  [with_address] fan.yaml:109
+      Without_Address,  --  [without_address] fan.yaml:110
+      Cyclic,           --  [cyclic] fan.yaml:111
+      Answer_All,       --  [answer_all] fan.yaml:115
+      Answer,           --  [answer] fan.yaml:120
+      Refuse,           --  [refuse] fan.yaml:125
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Refuse;
    subtype Transition is Selection range With_Address .. Refuse;

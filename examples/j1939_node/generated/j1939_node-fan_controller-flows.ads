@@ -5,11 +5,6 @@
 package J1939_Node.Fan_Controller.Flows
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    procedure Tell
      (Due        : J1939_Node.Count;
       Setting    : J1939_Node.Fan_Setting;

@@ -8,11 +8,6 @@ with Ravenchart.Port_Regions;
 package J1939_Node.Fan_Controller
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  [Fan_Controller.events]
    type Event_Name is (Claimed_Too, Asked_All, Asked_Us, Asked_By_Null);
 
@@ -34,14 +29,24 @@ is
 
    --  [Fan_Controller.Address.states]
    package Address_States is
-      type Leaf is (Before, Claiming, Claimed, Yielding, Without_Address);
+      type Leaf is
+        (Before,           --  [Before] fan.yaml:42
+         Claiming,         --  [Claiming] fan.yaml:46
+         Claimed,          --  [Claimed] fan.yaml:47
+         Yielding,         --  [Yielding] fan.yaml:48
+         Without_Address   --  [Without_Address] fan.yaml:49
+        );
 
+      --  [Contending] fan.yaml:43
       subtype Contending is Leaf range Claiming .. Claimed;
    end Address_States;
 
    --  [Fan_Controller.Answers.states]
    package Answers_States is
-      type Leaf is (Silent, Sending);
+      type Leaf is
+        (Silent,   --  [Silent] fan.yaml:106
+         Sending   --  [Sending] fan.yaml:107
+        );
    end Answers_States;
 
    --  [Fan_Controller.rival] what its readers see

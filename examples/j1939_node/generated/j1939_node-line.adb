@@ -13,8 +13,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    function Frame_Of_Claim
      (Item : J1939_Node.Name)
@@ -30,6 +28,7 @@ is
 
    procedure Send_Claim (Item : J1939_Node.Name) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Claim (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -61,6 +60,7 @@ is
 
    procedure Send_Cannot_Claim (Item : J1939_Node.Name) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Cannot_Claim (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -94,6 +94,7 @@ is
 
    procedure Send_Acknowledgement (Item : J1939_Node.Acknowledgement) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Acknowledgement (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -128,6 +129,7 @@ is
 
    procedure Send_Fan_Drive_State (Item : J1939_Node.Fan_Drive) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Fan_Drive_State (Item);
       Status : Ravenchart.Can.Send_Status;

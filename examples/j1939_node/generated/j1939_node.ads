@@ -7,11 +7,6 @@ with Ravenchart;
 package J1939_Node
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  All values counted in degC.
    type Unit_DegC is new Ravenchart.Number;
 

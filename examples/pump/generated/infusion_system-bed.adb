@@ -20,8 +20,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    --  [bed.line]
    package Line_Mailbox is new Ravenchart.Queues
@@ -141,6 +139,7 @@ is
 
    procedure Put_Panel (Item : Infusion_System.Press) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Panel_Mailbox.Put (Item, Status);
@@ -156,6 +155,7 @@ is
 
    procedure Offer (Item : Pump.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item.Name is
@@ -272,7 +272,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Line_Item : Infusion_System.Line;
       Line_Change : Pump.Line_Port.Change;
       Panel_Item : Infusion_System.Press;
@@ -330,11 +332,15 @@ is
    procedure Step_Keys is
       Now : Pump.Keys.Occurrence;
       Fired : Pump.Keys.Selection;
+
       use type Pump.Keys.Selection;
       use type Pump.Keys.Occurrence;
+
       Event : Pump.Event := Pump.No_Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Box : Pump.Keys.Outbox;
    begin
       Pump.Keys.Poll (Keys_Region, Now);
@@ -370,10 +376,13 @@ is
    procedure Step_Infusion (Ins : Pump.Infusion.Inputs) is
       Now : Pump.Infusion.Occurrence;
       Fired : Pump.Infusion.Firing_List;
+
       use type Pump.Infusion_States.Leaf;
       use type Pump.Infusion.Occurrence;
+
       Event : Pump.Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
    begin
       Pump.Infusion.Poll (Infusion_Region, Now, Event);
@@ -444,8 +453,10 @@ is
 
    procedure Run_Turn (Executed : in out Ravenchart.Element_Id) is
       Infusion_Now : Pump.Infusion_States.Configuration;
+
       use type Pump.Infusion_States.Motor_Leaf;
       use type Pump.Infusion_States.Leaf;
+
       Visit : Ravenchart.Event_Count;
       Raise_Done : Boolean;
    begin
@@ -464,7 +475,9 @@ is
 
    procedure Run_Fill (Executed : in out Ravenchart.Element_Id) is
       Infusion_Now : Pump.Infusion_States.Configuration;
+
       use type Pump.Infusion_States.Leaf;
+
       Visit : Ravenchart.Event_Count;
       Raise_Done : Boolean;
    begin

@@ -5,11 +5,6 @@
 package Infusion_System.Pump.Flows
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    procedure Turn
      (Tested     : in out Infusion_System.Turns; Raise_Done : out Boolean)
    with Global => null;

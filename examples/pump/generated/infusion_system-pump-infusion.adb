@@ -10,8 +10,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    use type Ravenchart.Event_Count;
 
@@ -436,6 +434,7 @@ is
        and then Is_Safe (Self.Place, Self.Data)
    is
       use type Chart.Node;
+
       Active_Motor : Chart.Node :=
         (if Self.Started then Chart.Innermost_Motor (Self.Place)
          else Chart.Nowhere)
@@ -450,10 +449,12 @@ is
       with Ghost;
       Past : constant Memory := Self.Past;
       Kept : constant Deferrals.List := Self.Deferred with Ghost;
+
       function Is_Agreed return Boolean is
         (Active_Motor = Chart.Innermost_Motor (Self.Place)
          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
          and then Active_Top = Chart.Innermost_Top (Self.Place)) with Ghost;
+
       function Is_Timed
         (D      : Domain;
          Before : Infusion_States.Configuration;
@@ -465,6 +466,7 @@ is
          and then Self.Timers (3)
            = Timer_After (3, D, Before, Self.Place, Was (3)))
       with Ghost, Pre => Was'First = 1 and then Was'Last = 3;
+
       function Is_Fired (Before : Region; Chosen : Firing) return Boolean is
         (Self.Started
          and then Self.Place = Target (Chosen, Before.Place, Before.Past)
@@ -488,7 +490,9 @@ is
                     = (Before.Lost or Deferrals.Count (Before.Deferred) = 4)
             else Self.Deferred = Before.Deferred
                and then Self.Lost = Before.Lost)) with Ghost;
+
       pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
       function Lasts (Before : Region) return Boolean is
         (Self.Timers = Before.Timers
          and then Self.Past = Before.Past
@@ -498,57 +502,76 @@ is
          and then Deferrals.Count (Self.Deferred)
            = Deferrals.Count (Before.Deferred)
          and then Self.Lost = Before.Lost) with Ghost;
+
       pragma Annotate (GNATprove, Inline_For_Proof, Lasts);
+
       function Keeps (Before : Region) return Boolean is
         (Self.Started = Before.Started
          and then (if Before.Deferred = Kept then Self.Deferred = Kept)
          and then Deferrals.Count (Self.Deferred)
            = Deferrals.Count (Before.Deferred)
          and then Self.Lost = Before.Lost) with Ghost;
+
       pragma Annotate (GNATprove, Inline_For_Proof, Keeps);
+
       function Data_After_Exit_Turning (Data : Variables) return Variables is
         ((Data with delta Speed => 0)) with Ghost;
+
       function Data_After_Exit_Infusing (Data : Variables) return Variables is
         ((Data with delta Speed => 0)) with Ghost;
+
       function Data_After_Exit_Alarm (Data : Variables) return Variables is
         ((Data with delta Buzzer => False)) with Ghost;
+
       function Data_After_Leave_Motor (Data : Variables) return Variables is
         (case Self.Place.In_Motor is
            when Infusion_States.Turning => Data_After_Exit_Turning (Data),
            when Infusion_States.Motor_Good => Data)
       with Ghost, Pre => Self.Place.Top = Infusion_States.Self_Test;
+
       function Data_After_Enter_Self_Test
         (Data : Variables)
         return Variables is
         ((Data with delta Lamp => Infusion_System.Flashing)) with Ghost;
+
       function Data_After_Enter_Turning (Data : Variables) return Variables is
         ((Data with delta Speed => 10)) with Ghost;
+
       function Data_After_Enter_Programming
         (Data : Variables)
         return Variables is
         ((Data with delta Lamp => Infusion_System.Dark)) with Ghost;
+
       function Data_After_Enter_Infusing (Data : Variables) return Variables is
         ((Data with delta Lamp => Infusion_System.Steady)) with Ghost;
+
       function Data_After_Enter_Filling (Data : Variables) return Variables is
         ((Data with delta Speed => 100)) with Ghost;
+
       function Data_After_Enter_Loading (Data : Variables) return Variables is
         ((Data with delta
             Speed => Infusion_System.Unit_Ul'Min (2 * Data.Portion, 500)))
       with Ghost;
+
       function Data_After_Enter_Maintaining
         (Data : Variables)
         return Variables is
         ((Data with delta Speed => Data.Portion)) with Ghost;
+
       function Data_After_Enter_Trickling
         (Data : Variables)
         return Variables is
         ((Data with delta Speed => Ins.Trickle)) with Ghost;
+
       function Data_After_Enter_Alarm (Data : Variables) return Variables is
         ((Data with delta Lamp => Infusion_System.Flashing)) with Ghost;
+
       function Data_After_Enter_Sounding (Data : Variables) return Variables is
         ((Data with delta Buzzer => True)) with Ghost;
+
       function Data_After_Enter_Silent (Data : Variables) return Variables is
         ((Data with delta Buzzer => False)) with Ghost;
+
       procedure Exit_Self_Test
       with
         Post =>
@@ -580,6 +603,7 @@ is
                then Chart.Moved (Active_Top, Chart.Self_Test, Chart.Nowhere)
             else Chart.Disorder);
       end Exit_Self_Test;
+
       procedure Exit_Turning
       with
         Post =>
@@ -595,6 +619,7 @@ is
          Active_Motor :=
            Chart.Moved (Active_Motor, Chart.Turning, Chart.Nowhere);
       end Exit_Turning;
+
       procedure Exit_Infusing
       with
         Post =>
@@ -609,6 +634,7 @@ is
          Active_Top :=
            Chart.Moved (Active_Top, Chart.Infusing, Chart.Nowhere);
       end Exit_Infusing;
+
       procedure Exit_Running
       with
         Post =>
@@ -623,6 +649,7 @@ is
          Active_Top :=
            Chart.Moved (Active_Top, Chart.Running, Chart.Infusing);
       end Exit_Running;
+
       procedure Exit_Filling
       with
         Post =>
@@ -647,6 +674,7 @@ is
          Active_Top :=
            Chart.Moved (Active_Top, Chart.Filling, Chart.Running);
       end Exit_Filling;
+
       procedure Exit_Giving
       with
         Post =>
@@ -666,6 +694,7 @@ is
          Active_Top :=
            Chart.Moved (Active_Top, Chart.Giving, Chart.Running);
       end Exit_Giving;
+
       procedure Exit_Loading
       with
         Post =>
@@ -689,6 +718,7 @@ is
          Active_Top :=
            Chart.Moved (Active_Top, Chart.Loading, Chart.Giving);
       end Exit_Loading;
+
       procedure Exit_Maintaining
       with
         Post =>
@@ -709,6 +739,7 @@ is
          Active_Top :=
            Chart.Moved (Active_Top, Chart.Maintaining, Chart.Giving);
       end Exit_Maintaining;
+
       procedure Exit_All_Given
       with
         Post =>
@@ -729,6 +760,7 @@ is
          Active_Top :=
            Chart.Moved (Active_Top, Chart.All_Given, Chart.Running);
       end Exit_All_Given;
+
       procedure Exit_Trickling
       with
         Post =>
@@ -749,6 +781,7 @@ is
          Active_Top :=
            Chart.Moved (Active_Top, Chart.Trickling, Chart.Infusing);
       end Exit_Trickling;
+
       procedure Exit_Alarm
       with
         Post =>
@@ -768,6 +801,7 @@ is
          Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
          Active_Top := Chart.Moved (Active_Top, Chart.Alarm, Chart.Nowhere);
       end Exit_Alarm;
+
       procedure Exit_Silent
       with
         Post =>
@@ -786,6 +820,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (3));
          Active_Top := Chart.Moved (Active_Top, Chart.Silent, Chart.Alarm);
       end Exit_Silent;
+
       procedure Leave_Alarm
       with
         Pre =>
@@ -817,6 +852,7 @@ is
                Exit_Silent;
          end case;
       end Leave_Alarm;
+
       procedure Leave_Giving
       with
         Pre =>
@@ -842,6 +878,7 @@ is
                Exit_Maintaining;
          end case;
       end Leave_Giving;
+
       procedure Leave_Running
       with
         Pre =>
@@ -875,6 +912,7 @@ is
                Exit_All_Given;
          end case;
       end Leave_Running;
+
       procedure Leave_Infusing
       with
         Pre =>
@@ -910,6 +948,7 @@ is
                     Chart.Infusing);
          end case;
       end Leave_Infusing;
+
       procedure Leave_Motor
       with
         Pre =>
@@ -936,6 +975,7 @@ is
                  Chart.Moved (Active_Motor, Chart.Motor_Good, Chart.Nowhere);
          end case;
       end Leave_Motor;
+
       procedure Leave_Sensor
       with
         Pre =>
@@ -964,6 +1004,7 @@ is
                     Chart.Nowhere);
          end case;
       end Leave_Sensor;
+
       procedure Enter_Self_Test
       with
         Post =>
@@ -997,6 +1038,7 @@ is
             else Chart.Disorder);
          Self.Data.Lamp := Infusion_System.Flashing;
       end Enter_Self_Test;
+
       procedure Enter_Turning
       with
         Post =>
@@ -1020,6 +1062,7 @@ is
             else Chart.Disorder);
          Self.Data.Speed := 10;
       end Enter_Turning;
+
       procedure Enter_Motor_Good
       with
         Post =>
@@ -1045,6 +1088,7 @@ is
             Self.Completed_Self_Test := True;
          end if;
       end Enter_Motor_Good;
+
       procedure Enter_Sensor_Good
       with
         Post =>
@@ -1070,6 +1114,7 @@ is
             Self.Completed_Self_Test := True;
          end if;
       end Enter_Sensor_Good;
+
       procedure Enter_Programming
       with
         Post =>
@@ -1086,6 +1131,7 @@ is
            Chart.Moved (Active_Top, Chart.Nowhere, Chart.Programming);
          Self.Data.Lamp := Infusion_System.Dark;
       end Enter_Programming;
+
       procedure Enter_Infusing
       with
         Post =>
@@ -1100,6 +1146,7 @@ is
            Chart.Moved (Active_Top, Chart.Nowhere, Chart.Infusing);
          Self.Data.Lamp := Infusion_System.Steady;
       end Enter_Infusing;
+
       procedure Enter_Filling
       with
         Post =>
@@ -1118,6 +1165,7 @@ is
            Chart.Moved (Active_Top, Chart.Running, Chart.Filling);
          Self.Data.Speed := 100;
       end Enter_Filling;
+
       procedure Enter_Giving
       with
         Post =>
@@ -1137,6 +1185,7 @@ is
          Active_Top :=
            Chart.Moved (Active_Top, Chart.Running, Chart.Giving);
       end Enter_Giving;
+
       procedure Enter_Loading
       with
         Post =>
@@ -1154,6 +1203,7 @@ is
          Self.Data.Speed :=
            Infusion_System.Unit_Ul'Min (2 * Self.Data.Portion, 500);
       end Enter_Loading;
+
       procedure Enter_Maintaining
       with
         Post =>
@@ -1170,6 +1220,7 @@ is
            Chart.Moved (Active_Top, Chart.Giving, Chart.Maintaining);
          Self.Data.Speed := Self.Data.Portion;
       end Enter_Maintaining;
+
       procedure Enter_All_Given
       with
         Post =>
@@ -1186,6 +1237,7 @@ is
            Chart.Moved (Active_Top, Chart.Running, Chart.All_Given);
          Self.Completed_Running := True;
       end Enter_All_Given;
+
       procedure Enter_Trickling
       with
         Post =>
@@ -1202,6 +1254,7 @@ is
            Chart.Moved (Active_Top, Chart.Infusing, Chart.Trickling);
          Self.Data.Speed := Ins.Trickle;
       end Enter_Trickling;
+
       procedure Enter_Alarm
       with
         Post =>
@@ -1215,6 +1268,7 @@ is
          Active_Top := Chart.Moved (Active_Top, Chart.Nowhere, Chart.Alarm);
          Self.Data.Lamp := Infusion_System.Flashing;
       end Enter_Alarm;
+
       procedure Enter_Sounding
       with
         Post =>
@@ -1231,6 +1285,7 @@ is
            Chart.Moved (Active_Top, Chart.Alarm, Chart.Sounding);
          Self.Data.Buzzer := True;
       end Enter_Sounding;
+
       procedure Enter_Silent
       with
         Post =>
@@ -1252,7 +1307,9 @@ is
          Active_Top := Chart.Moved (Active_Top, Chart.Alarm, Chart.Silent);
          Self.Data.Buzzer := False;
       end Enter_Silent;
-      subtype From_Turned is Selection range Turned .. Enough;
+
+      subtype From_Turned is Selection range Turned .. Filled_Up;
+
       procedure Fire_From_Turned (Chosen : From_Turned)
       with
         Pre =>
@@ -1304,22 +1361,12 @@ is
                Exit_Filling;
                Enter_Giving;
                Enter_Loading;
-            when Beat =>
-               Self.Data.Given :=
-                 Infusion_System.Unit_Ul'Min
-                   (Self.Data.Given + Self.Data.Speed, Self.Data.Volume);
-            when Enough =>
-               Leave_Giving;
-               Exit_Giving;
-               Enter_All_Given;
          end case;
       end Fire_From_Turned;
-      subtype From_Defer_New_Portion_In_Filling is
-        Selection
-        range Defer_New_Portion_In_Filling
-        .. Again;
-      procedure Fire_From_Defer_New_Portion_In_Filling
-        (Chosen : From_Defer_New_Portion_In_Filling)
+
+      subtype From_Beat is Selection range Beat .. Remind;
+
+      procedure Fire_From_Beat (Chosen : From_Beat)
       with
         Pre =>
           Self.Started
@@ -1336,6 +1383,14 @@ is
       is
       begin
          case Chosen is
+            when Beat =>
+               Self.Data.Given :=
+                 Infusion_System.Unit_Ul'Min
+                   (Self.Data.Given + Self.Data.Speed, Self.Data.Volume);
+            when Enough =>
+               Leave_Giving;
+               Exit_Giving;
+               Enter_All_Given;
             when Defer_New_Portion_In_Filling =>
                if Deferrals.Count (Self.Deferred) = 4 then
                   Self.Lost := True;
@@ -1353,6 +1408,32 @@ is
             when Remind =>
                Exit_Silent;
                Enter_Sounding;
+         end case;
+      end Fire_From_Beat;
+
+      subtype From_Restore_Where_It_Was is
+        Selection
+        range Restore_Where_It_Was
+        .. Order_Volume;
+
+      procedure Fire_From_Restore_Where_It_Was
+        (Chosen : From_Restore_Where_It_Was)
+      with
+        Pre =>
+          Self.Started
+          and then In_Source (Chosen, Self.Place)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Guards_Hold (Chosen, Self.Data, Ins, Item)
+          and then Self.Past = Past
+          and then Self.Deferred = Kept
+          and then Is_Agreed,
+        Post =>
+          Is_Fired (Self'Old, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
+      is
+      begin
+         case Chosen is
             when Restore_Where_It_Was =>
                Active_Top :=
                  Chart.Moved (Active_Top, Chart.Where_It_Was,
@@ -1407,13 +1488,16 @@ is
                            Chart.Listening)
                   else Chart.Disorder);
                Self.Place.In_Sensor := Infusion_States.Listening;
+            when Order_Portion =>
+               Self.Data.Portion := Item.Value_Portion;
+            when Order_Volume =>
+               Self.Data.Volume := Item.Value_Volume;
          end case;
-      end Fire_From_Defer_New_Portion_In_Filling;
-      subtype From_Order_Portion is
-        Selection
-        range Order_Portion
-        .. Give_Up;
-      procedure Fire_From_Order_Portion (Chosen : From_Order_Portion)
+      end Fire_From_Restore_Where_It_Was;
+
+      subtype From_Start is Selection range Start .. Give_Up;
+
+      procedure Fire_From_Start (Chosen : From_Start)
       with
         Pre =>
           Self.Started
@@ -1430,10 +1514,6 @@ is
       is
       begin
          case Chosen is
-            when Order_Portion =>
-               Self.Data.Portion := Item.Value_Portion;
-            when Order_Volume =>
-               Self.Data.Volume := Item.Value_Volume;
             when Start =>
                Active_Top :=
                  Chart.Moved (Active_Top, Chart.Programming, Chart.Nowhere);
@@ -1470,11 +1550,13 @@ is
                Exit_Alarm;
                Enter_Programming;
          end case;
-      end Fire_From_Order_Portion;
+      end Fire_From_Start;
+
       subtype From_Defer_New_Portion_In_Self_Test is
         Selection
         range Defer_New_Portion_In_Self_Test
         .. Not_Yet;
+
       procedure Fire_From_Defer_New_Portion_In_Self_Test
         (Chosen : From_Defer_New_Portion_In_Self_Test)
       with
@@ -1528,12 +1610,14 @@ is
                         Chart.Listening)
                else Chart.Disorder);
             Self.Place.In_Sensor := Infusion_States.Listening;
-         when Turned .. Enough =>
+         when Turned .. Filled_Up =>
             Fire_From_Turned (Chosen);
-         when Defer_New_Portion_In_Filling .. Again =>
-            Fire_From_Defer_New_Portion_In_Filling (Chosen);
-         when Order_Portion .. Give_Up =>
-            Fire_From_Order_Portion (Chosen);
+         when Beat .. Remind =>
+            Fire_From_Beat (Chosen);
+         when Restore_Where_It_Was .. Order_Volume =>
+            Fire_From_Restore_Where_It_Was (Chosen);
+         when Start .. Give_Up =>
+            Fire_From_Start (Chosen);
          when Defer_New_Portion_In_Self_Test .. Not_Yet =>
             Fire_From_Defer_New_Portion_In_Self_Test (Chosen);
       end case;
@@ -1550,6 +1634,7 @@ is
       Item  : Event;
       Fired : out Firing_List) is
       C : Choice;
+
       procedure Fire_Whole (T : Firing)
       with
         Pre =>

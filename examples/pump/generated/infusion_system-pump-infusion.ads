@@ -13,8 +13,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    use type Infusion_States.Leaf;
    use type Infusion_States.Configuration;
@@ -35,14 +33,44 @@ is
    --  [Pump.Infusion.transitions] in order of precedence, innermost source
    --  first
    type Selection is
-     (Initial_Entry, Turned, Heard, Loaded, Change,
-      Defer_New_Portion_In_Loading, Filled_Up, Beat, Enough,
-      Defer_New_Portion_In_Filling, Finished, Hush, Remind,
-      Restore_Where_It_Was, Default_Of_Where_It_Was, Ready, Again,
-      Order_Portion, Order_Volume, Start, Stop, Lost, Trouble, Resume,
-      Give_Up, Defer_New_Portion_In_Self_Test,
-      Defer_New_Volume_In_Self_Test, Defer_New_Portion_In_Alarm, Go_On,
-      Not_Yet, None);
+     (Initial_Entry,
+      Turned,                          --  [turned] model.yaml:118
+      Heard,                           --  [heard] model.yaml:119
+      Loaded,                          --  [loaded] model.yaml:134
+      Change,                          --  [change] model.yaml:137
+      --  [Defer_New_Portion_In_Loading] model.yaml:97
+      Defer_New_Portion_In_Loading,
+      Filled_Up,                       --  [filled_up] model.yaml:132
+      Beat,                            --  [beat] model.yaml:133
+      Enough,                          --  [enough] model.yaml:135
+      --  [Defer_New_Portion_In_Filling] model.yaml:91
+      Defer_New_Portion_In_Filling,
+      Finished,                        --  [finished] model.yaml:136
+      Hush,                            --  [hush] model.yaml:148
+      Remind,                          --  [remind] model.yaml:149
+      --  [Restore_Where_It_Was] model.yaml:86
+      Restore_Where_It_Was,
+      --  [Default_Of_Where_It_Was] model.yaml:86
+      Default_Of_Where_It_Was,
+      Ready,                           --  [ready] model.yaml:120
+      Again,                           --  [again] model.yaml:121
+      Order_Portion,                   --  [order_portion] model.yaml:122
+      Order_Volume,                    --  [order_volume] model.yaml:123
+      Start,                           --  [start] model.yaml:124
+      Stop,                            --  [stop] model.yaml:143
+      Lost,                            --  [lost] model.yaml:146
+      Trouble,                         --  [trouble] model.yaml:147
+      Resume,                          --  [resume] model.yaml:150
+      Give_Up,                         --  [give_up] model.yaml:153
+      --  [Defer_New_Portion_In_Self_Test] model.yaml:63
+      Defer_New_Portion_In_Self_Test,
+      --  [Defer_New_Volume_In_Self_Test] model.yaml:63
+      Defer_New_Volume_In_Self_Test,
+      --  [Defer_New_Portion_In_Alarm] model.yaml:105
+      Defer_New_Portion_In_Alarm,
+      Go_On,                           --  [go_on] model.yaml:151
+      Not_Yet,                         --  [not_yet] model.yaml:152
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Not_Yet;
    subtype Transition is Selection range Turned .. Not_Yet;

@@ -7,8 +7,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    use type Keys_States.Leaf;
 
@@ -17,7 +15,10 @@ is
 
    --  [Pump.Keys.transitions] in order of precedence, innermost source
    --  first
-   type Selection is (Initial_Entry, Pressed, None);
+   type Selection is
+     (Initial_Entry,
+      Pressed,        --  [pressed] model.yaml:163
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Pressed;
    subtype Transition is Selection range Pressed .. Pressed;

@@ -8,11 +8,6 @@ with Ravenchart.Port_Regions;
 package Infusion_System.Pump
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  [Pump.events]
    type Event_Name is
      (Pressed, Sensor_Lost, Start, Stop, Silence, Resume, New_Portion,
@@ -36,16 +31,39 @@ is
    --  [Pump.Infusion.states]
    package Infusion_States is
       type Leaf is
-        (Self_Test, Programming, Filling, Loading, Maintaining, All_Given,
-         Trickling, Where_It_Was, Sounding, Silent, May_Go_On);
+        (Self_Test,     --  [Self_Test] model.yaml:63
+         Programming,   --  [Programming] model.yaml:79
+         Filling,       --  [Filling] model.yaml:91
+         Loading,       --  [Loading] model.yaml:97
+         Maintaining,   --  [Maintaining] model.yaml:100
+         All_Given,     --  [All_Given] model.yaml:102
+         Trickling,     --  [Trickling] model.yaml:103
+         Where_It_Was,  --  [Where_It_Was] model.yaml:86
+         Sounding,      --  [Sounding] model.yaml:111
+         Silent,        --  [Silent] model.yaml:113
+         May_Go_On      --  [May_Go_On] model.yaml:115
+        );
 
-      type Sensor_Leaf is (Listening, Sensor_Good);
+      type Sensor_Leaf is
+        (Listening,    --  [Listening] model.yaml:77
+         Sensor_Good   --  [Sensor_Good] model.yaml:78
+        );
 
-      type Motor_Leaf is (Turning, Motor_Good);
+      type Motor_Leaf is
+        (Turning,     --  [Turning] model.yaml:70
+         Motor_Good   --  [Motor_Good] model.yaml:73
+        );
 
+      --  [Infusing] model.yaml:81
       subtype Infusing is Leaf range Filling .. Where_It_Was;
+
+      --  [Running] model.yaml:87
       subtype Running is Infusing range Filling .. All_Given;
+
+      --  [Giving] model.yaml:94
       subtype Giving is Running range Loading .. Maintaining;
+
+      --  [Alarm] model.yaml:105
       subtype Alarm is Leaf range Sounding .. Silent;
 
       type Configuration is record
@@ -57,7 +75,9 @@ is
 
    --  [Pump.Keys.states]
    package Keys_States is
-      type Leaf is (Listening);
+      type Leaf is
+        (Listening   --  [Listening] model.yaml:161
+        );
    end Keys_States;
 
    --  [Pump.line] what its readers see

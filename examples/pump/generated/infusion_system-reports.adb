@@ -20,11 +20,10 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
+
       Item : Ravenchart.Traces.Trace_Record;
       Status : Ravenchart.Queueing.Take_Status;
    begin
@@ -39,6 +38,7 @@ is
 
    procedure Report_Reception is
       use type Ravenchart.Element_Id;
+
       Found : Reception.Processor.Statistics;
    begin
       Reception.Processor.Observe (Found);
@@ -54,6 +54,7 @@ is
 
    procedure Report_Control is
       use type Ravenchart.Element_Id;
+
       Found : Control.Processor.Statistics;
    begin
       Control.Processor.Observe (Found);

@@ -12,8 +12,6 @@ with SPARK_Mode, Pure
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=

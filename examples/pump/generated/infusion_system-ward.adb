@@ -13,8 +13,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    function Frame_Of_Motor
      (Item : Infusion_System.Portion)
@@ -30,6 +28,7 @@ is
 
    procedure Send_Motor (Item : Infusion_System.Portion) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Motor (Item);
       Status : Ravenchart.Can.Send_Status;
@@ -61,6 +60,7 @@ is
 
    procedure Send_Display (Item : Infusion_System.View) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Display (Item);
       Status : Ravenchart.Can.Send_Status;

@@ -7,11 +7,6 @@ with Ravenchart;
 package Infusion_System
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  All values counted in ul.
    type Unit_Ul is new Ravenchart.Number;
 

@@ -130,10 +130,12 @@ is
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Leave_S21
       with
         Pre =>
@@ -152,6 +154,7 @@ is
                Active := Chart.Moved (Active, Chart.S21_Init, Chart.S21);
          end case;
       end Leave_S21;
+
       procedure Leave_S2
       with
         Pre =>
@@ -169,6 +172,7 @@ is
                Active := Chart.Moved (Active, Chart.S21, Chart.S2);
          end case;
       end Leave_S2;
+
       procedure Leave_S1
       with
         Pre =>
@@ -187,6 +191,7 @@ is
                Active := Chart.Moved (Active, Chart.S1_Init, Chart.S1);
          end case;
       end Leave_S1;
+
       procedure Leave_S
       with
         Pre =>
@@ -329,6 +334,7 @@ is
    procedure Step
      (Self  : in out Region; Now   : Occurrence; Fired : out Firing_List) is
       Chosen : Selection;
+
       procedure Fire_Whole (T : Firing)
       with
         Pre =>

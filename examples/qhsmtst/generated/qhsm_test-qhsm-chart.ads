@@ -20,9 +20,30 @@ is
    --  [Qhsm.Chart.transitions] in order of precedence, innermost source
    --  first
    type Selection is
-     (Initial_Entry, S211_D, S211_H, S21_Init, S11_D, S11_G, S11_H, S21_A,
-      S21_B, S21_G, S1_Init, S1_A, S1_B, S1_C, S1_D, S1_F, S1_I, S2_C, S2_F,
-      S2_I, S_Init, S_E, S_I, None);
+     (Initial_Entry,
+      S211_D,         --  [s211_d] model.yaml:89
+      S211_H,         --  [s211_h] model.yaml:90
+      S21_Init,       --  [s21_init] model.yaml:95
+      S11_D,          --  [s11_d] model.yaml:77
+      S11_G,          --  [s11_g] model.yaml:78
+      S11_H,          --  [s11_h] model.yaml:79
+      S21_A,          --  [s21_a] model.yaml:85
+      S21_B,          --  [s21_b] model.yaml:86
+      S21_G,          --  [s21_g] model.yaml:87
+      S1_Init,        --  [s1_init] model.yaml:94
+      S1_A,           --  [s1_a] model.yaml:70
+      S1_B,           --  [s1_b] model.yaml:71
+      S1_C,           --  [s1_c] model.yaml:72
+      S1_D,           --  [s1_d] model.yaml:73
+      S1_F,           --  [s1_f] model.yaml:74
+      S1_I,           --  [s1_i] model.yaml:75
+      S2_C,           --  [s2_c] model.yaml:81
+      S2_F,           --  [s2_f] model.yaml:82
+      S2_I,           --  [s2_i] model.yaml:83
+      S_Init,         --  [s_init] model.yaml:93
+      S_E,            --  [s_e] model.yaml:67
+      S_I,            --  [s_i] model.yaml:68
+      None);
 
    subtype Firing is Selection range Initial_Entry .. S_I;
    subtype Transition is Selection range S211_D .. S_I;

@@ -8,11 +8,6 @@ with Ravenchart.Port_Regions;
 package Qhsm_Test.Qhsm
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  [Qhsm.events]
    type Event_Name is (Pressed, A, B, C, D, E, F, G, H, I);
 
@@ -30,17 +25,32 @@ is
 
    --  [Qhsm.Chart.states]
    package Chart_States is
-      type Leaf is (S11, S1_Init, S211, S21_Init, S_Init);
+      type Leaf is
+        (S11,       --  [S11] model.yaml:52
+         S1_Init,   --  [S1_Init] model.yaml:51
+         S211,      --  [S211] model.yaml:64
+         S21_Init,  --  [S21_Init] model.yaml:63
+         S_Init     --  [S_Init] model.yaml:45
+        );
 
+      --  [S] model.yaml:42
       subtype S is Leaf range S11 .. S_Init;
+
+      --  [S1] model.yaml:46
       subtype S1 is S range S11 .. S1_Init;
+
+      --  [S2] model.yaml:53
       subtype S2 is S range S211 .. S21_Init;
+
+      --  [S21] model.yaml:58
       subtype S21 is S2 range S211 .. S21_Init;
    end Chart_States;
 
    --  [Qhsm.Keys.states]
    package Keys_States is
-      type Leaf is (Listening);
+      type Leaf is
+        (Listening   --  [Listening] model.yaml:103
+        );
    end Keys_States;
 
    --  [Qhsm.key] what its readers see

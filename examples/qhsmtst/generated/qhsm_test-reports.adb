@@ -25,6 +25,7 @@ is
 
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
+
       Item : Ravenchart.Traces.Trace_Record;
       Status : Ravenchart.Queueing.Take_Status;
    begin
@@ -39,6 +40,7 @@ is
 
    procedure Report_Reception is
       use type Ravenchart.Element_Id;
+
       Found : Reception.Processor.Statistics;
    begin
       Reception.Processor.Observe (Found);
@@ -54,6 +56,7 @@ is
 
    procedure Report_Charts is
       use type Ravenchart.Element_Id;
+
       Found : Charts.Processor.Statistics;
    begin
       Charts.Processor.Observe (Found);

@@ -63,6 +63,7 @@ is
 
    procedure Put_Key (Item : Qhsm_Test.Key) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Key_Mailbox.Put (Item, Status);
@@ -78,6 +79,7 @@ is
 
    procedure Offer (Item : Qhsm.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item.Name is
@@ -197,7 +199,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Key_Item : Qhsm_Test.Key;
       Key_Change : Qhsm.Key_Port.Change;
    begin
@@ -230,11 +234,15 @@ is
    procedure Step_Keys is
       Now : Qhsm.Keys.Occurrence;
       Fired : Qhsm.Keys.Selection;
+
       use type Qhsm.Keys.Selection;
       use type Qhsm.Keys.Occurrence;
+
       Event : Qhsm.Event := Qhsm.No_Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Box : Qhsm.Keys.Outbox;
    begin
       Qhsm.Keys.Poll (Keys_Region, Now);
@@ -270,9 +278,12 @@ is
    procedure Step_Chart is
       Now : Qhsm.Chart.Occurrence;
       Fired : Qhsm.Chart.Firing_List;
+
       use type Qhsm.Chart.Occurrence;
+
       Event : Qhsm.Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
    begin
       Qhsm.Chart.Poll (Chart_Region, Now);

@@ -8,11 +8,6 @@ with System;
 package Qhsm_Test.Trace
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    package Buffer is new Ravenchart.Trace_Buffers
      (Capacity => 1_024, Ceiling => System.Default_Priority + 2);
 end Qhsm_Test.Trace;

@@ -5,11 +5,6 @@
 package Qhsm_Test
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    type Key is
      (Key_A, Key_B, Key_C, Key_D, Key_E, Key_F, Key_G, Key_H, Key_I);
 end Qhsm_Test;

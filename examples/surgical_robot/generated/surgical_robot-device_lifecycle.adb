@@ -13,6 +13,7 @@ with SPARK_Mode
 is
    procedure Start_All (Passed : out Boolean) is
       use type Ravenchart.Nanoseconds;
+
       Started : Boolean;
       Elapsed : Ravenchart.Nanoseconds;
    begin

@@ -18,6 +18,7 @@ with SPARK_Mode
 is
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
+
       Item : Ravenchart.Traces.Trace_Record;
       Status : Ravenchart.Queueing.Take_Status;
    begin
@@ -32,6 +33,7 @@ is
 
    procedure Report_Servo_Loop is
       use type Ravenchart.Element_Id;
+
       Found : Servo_Loop.Processor.Statistics;
    begin
       Servo_Loop.Processor.Observe (Found);
@@ -47,6 +49,7 @@ is
 
    procedure Report_Supervision is
       use type Ravenchart.Element_Id;
+
       Found : Supervision.Processor.Statistics;
    begin
       Supervision.Processor.Observe (Found);

@@ -84,7 +84,9 @@ is
    procedure Run_Take_Orders (Executed : in out Ravenchart.Element_Id) is
       Asked : Servo.Motion_Requests.Request;
       Taken : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Seen_Value : Surgical_Robot.Angle_X4;
    begin
       for Unused in 1 .. 4 loop

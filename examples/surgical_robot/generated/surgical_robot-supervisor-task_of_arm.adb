@@ -74,10 +74,12 @@ is
               Self.Timers'Old (2))
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Exit_Parked
       with
         Post =>
@@ -93,6 +95,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active := Chart.Moved (Active, Chart.Parked, Chart.Nowhere);
       end Exit_Parked;
+
       procedure Exit_Reaching
       with
         Post =>
@@ -108,6 +111,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (2));
          Active := Chart.Moved (Active, Chart.Reaching, Chart.Nowhere);
       end Exit_Reaching;
+
       procedure Enter_Parked
       with
         Post =>
@@ -124,6 +128,7 @@ is
          Ravenchart.Timers.Arm (Self.Timers (1), 5);
          Active := Chart.Moved (Active, Chart.Nowhere, Chart.Parked);
       end Enter_Parked;
+
       procedure Enter_Reaching
       with
         Post =>
@@ -146,6 +151,7 @@ is
             Axis_4 => 0);
          Box.Set_Goal_Sent := True;
       end Enter_Reaching;
+
       procedure Enter_Holding
       with
         Post =>
@@ -160,6 +166,7 @@ is
          Active := Chart.Moved (Active, Chart.Nowhere, Chart.Holding);
          Box.Hold_Sent := True;
       end Enter_Holding;
+
       procedure Enter_Gave_Up
       with
         Post =>

@@ -17,7 +17,12 @@ is
 
    --  [Supervisor.Task_Of_Arm.transitions] in order of precedence,
    --  innermost source first
-   type Selection is (Initial_Entry, Begin_Task, There, Too_Late, None);
+   type Selection is
+     (Initial_Entry,
+      Begin_Task,     --  [begin_task] application.yaml:33
+      There,          --  [there] application.yaml:34
+      Too_Late,       --  [too_late] application.yaml:35
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Too_Late;
    subtype Transition is Selection range Begin_Task .. Too_Late;

@@ -7,6 +7,11 @@ with SPARK_Mode
 is
    --  [Supervisor.Task_Of_Arm.states]
    package Task_Of_Arm_States is
-      type Leaf is (Parked, Reaching, Holding, Gave_Up);
+      type Leaf is
+        (Parked,    --  [Parked] application.yaml:27
+         Reaching,  --  [Reaching] application.yaml:28
+         Holding,   --  [Holding] application.yaml:30
+         Gave_Up    --  [Gave_Up] application.yaml:31
+        );
    end Task_Of_Arm_States;
 end Surgical_Robot.Supervisor;

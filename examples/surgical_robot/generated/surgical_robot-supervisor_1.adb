@@ -44,7 +44,9 @@ is
    procedure Step_Task_Of_Arm (Ins : Supervisor.Task_Of_Arm.Inputs) is
       Now : Supervisor.Task_Of_Arm.Occurrence;
       Fired : Supervisor.Task_Of_Arm.Selection;
+
       use type Supervisor.Task_Of_Arm.Selection;
+
       Box : Supervisor.Task_Of_Arm.Outbox;
    begin
       Supervisor.Task_Of_Arm.Poll (Task_Of_Arm_Region, Now);

@@ -64,6 +64,7 @@ is
 
    procedure Put_Token_In (Item : Three_Components.Token) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Token_In_Mailbox.Put (Item, Status);
@@ -80,6 +81,7 @@ is
 
    procedure Offer (Item : Starter.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
@@ -127,7 +129,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Token_In_Item : Three_Components.Token;
       Token_In_Change : Starter.Token_In_Port.Change;
    begin
@@ -160,11 +164,15 @@ is
    procedure Step_Starting (Ins : Starter.Starting.Inputs) is
       Now : Starter.Starting.Occurrence;
       Fired : Starter.Starting.Selection;
+
       use type Starter.Starting.Selection;
       use type Starter.Starting.Occurrence;
+
       Event : Starter.Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Box : Starter.Starting.Outbox;
    begin
       Starter.Starting.Poll (Starting_Region, Now);
@@ -204,10 +212,13 @@ is
    procedure Step_Watching is
       Now : Starter.Watching.Occurrence;
       Fired : Starter.Watching.Selection;
+
       use type Starter.Watching.Selection;
       use type Starter.Watching.Occurrence;
+
       Event : Starter.Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
    begin
       Starter.Watching.Poll (Watching_Region, Now);

@@ -19,6 +19,7 @@ with SPARK_Mode
 is
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
+
       Item : Ravenchart.Traces.Trace_Record;
       Status : Ravenchart.Queueing.Take_Status;
    begin
@@ -33,6 +34,7 @@ is
 
    procedure Report_Processor_1 is
       use type Ravenchart.Element_Id;
+
       Found : Processor_1.Processor.Statistics;
    begin
       Processor_1.Processor.Observe (Found);
@@ -48,6 +50,7 @@ is
 
    procedure Report_Processor_2 is
       use type Ravenchart.Element_Id;
+
       Found : Processor_2.Processor.Statistics;
    begin
       Processor_2.Processor.Observe (Found);
@@ -63,6 +66,7 @@ is
 
    procedure Report_Processor_3 is
       use type Ravenchart.Element_Id;
+
       Found : Processor_3.Processor.Statistics;
    begin
       Processor_3.Processor.Observe (Found);

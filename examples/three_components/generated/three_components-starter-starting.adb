@@ -67,10 +67,12 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Exit_Before
       with
         Post =>
@@ -84,6 +86,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active := Chart.Moved (Active, Chart.Before, Chart.Nowhere);
       end Exit_Before;
+
       procedure Enter_Before
       with
         Post =>

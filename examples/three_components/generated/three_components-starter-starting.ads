@@ -17,7 +17,11 @@ is
 
    --  [Starter.Starting.transitions] in order of precedence, innermost
    --  source first
-   type Selection is (Initial_Entry, Start, Again, None);
+   type Selection is
+     (Initial_Entry,
+      Start,          --  [start] model.yaml:76
+      Again,          --  [again] model.yaml:83
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Again;
    subtype Transition is Selection range Start .. Again;

@@ -68,10 +68,12 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Exit_Busy
       with
         Post =>
@@ -85,6 +87,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active := Chart.Moved (Active, Chart.Busy, Chart.At_Work);
       end Exit_Busy;
+
       procedure Leave_At_Work
       with
         Pre =>
@@ -107,6 +110,7 @@ is
                Exit_Busy;
          end case;
       end Leave_At_Work;
+
       procedure Enter_Busy
       with
         Post =>

@@ -18,7 +18,12 @@ is
 
    --  [Starter.Watching.transitions] in order of precedence, innermost
    --  source first
-   type Selection is (Initial_Entry, Seen, Calm, Left, None);
+   type Selection is
+     (Initial_Entry,
+      Seen,           --  [seen] model.yaml:103
+      Calm,           --  [calm] model.yaml:104
+      Left,           --  [left] model.yaml:105
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Left;
    subtype Transition is Selection range Seen .. Left;

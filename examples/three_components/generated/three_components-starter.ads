@@ -18,13 +18,21 @@ is
 
    --  [Starter.Starting.states]
    package Starting_States is
-      type Leaf is (Before, After_Start);
+      type Leaf is
+        (Before,       --  [Before] model.yaml:73
+         After_Start   --  [After_Start] model.yaml:74
+        );
    end Starting_States;
 
    --  [Starter.Watching.states]
    package Watching_States is
-      type Leaf is (Quiet, Busy, Alone);
+      type Leaf is
+        (Quiet,  --  [Quiet] model.yaml:99
+         Busy,   --  [Busy] model.yaml:100
+         Alone   --  [Alone] model.yaml:101
+        );
 
+      --  [At_Work] model.yaml:96
       subtype At_Work is Leaf range Quiet .. Busy;
    end Watching_States;
 

@@ -50,6 +50,7 @@ is
      Post => Self.Started and then Self.Leaf = Target (Chosen)
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)

@@ -13,7 +13,11 @@ is
 
    --  [Station.Handling.transitions] in order of precedence, innermost
    --  source first
-   type Selection is (Initial_Entry, Take, Pass_On, None);
+   type Selection is
+     (Initial_Entry,
+      Take,           --  [take] model.yaml:28
+      Pass_On,        --  [pass_on] model.yaml:29
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Pass_On;
    subtype Transition is Selection range Take .. Pass_On;

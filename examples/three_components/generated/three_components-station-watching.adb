@@ -63,10 +63,12 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Exit_Busy
       with
         Post =>
@@ -80,6 +82,7 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active := Chart.Moved (Active, Chart.Busy, Chart.Nowhere);
       end Exit_Busy;
+
       procedure Enter_Busy
       with
         Post =>

@@ -17,7 +17,11 @@ is
 
    --  [Station.Watching.transitions] in order of precedence, innermost
    --  source first
-   type Selection is (Initial_Entry, Seen, Calm, None);
+   type Selection is
+     (Initial_Entry,
+      Seen,           --  [seen] model.yaml:45
+      Calm,           --  [calm] model.yaml:46
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Calm;
    subtype Transition is Selection range Seen .. Calm;

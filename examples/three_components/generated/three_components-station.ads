@@ -18,12 +18,18 @@ is
 
    --  [Station.Handling.states]
    package Handling_States is
-      type Leaf is (Empty, Holding);
+      type Leaf is
+        (Empty,    --  [Empty] model.yaml:25
+         Holding   --  [Holding] model.yaml:26
+        );
    end Handling_States;
 
    --  [Station.Watching.states]
    package Watching_States is
-      type Leaf is (Quiet, Busy);
+      type Leaf is
+        (Quiet,  --  [Quiet] model.yaml:42
+         Busy    --  [Busy] model.yaml:43
+        );
    end Watching_States;
 
    --  [Station.token_in] what its readers see

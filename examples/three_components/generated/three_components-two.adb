@@ -73,6 +73,7 @@ is
 
    procedure Put_Token_In (Item : Three_Components.Token) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       Token_In_Mailbox.Put (Item, Status);
@@ -89,6 +90,7 @@ is
 
    procedure Offer (Item : Station.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
@@ -136,7 +138,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Token_In_Item : Three_Components.Token;
       Token_In_Change : Station.Token_In_Port.Change;
    begin
@@ -169,11 +173,15 @@ is
    procedure Step_Handling (Ins : Station.Handling.Inputs) is
       Now : Station.Handling.Occurrence;
       Fired : Station.Handling.Selection;
+
       use type Station.Handling.Selection;
       use type Station.Handling.Occurrence;
+
       Event : Station.Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Box : Station.Handling.Outbox;
    begin
       Station.Handling.Poll (Handling_Region, Now);
@@ -212,10 +220,13 @@ is
    procedure Step_Watching is
       Now : Station.Watching.Occurrence;
       Fired : Station.Watching.Selection;
+
       use type Station.Watching.Selection;
       use type Station.Watching.Occurrence;
+
       Event : Station.Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
    begin
       Station.Watching.Poll (Watching_Region, Now);
@@ -249,7 +260,9 @@ is
 
    procedure Run_Work (Executed : in out Ravenchart.Element_Id) is
       Handling_Now : Station.Handling_States.Leaf;
+
       use type Station.Handling_States.Leaf;
+
       Token_In_Value : Station.Token_In_View;
       Raise_Worked : Boolean;
    begin

@@ -12,6 +12,7 @@ procedure Three_Components_Main
 with SPARK_Mode, Priority => System.Priority'First
 is
    use type Ada.Real_Time.Time;
+
    Step : constant Ada.Real_Time.Time_Span :=
      Ada.Real_Time.Milliseconds (5);
    Next : Ada.Real_Time.Time := Ada.Real_Time.Clock;

@@ -22,7 +22,7 @@ class _Way(Enum):
 _AS_AROUND, _ONE_LINE_IF_IT_FITS, _UPRIGHT = _Way
 
 
-class Parts:
+class LaidParts:
     """Documents one after the other; use `cat`, `nest`, `group` and `upright` to make them."""
 
     __slots__ = ("flat", "has_upright", "parts", "step", "way")
@@ -45,36 +45,36 @@ class Parts:
         self.has_upright: bool = has_upright
 
 
-Doc = str | Parts
+Doc = str | LaidParts
 
-SOFT = Parts((" ",))
+SOFT = LaidParts((" ",))
 """A blank, or the place where a line ends."""
 
 
 def cat(*docs: Doc) -> Doc:
     """One after the other."""
-    return Parts(docs)
+    return LaidParts(docs)
 
 
 def nest(*docs: Doc, by: int = STEP) -> Doc:
     """The same, later lines ``by`` columns further in."""
-    return Parts(docs, by)
+    return LaidParts(docs, by)
 
 
 def group(*docs: Doc) -> Doc:
     """On one line where it fits; otherwise every soft place that no inner group holds breaks."""
-    return Parts(docs, 0, _ONE_LINE_IF_IT_FITS)
+    return LaidParts(docs, 0, _ONE_LINE_IF_IT_FITS)
 
 
 def upright(*docs: Doc) -> Doc:
     """Every soft place that no inner group holds breaks."""
-    return Parts(docs, 0, _UPRIGHT)
+    return LaidParts(docs, 0, _UPRIGHT)
 
 
 def laid_out(doc: Doc, width: int) -> str:
     """The text of ``doc`` in lines of ``width`` columns, as far as its soft places allow that."""
     out: list[str] = []
-    _put(out, Parts((group(doc),)), width, 0, 0, True, 0)
+    _put(out, LaidParts((group(doc),)), width, 0, 0, True, 0)
     return "".join(out)
 
 
@@ -114,7 +114,7 @@ def _behind(parts: tuple[Doc, ...], broken: bool, outside: int) -> int:
 
 
 def _put(
-    out: list[str], doc: Parts, width: int, column: int, indent: int, broken: bool, outside: int
+    out: list[str], doc: LaidParts, width: int, column: int, indent: int, broken: bool, outside: int
 ) -> int:
     """Add a document that begins in ``column``; the column behind it.
 

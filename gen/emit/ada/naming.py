@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import lru_cache
 
 from ravenchart.gen.language.terms import (
@@ -18,8 +19,9 @@ from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Processor, Slot, System
+from ravenchart.gen.origins import Origin
 
-from .syntax import Aggregate, Arg, Expr, Ref, number
+from .syntax import Aggregate, Arg, Comment, Expr, Ref, number
 
 
 @lru_cache(maxsize=65_536)
@@ -171,6 +173,20 @@ def row_name(slot: Slot) -> str:
 def constant_name(element: str) -> str:
     """An element id as one Ada name."""
     return "_".join(ada_case(part) for part in element.split("."))
+
+
+LONGEST = 60
+"""Of a word in a comment, which no line can break; a longer one loses its beginning."""
+
+
+def where(name: str, origins: Iterable[Origin], model: Origin) -> Comment:
+    """An element by its name in the model, and where it stands, as seen from ``model``."""
+    places = dict.fromkeys(_ended(origin.beside(model)) for origin in origins)
+    return Comment(f"[{_ended(name)}] {', '.join(places)}")
+
+
+def _ended(word: str) -> str:
+    return word if len(word) <= LONGEST else f"...{word[3 - LONGEST :]}"
 
 
 def priority(level: int) -> Ref:

@@ -48,7 +48,12 @@ def _names(item: ada.Decl) -> Iterator[_Name]:
         case ada.EnumType(name, literals):
             yield _Name(name)
             yield from (_Name(i, ("return", name)) for i in literals)
-        case ada.PlainType(name) | ada.RecordType(name) | ada.Object(name) | ada.Instance(name):
+        case (
+            ada.PlainType(name)
+            | ada.RecordDeclaration(name)
+            | ada.Object(name)
+            | ada.GenericInstance(name)
+        ):
             yield _Name(name)
         case ada.Package(name, is_body=is_body):
             if not is_body:  # that of a package that was declared before
@@ -67,7 +72,7 @@ def _loops(body: Sequence[ada.Stmt]) -> Iterator[_Name]:
                 if head:
                     yield _Name(head.split()[1])
                 yield from _loops(inner)
-            case ada.If(branches, otherwise):
+            case ada.IfStatement(branches, otherwise):
                 for _, inner in branches:
                     yield from _loops(inner)
                 yield from _loops(otherwise)
@@ -104,13 +109,13 @@ class _Unit:
             match item:
                 case ada.Package(_, inner):
                     self.walk(inner, ())
-                case ada.RecordType(_, components):
+                case ada.RecordDeclaration(_, components):
                     self.record(components)
                 case ada.Subprogram():
                     self.inside(item, around)
         return names
 
-    def record(self, components: Sequence[ada.Component]) -> None:
+    def record(self, components: Sequence[ada.RecordComponent]) -> None:
         """A component hides what the types after it begin with, and other components."""
         seen: set[str] = set()
         for name, of_type, _ in components:
@@ -147,7 +152,7 @@ def _of_item(unit: _Unit, outer: Sequence[_Name]) -> list[_Name]:
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class UnitReading:
     """What is left of a unit that was read."""
 
     name: str
@@ -158,7 +163,7 @@ class Reading:
     """Names that it could not have beside others."""
 
 
-def readings(units: Sequence[ada.Unit], root: str) -> list[Reading]:
+def readings(units: Sequence[ada.Unit], root: str) -> list[UnitReading]:
     """One for each unit; the parents of all but the children of ``root`` are among them."""
     specs: dict[str, list[_Name]] = {}
     made = []
@@ -176,7 +181,7 @@ def readings(units: Sequence[ada.Unit], root: str) -> list[Reading]:
             specs[name] = own
         declared = [*reading.deep, *spec, *(_Name(part) for part in name.split(".")[2:])]
         barred = (*reading.found, *_hidden(unit, declared, root))
-        made.append(Reading(name, is_body, frozenset(n.key for n in own), barred))
+        made.append(UnitReading(name, is_body, frozenset(n.key for n in own), barred))
     return made
 
 

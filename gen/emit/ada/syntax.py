@@ -32,7 +32,7 @@ class Old:
 
 
 @frozen
-class Chain:
+class OperatorChain:
     """Operands joined by one operator; operands that are chains get parentheses."""
 
     operator: str
@@ -108,7 +108,7 @@ class ForSome:
     condition: Expr
 
 
-Expr = Ref | Old | Chain | Prefix | Call | Aggregate | IfExpr | CaseExpr | ForAll | ForSome
+Expr = Ref | Old | OperatorChain | Prefix | Call | Aggregate | IfExpr | CaseExpr | ForAll | ForSome
 
 # --- Statements --------------------------------------------------------------
 
@@ -130,7 +130,7 @@ class Do:
 
 
 @frozen
-class If:
+class IfStatement:
     """``if ... then ... elsif ... else ... end if;``"""
 
     branches: tuple[tuple[Expr, tuple[Stmt, ...]], ...]
@@ -182,7 +182,7 @@ class Comment:
     text: str
 
 
-Stmt = Assign | Do | If | Case | Loop | Say | Return | Pragma | Comment
+Stmt = Assign | Do | IfStatement | Case | Loop | Say | Return | Pragma | Comment
 
 # --- Declarations ------------------------------------------------------------
 
@@ -204,10 +204,11 @@ class Param(NamedTuple):
 
 @frozen
 class EnumType:
-    """An enumeration type."""
+    """An enumeration type; ``notes`` are comments on its literals, empty for one without."""
 
     name: str
     literals: tuple[str, ...]
+    notes: tuple[Comment, ...] = ()
 
 
 @frozen
@@ -219,7 +220,7 @@ class PlainType:
     subtype: bool = False
 
 
-class Component(NamedTuple):
+class RecordComponent(NamedTuple):
     """One record component."""
 
     name: str
@@ -228,11 +229,11 @@ class Component(NamedTuple):
 
 
 @frozen
-class RecordType:
+class RecordDeclaration:
     """A record type."""
 
     name: str
-    components: tuple[Component, ...]
+    components: tuple[RecordComponent, ...]
 
 
 @frozen
@@ -260,7 +261,7 @@ class Subprogram:
 
 
 @frozen
-class Instance:
+class GenericInstance:
     """``package name is new generic (...);``, or a ``procedure``."""
 
     name: str
@@ -314,10 +315,10 @@ class UsePackage:
 Decl = (
     EnumType
     | PlainType
-    | RecordType
+    | RecordDeclaration
     | Object
     | Subprogram
-    | Instance
+    | GenericInstance
     | Package
     | Protected
     | Rename
@@ -334,7 +335,7 @@ class Unit:
 
     header: str
     withs: tuple[str, ...]
-    item: Package | Subprogram | Instance
+    item: Package | Subprogram | GenericInstance
 
     @property
     def file_name(self) -> str:
@@ -344,7 +345,7 @@ class Unit:
                 pass
             case Subprogram(body=body):
                 is_body = body is not None
-            case Instance():
+            case GenericInstance():
                 is_body = False
         stem = self.item.name.lower().replace(".", "-")
         return f"{stem}.{'adb' if is_body else 'ads'}"
@@ -382,7 +383,7 @@ def chain(operator: str, operands: Sequence[Expr], empty: Expr = TRUE) -> Expr:
     """The operands joined; one stands alone, none gives ``empty``."""
     if not operands:
         return empty
-    return operands[0] if len(operands) == 1 else Chain(operator, tuple(operands))
+    return operands[0] if len(operands) == 1 else OperatorChain(operator, tuple(operands))
 
 
 def both(*operands: Expr) -> Expr:
@@ -392,7 +393,7 @@ def both(*operands: Expr) -> Expr:
 
 def equal(left: Expr, right: Expr) -> Expr:
     """``left = right``."""
-    return Chain("=", (left, right))
+    return OperatorChain("=", (left, right))
 
 
 def case_of(selector: Expr, rows: Iterable[tuple[str, tuple[Stmt, ...]]]) -> Case:
@@ -411,6 +412,8 @@ def _together(rows: Iterable[tuple[str, Result]]) -> tuple[tuple[str, Result], .
         found.setdefault(result, []).append(choice)
     return tuple((" | ".join(names), result) for result, names in found.items())
 
+
+COMPARISONS = frozenset(("=", "/=", "<", "<=", ">", ">=", "in", "not in"))
 
 _NAME = re.compile(r"[A-Za-z]\w*(?:\.\w+)*")
 
@@ -443,6 +446,13 @@ def _parts(construct: object) -> Sequence[object]:
     return [getattr(construct, name) for name in getattr(construct, "__slots__", ())]
 
 
+def compares(construct: object) -> bool:
+    """Is there a comparison or a membership test in it?"""
+    if isinstance(construct, OperatorChain) and construct.operator in COMPARISONS:
+        return True
+    return any(compares(part) for part in _parts(construct))
+
+
 def names_in(construct: object) -> Iterator[str]:
     """The text of each name and literal in it."""
     if isinstance(construct, Ref):
@@ -457,7 +467,7 @@ def names_in(construct: object) -> Iterator[str]:
 
 def member(left: Expr, choices: str) -> Expr:
     """``left in choices``."""
-    return Chain("in", (left, Ref(choices)))
+    return OperatorChain("in", (left, Ref(choices)))
 
 
 def one_of(left: Expr, literals: Sequence[str]) -> Expr:

@@ -6,7 +6,7 @@ expressions break one item a line (`layout` decides).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 from .layout import SOFT, Doc, cat, group, laid_out, nest, upright
@@ -19,7 +19,6 @@ from .syntax import (
     Call,
     Case,
     CaseExpr,
-    Chain,
     Comment,
     Decl,
     Do,
@@ -27,19 +26,20 @@ from .syntax import (
     Expr,
     ForAll,
     ForSome,
-    If,
+    GenericInstance,
     IfExpr,
-    Instance,
+    IfStatement,
     Loop,
     Object,
     Old,
+    OperatorChain,
     Package,
     Param,
     PlainType,
     Pragma,
     Prefix,
     Protected,
-    RecordType,
+    RecordDeclaration,
     Ref,
     Rename,
     Return,
@@ -115,7 +115,7 @@ def _operand(expr: Expr, operator: str = "", first: bool = False) -> Doc:
     The first one of an arithmetic operator needs none where it has an operator of the same level.
     """
     doc = expression(expr)
-    if isinstance(expr, Chain):
+    if isinstance(expr, OperatorChain):
         own, around = _CLOSENESS[expr.operator], _CLOSENESS.get(operator, len(_LEVELS))
         alike = first and own == around and operator in _ARITHMETIC
         if not (alike or own > around) or operator == "**":
@@ -148,7 +148,7 @@ def expression(expr: Expr) -> Doc:
             return _choices(text) if " | " in text else text
         case Old(name, part):
             return f"{name}'Old{part}"
-        case Chain(operator, operands):
+        case OperatorChain(operator, operands):
             #  GNAT wants to see what a sign before a product is of
             begin = _signed if operator in ("*", "/") else _operand
             head = begin(operands[0], operator, first=True)
@@ -216,7 +216,7 @@ def statement(stmt: Stmt) -> Doc:
             return f"{name};"
         case Do(name, args):
             return _given(name, args, ";")
-        case If(branches, otherwise):
+        case IfStatement(branches, otherwise):
             parts: list[Doc] = []
             for index, (condition, body) in enumerate(branches):
                 head = group(
@@ -287,7 +287,7 @@ def _subprogram(sub: Subprogram) -> Doc:
         return upright(group(head, " is", nest(SOFT, inner, by=2)), aspects, ";")
     if sub.body is None:
         return upright(head, aspects, ";")
-    declarations = _lines([_declaration(d) for d in sub.declarations])
+    declarations = _lines(_items(sub.declarations))
     start = [SOFT, "is"] if sub.aspects else [" is"]
     return upright(
         head,
@@ -304,17 +304,16 @@ def _subprogram(sub: Subprogram) -> Doc:
 
 def _declaration(decl: Decl) -> Doc:
     match decl:
-        case EnumType(name, literals):
-            items = nest(_filled(literals), by=1)
-            return group(f"type {name} is", nest(SOFT, group("(", items, ");"), by=2))
+        case EnumType():
+            return _enumeration(decl)
         case PlainType(name, definition, subtype):
             parts = f"{definition};".replace(" range ", "\n range ").replace(" .. ", "\n.. ")
             whole, *bounds = [part.strip() for part in parts.split("\n")]
             head = f"{'subtype' if subtype else 'type'} {name} is"
             return group(head, nest(SOFT, whole, *(cat(SOFT, b) for b in bounds), by=2))
-        case RecordType(name, ()):
+        case RecordDeclaration(name, ()):
             return f"type {name} is null record;"
-        case RecordType(name, components):
+        case RecordDeclaration(name, components):
             width = max(len(c.name) for c in components)
             rows = [_component(f"{c.name:<{width}} : {c.type}", c.initial) for c in components]
             return upright(f"type {name} is record", _lines(rows), SOFT, "end record;")
@@ -327,7 +326,7 @@ def _declaration(decl: Decl) -> Doc:
             return group(*start, _aspects(aspects) if aspects else "", ";")
         case Subprogram():
             return _subprogram(decl)
-        case Instance(name, generic, args, kind):
+        case GenericInstance(name, generic, args, kind):
             head = f"{kind} {name} is new {generic}"
             return group(head, nest(SOFT, _args(args), by=2), ";")
         case Package():
@@ -342,6 +341,29 @@ def _declaration(decl: Decl) -> Doc:
             return _pragma(name, args)
         case Comment(text):
             return _comment(text)
+
+
+def _enumeration(decl: EnumType) -> Doc:
+    if not decl.notes:
+        items = nest(_filled(decl.literals), by=1)
+        return group(f"type {decl.name} is", nest(SOFT, group("(", items, ");"), by=2))
+    noted = _annotated(decl.literals, decl.notes)
+    rows = nest(*_join(list(noted)), by=1)
+    end = cat(SOFT, ");") if decl.notes[-1].text else ");"
+    return upright(f"type {decl.name} is", nest(SOFT, "(", rows, end, by=2))
+
+
+def _annotated(literals: Sequence[str], notes: Sequence[Comment]) -> Iterator[Doc]:
+    """A line for each literal, its note behind it; before it where that is too long."""
+    width = max(map(len, literals)) + 1
+    for index, (literal, note) in enumerate(zip(literals, notes, strict=True)):
+        row = literal if index == len(literals) - 1 else f"{literal},"
+        if not note.text:
+            yield row
+        elif width + len(note.text) <= WIDTH - 14:
+            yield f"{row:<{width}}  --  {note.text}"
+        else:
+            yield cat(_comment(note.text), SOFT, row)
 
 
 def _component(head: str, initial: Expr | None) -> Doc:

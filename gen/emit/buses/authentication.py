@@ -11,14 +11,14 @@ from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Aspect,
     Assign,
-    Chain,
     Comment,
     Decl,
     Do,
     EnumType,
     Expr,
-    If,
+    IfStatement,
     Object,
+    OperatorChain,
     Package,
     Param,
     PlainType,
@@ -200,7 +200,7 @@ def _begun(state: str, message: Message) -> Stmt:
     """Begin with the user's freshness value, the first time."""
     last = call(f"{UNIT}.Last_Freshness", Ref(f"{UNIT}.{_literal(message)}"))
     begin = Do(f"{AUTHENTICATION}.Begin_After", arguments(Ref(state), last))
-    return If(((Prefix("not", Ref(f"{state}.Is_Started")), (begin,)),))
+    return IfStatement(((Prefix("not", Ref(f"{state}.Is_Started")), (begin,)),))
 
 
 def _mac(message: Message, own: Authentication) -> Expr:
@@ -223,8 +223,8 @@ def sealed(
     return (
         _begun(state, message),
         Do(f"{AUTHENTICATION}.Take", arguments(Ref(state), VALUE, Ref("Taken"))),
-        If(((Ref("Taken"), (Assign("Answer", _mac(message, own)),)),)),
-        If(
+        IfStatement(((Ref("Taken"), (Assign("Answer", _mac(message, own)),)),)),
+        IfStatement(
             (
                 (
                     Ref("Answer.Is_Known"),
@@ -255,13 +255,13 @@ def verified(
     """Take a frame whose MAC is right; of another do what is to be done then."""
     state, setting = Ref(_receiver(message)), _setting(message)
     before = _before(message)
-    newer = Chain(">", (VALUE, Ref(f"{before}.Last")))
+    newer = OperatorChain(">", (VALUE, Ref(f"{before}.Last")))
     known = both(newer, _is_authentic(message, own))
     return (
         _begun(state.text, message),
         Assign(before, state),
         Do(f"{AUTHENTICATION}.Reconstruct", arguments(state, setting, FRAME, VALUE, VERDICT)),
-        If(
+        IfStatement(
             (
                 (
                     equal(VERDICT, Ref(f"{AUTHENTICATION}.Unverified")),
@@ -275,7 +275,7 @@ def verified(
                 ),
             )
         ),
-        If(
+        IfStatement(
             (
                 (
                     equal(VERDICT, Ref(f"{AUTHENTICATION}.Verified")),

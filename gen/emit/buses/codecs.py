@@ -20,14 +20,14 @@ from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Aspect,
     Assign,
-    Chain,
     Comment,
     Decl,
     Do,
     Expr,
-    If,
     IfExpr,
+    IfStatement,
     Object,
+    OperatorChain,
     Package,
     Param,
     Pragma,
@@ -79,8 +79,14 @@ def codec_name(message: Message) -> str:
     A layout is the type's where none is given. No codec of a type is called like one of a
     message, whatever the model calls them.
     """
-    plain = message.signals == signals_of(message.type)
-    return f"Type_{ada_case(message.type.name)}" if plain else f"Message_{ada_case(message.name)}"
+    if _is_plain(message):
+        return f"Type_{ada_case(message.type.name)}"
+    return f"Message_{ada_case(message.name)}"
+
+
+def _is_plain(message: Message) -> bool:
+    """Has it the layout of its type?"""
+    return message.signals == signals_of(message.type)
 
 
 def words_of(message: Message) -> int:
@@ -129,7 +135,7 @@ class _Codec:
         self.words = words_of(message)
         self.frame = "Word" if self.words == 1 else "Words"
         self.frame_type = WORD if self.words == 1 else WORDS
-        self.label = message.type.name if self.name.startswith("Type_") else message.name
+        self.label = message.type.name if _is_plain(message) else message.name
         self.table = LayoutTable(system, self.signals)
         self.selector = next((s for s in self.signals if s.selects), None)
 
@@ -343,11 +349,11 @@ class _Codec:
         """What the row counts, case by case: provers take the step to numbers here alone."""
         counted: Expr = call(NUMBER, Ref("Raw"))
         if signal.signed:
-            below = Chain("<=", (Ref("Raw"), bits((1 << signal.width - 1) - 1)))
+            below = OperatorChain("<=", (Ref("Raw"), bits((1 << signal.width - 1) - 1)))
             full = number(1 << signal.width)
-            counted = IfExpr(((below, counted),), Chain("-", (counted, full)))
+            counted = IfExpr(((below, counted),), OperatorChain("-", (counted, full)))
         elif container(signal) == WORD:
-            below = Chain("<=", (Ref("Raw"), bits(RAW_LIMIT - 1)))
+            below = OperatorChain("<=", (Ref("Raw"), bits(RAW_LIMIT - 1)))
             counted = IfExpr(((below, counted),), Ref("2**62"))
         steps: list[Expr] = [equal(shown, counted)]
         if container(signal) != WORD:
@@ -447,7 +453,7 @@ class _Codec:
         item: Stmt = Assign("Item", built)
         if is_valid != TRUE:  # all bits may stand for values
             absent = Assign("Item", default_value(self.system, self.type))
-            item = If(((Ref("Valid"), (item,)),), (absent,))
+            item = IfStatement(((Ref("Valid"), (item,)),), (absent,))
         return Subprogram(
             "Unpack",
             (

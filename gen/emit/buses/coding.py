@@ -15,10 +15,10 @@ from ravenchart.gen.emit.ada.syntax import (
     TRUE,
     Aspect,
     CaseExpr,
-    Chain,
     Expr,
     IfExpr,
     Object,
+    OperatorChain,
     Param,
     Pragma,
     Ref,
@@ -60,7 +60,7 @@ def within_width(raw: Expr, signal: Signal) -> Expr | None:
     """Are the bits no more than the signal has? None: its type of bits has no more."""
     if container(signal) == f"Interfaces.Unsigned_{signal.width}":
         return None
-    return Chain("<=", (raw, bits((1 << signal.width) - 1)))
+    return OperatorChain("<=", (raw, bits((1 << signal.width) - 1)))
 
 
 def is_plain(signal: Signal) -> bool:
@@ -105,9 +105,13 @@ class Coding:
         if high - low + 1 == full and within_width(raw, self.signal) is None:
             return TRUE
         if low > 0 and high == full - 1 and within_width(raw, self.signal) is None:
-            return Chain(">=", (raw, number(low)))
+            return OperatorChain(">=", (raw, number(low)))
         if low >= 0:
-            return member(raw, f"{low:_} .. {high:_}") if low else Chain("<=", (raw, number(high)))
+            return (
+                member(raw, f"{low:_} .. {high:_}")
+                if low
+                else OperatorChain("<=", (raw, number(high)))
+            )
         if high < 0:
             return member(raw, f"{full + low:_} .. {full + high:_}")
         return member(raw, f"0 .. {high:_} | {full + low:_} .. {full - 1:_}")
@@ -181,7 +185,7 @@ class Coding:
         above = _more(counted, signal.offset)
         below = _more(counted, signal.offset - (1 << signal.width))
         if low < 0 <= high:
-            above = IfExpr(((Chain("<=", (counted, number(high))), above),), below)
+            above = IfExpr(((OperatorChain("<=", (counted, number(high))), above),), below)
         return call(self.ada_type, below if high < 0 else above)
 
     def _whole(self) -> Expr:
@@ -192,7 +196,7 @@ class Coding:
         above = _more(counted, -offset)
         below = _more(counted, (1 << self.signal.width) - offset)
         if low < 0 <= high:
-            return IfExpr(((Chain(">=", (counted, number(offset))), above),), below)
+            return IfExpr(((OperatorChain(">=", (counted, number(offset))), above),), below)
         return below if high < 0 else above
 
 
@@ -204,7 +208,7 @@ def as_bits() -> Subprogram:
         (Param("Whole", "in", NUMBER),),
         WORD,
         aspects=(
-            Aspect("Pre", Chain(">=", (whole, number(0)))),
+            Aspect("Pre", OperatorChain(">=", (whole, number(0)))),
             Aspect("Post", equal(call(NUMBER, Ref(f"{AS_BITS}'Result")), whole)),
         ),
         expression=call(WORD, whole),
@@ -215,7 +219,7 @@ def _more(term: Expr, addend: int) -> Expr:
     """The sum, as people write it."""
     if not addend:
         return term
-    return Chain("+" if addend > 0 else "-", (term, number(abs(addend))))
+    return OperatorChain("+" if addend > 0 else "-", (term, number(abs(addend))))
 
 
 def literal_name(system: System, signal: Signal, value: int | str) -> str:
@@ -252,7 +256,7 @@ def placed(signal: Signal, local: str, word: int) -> list[Expr]:
         if len(pieces) > 1:
             if piece.low:
                 part = call("Interfaces.Shift_Right", part, number(piece.low))
-            part = Chain("and", (part, bits((1 << piece.width) - 1)))
+            part = OperatorChain("and", (part, bits((1 << piece.width) - 1)))
         parts.append(
             call("Interfaces.Shift_Left", part, number(piece.start)) if piece.start else part
         )

@@ -15,11 +15,11 @@ from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
     CaseExpr,
-    Chain,
     Decl,
     Do,
     Expr,
     Object,
+    OperatorChain,
     Param,
     PlainType,
     Prefix,
@@ -174,7 +174,7 @@ class LayoutTable:
             call(f"Interfaces.Shift_{way}", one, number(places))
             for way, one, places in zip(ways, words, by, strict=False)
         ]
-        taken = Chain("and", (chain("or", parts, number(0)), ones))
+        taken = OperatorChain("and", (chain("or", parts, number(0)), ones))
         mask = Do(f"{LEMMAS}.Lemma_Mask", arguments(row, ones))
         return taken, (mask, Do(f"{LEMMAS}.Lemma_{name}", given))
 
@@ -193,7 +193,9 @@ class LayoutTable:
         if isinstance(signal.type, EnumerationType):
             return call(f"{type_name(self.system, signal.type)}'Pos", item)
         value = call(NUMBER, item)
-        return Chain("-", (value, Ref(f"{_row(signal)}.Offset"))) if signal.offset else value
+        return (
+            OperatorChain("-", (value, Ref(f"{_row(signal)}.Offset"))) if signal.offset else value
+        )
 
     def stands_for(self, signal: Signal, raw: Expr, item: Expr) -> Expr:
         """Does a raw value that was received stand for a value of the model?"""

@@ -12,14 +12,14 @@ from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Call,
     CaseExpr,
-    Chain,
     Comment,
     Decl,
     Do,
     Expr,
-    If,
-    Instance,
+    GenericInstance,
+    IfStatement,
     Object,
+    OperatorChain,
     Package,
     Param,
     Pragma,
@@ -113,7 +113,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     sent, received = _sent(system, bus), _received(system, bus)
     transmit = system.object(f"{bus.name}.transmit").ceiling
     receive = system.object(f"{bus.name}.receive").ceiling
-    drivers = [t for t in system.tasks if t.element.startswith(f"{bus.name}.driver")]
+    drivers = [t for t in system.tasks if t.driver_of == bus.name]
     driver = max(drivers, key=lambda t: t.priority)
     standard = [fact(m.element, "Id").text for m in received if not m.extended]
     extended = [fact(m.element, "Id").text for m in received if m.extended]
@@ -133,7 +133,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
             expression=CaseExpr(Ref("Format"), tuple(wanted)),
         ),
         Comment(f"[{bus.name}] the identifiers that this node receives"),
-        Instance(
+        GenericInstance(
             "Controller",
             "Ravenchart.Can.Controllers",
             arguments(
@@ -331,10 +331,10 @@ def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
     """What a row calls to send a message, and at its end where the message has a mode."""
     frame = call(_frame_name(message), Ref("Item"))
     handed, lost = _handed(system, message)
-    full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
+    full = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
     name, params = f"Send_{ada_case(message.name)}", _send_spec(system, message).params
     statuses = UseType("Ravenchart.Can.Send_Status")
-    ends: Stmt = If(((full, lost),), (recorded(message),) if message.transmission else ())
+    ends: Stmt = IfStatement(((full, lost),), (recorded(message),) if message.transmission else ())
     if message.transmission is not None:
         body = transmit_body(message, _frame_name(message), (statuses,), (*handed, ends))
         return (Subprogram(name, params, body=given(message)), body)
@@ -395,16 +395,16 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         )
         if message.transport is not None:
             whole = (*note(system, "Arrived", message.name, "message"), *puts)
-            unpacked = (unpack, If(((Ref("Valid"), whole),)))
+            unpacked = (unpack, IfStatement(((Ref("Valid"), whole),)))
             refused = _counted(system, message, "Protection_Error")
             rows.append((matches, segment_taken(message, unpacked, refused)))
             continue
         family = Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}")
         carried = call(f"{ANY}.Carries", Ref("Frame"), family, fact(message.element, "Length"))
-        good = Chain("and then", (Ref("Valid"), carried))
+        good = OperatorChain("and then", (Ref("Valid"), carried))
         known = Pragma("Assert", (is_framed(message, Ref("Frame")),))
         deliver = (known, *note(system, "Arrived", message.name, "message"), *puts)
-        taken: tuple[Stmt, ...] = (unpack, If(((good, deliver),)))
+        taken: tuple[Stmt, ...] = (unpack, IfStatement(((good, deliver),)))
         refused = _refused(system, message)
         if message.authentication is None:
             rows.append((matches, checked(message, taken, refused)))
@@ -432,7 +432,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             "Run_Receive",
             (EXECUTED,),
             declarations=tuple(declarations),
-            body=(If(tuple(rows)), executed(slot)),
+            body=(IfStatement(tuple(rows)), executed(slot)),
         ),
     )
     context = {f"{root}.Codecs", ANY, LAYOUTS}
@@ -461,7 +461,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
 
 def _matches(message: Message) -> Expr:
     """Has the frame the identifier of a message?"""
-    return Chain(
+    return OperatorChain(
         "and then",
         (
             equal(call(f"{ANY}.Id", Ref("Frame")), fact(message.element, "Id")),

@@ -13,7 +13,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Decl,
     Do,
     Expr,
-    If,
+    IfStatement,
     Object,
     Pragma,
     Ref,
@@ -111,5 +111,5 @@ def checked(
     return (
         Assign(before.text, state),
         Do(f"{PROTECTION}.Check", arguments(state, setting, frame, Ref("Status"))),
-        If(((usable, (Pragma("Assert", (proved,)), *taken)), (faulty, refused))),
+        IfStatement(((usable, (Pragma("Assert", (proved,)), *taken)), (faulty, refused))),
     )

@@ -11,7 +11,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Decl,
     Do,
     Expr,
-    If,
+    IfStatement,
     Object,
     Pragma,
     Ref,
@@ -112,7 +112,7 @@ def transmit_body(
         ),
         body=(
             Do(f"{TRANSMISSIONS}.Count", arguments(state)),
-            If(((due, (Pragma("Assert", (kept,)), *handed)),)),
+            IfStatement(((due, (Pragma("Assert", (kept,)), *handed)),)),
         ),
     )  # fmt: skip
 

@@ -15,14 +15,14 @@ from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
     Assign,
-    Chain,
     Comment,
     Decl,
     Do,
     Expr,
-    If,
-    Instance,
+    GenericInstance,
+    IfStatement,
     Object,
+    OperatorChain,
     Param,
     Ref,
     Stmt,
@@ -102,9 +102,9 @@ def _frame(message: Message, payload: Expr) -> Expr:
     )
 
 
-def _board(system: System, message: str, bus: str) -> Instance:
+def _board(system: System, message: str, bus: str) -> GenericInstance:
     ceiling = system.object(f"{bus}.{message}.flow").ceiling
-    return Instance(
+    return GenericInstance(
         f"Flow_Board_{ada_case(message)}",
         BOARDS,
         arguments(
@@ -172,9 +172,9 @@ def sender_bodies(
         body=(Do(f"{SENDERS}.Give", arguments(state, bytes_)),),
     )
     segment = call(f"{SENDERS}.Next_Segment", state, setting)
-    full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
+    full = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
     recorded = Do(f"{SENDERS}.Record_Sent", arguments(state, setting))
-    ended = Chain("/=", (Ref("Fault"), Ref(f"{SENDERS}.None")))
+    ended = OperatorChain("/=", (Ref("Fault"), Ref(f"{SENDERS}.None")))
     transmit = Subprogram(
         f"Transmit_{name}",
         declarations=(
@@ -188,15 +188,15 @@ def sender_bodies(
         body=(
             Do(f"{board}.Read", arguments(Ref("Flow"))),
             Do(f"{SENDERS}.Count", arguments(state, setting, Ref("Flow"), Ref("Fault"))),
-            If(((ended, failed),)),
-            If(
+            IfStatement(((ended, failed),)),
+            IfStatement(
                 (
                     (
                         call(f"{SENDERS}.Is_Due", state, setting),
                         (
                             Assign("Frame", _frame(message, segment)),
                             *handed,
-                            If(((full, lost),), (recorded,)),
+                            IfStatement(((full, lost),), (recorded,)),
                         ),
                     ),
                 )
@@ -246,7 +246,7 @@ def receiver_spec(system: System, message: Message, transport: Transport) -> lis
     made = Aggregate(tuple(Arg(key, value) for key, value in columns.items()))
     ceiling = system.object(f"{message.bus}.{message.name}.flow").ceiling
     return [
-        Instance(
+        GenericInstance(
             _own("Reassembly", name),
             REASSEMBLIES,
             arguments(Segments=made, Ceiling=priority(ceiling)),
@@ -283,8 +283,8 @@ def receiver_bodies(
         number(transport.block),
         number(code_of(transport.separation) or 0),
     )
-    full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
-    new = Chain("/=", (Ref("Wanted.Count"), Ref(answered)))
+    full = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
+    new = OperatorChain("/=", (Ref("Wanted.Count"), Ref(answered)))
     answer = Subprogram(
         f"Answer_{name}",
         declarations=(
@@ -299,15 +299,15 @@ def receiver_bodies(
         body=(
             Do(f"{EPOCHS}.Since_Start", arguments(Ref("Now"))),
             Do(f"{store}.Look", arguments(Ref("Now"), Ref("Wanted"), Ref("Expired"))),
-            If(((Ref("Expired"), failed),)),
-            If(
+            IfStatement(((Ref("Expired"), failed),)),
+            IfStatement(
                 (
                     (
                         new,
                         (
                             Assign("Frame", _frame(flow, payload)),
                             *handed,
-                            If(((full, lost),), (Assign(answered, Ref("Wanted.Count")),)),
+                            IfStatement(((full, lost),), (Assign(answered, Ref("Wanted.Count")),)),
                         ),
                     ),
                 )
@@ -325,7 +325,7 @@ def taken(
     frame = (call(f"{ANY}.Payload", Ref("Frame")), Ref("Frame.Plain.Length"))
     complete = equal(Ref("Outcome"), Ref(f"{RECEIVERS}.Complete"))
     faulty = member(Ref("Outcome"), f"{RECEIVERS}.Fault")
-    plain = Chain(
+    plain = OperatorChain(
         "and then",
         (
             equal(Ref("Frame.Family"), Ref(f"{ANY}.Classic")),
@@ -334,13 +334,13 @@ def taken(
     )
     whole = (Do(f"{store}.Read", arguments(Ref("Value"))), *unpacked)
     return (
-        If(
+        IfStatement(
             (
                 (
                     plain,
                     (
                         Do(f"{store}.Take", arguments(*frame, Ref(STAMP), Ref("Outcome"))),
-                        If(((complete, whole), (faulty, refused))),
+                        IfStatement(((complete, whole), (faulty, refused))),
                     ),
                 ),
             )
@@ -362,7 +362,9 @@ def noticed(flow: Message) -> tuple[Stmt, ...]:
     is_flow = equal(Ref("Found.Kind"), Ref(f"{ISO_TP}.Flow_Control"))
     classic = equal(Ref("Frame.Family"), Ref(f"{ANY}.Classic"))
     note = Do(f"Note_Flow_{name}", arguments(Ref("Found")))
-    return (If(((classic, (Assign("Found", found), If(((is_flow, (note,)),)))),)),)
+    return (
+        IfStatement(((classic, (Assign("Found", found), IfStatement(((is_flow, (note,)),)))),)),
+    )
 
 
 def reception_declarations(received: tuple[Message, ...]) -> list[Decl]:

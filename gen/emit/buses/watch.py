@@ -7,13 +7,13 @@ from ravenchart.gen.emit.ada.syntax import (
     SPARK,
     Assign,
     Call,
-    Chain,
     Comment,
     Decl,
     Do,
     Expr,
-    If,
+    IfStatement,
     Object,
+    OperatorChain,
     Package,
     Ref,
     Stmt,
@@ -82,8 +82,8 @@ def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
     if traced(system):
         locals_.insert(0, UseType("Ravenchart.Can.Controller_State"))
         position = call("Ravenchart.Can.Controller_State'Pos", Ref("Now.State"))
-        changed = Chain("/=", (Ref("Now.State"), Ref("Seen.State")))
-        steps.append(If(((changed, note(system, "State", element, "bus", position)),)))
+        changed = OperatorChain("/=", (Ref("Now.State"), Ref("Seen.State")))
+        steps.append(IfStatement(((changed, note(system, "State", element, "bus", position)),)))
     steps.append(Assign("Seen", Ref("Now")))
     for field, fault, events in (
         ("Error_Passive", "Can_Error_Passive", bus.on_error_passive),
@@ -102,7 +102,7 @@ def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
             )
         told += tuple(offer(system, instance, event) for instance, event in events)
         if told:
-            steps.append(If(((Ref(f"Found.{field}"), told),)))
+            steps.append(IfStatement(((Ref(f"Found.{field}"), told),)))
     if looks:
         items += [
             Comment("looks until recovery from bus-off is requested"),
@@ -113,7 +113,7 @@ def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
             Ref("Left"), Ref("Found"), Ref("Now.State"), number(looks), Ref("Is_Due")
         ]  # fmt: skip
         steps.append(Do(f"{NOTICES}.Count_Off", arguments(*counted)))
-        steps.append(If(((Ref("Is_Due"), (Do("Controller.Request_Recovery"),)),)))
+        steps.append(IfStatement(((Ref("Is_Due"), (Do("Controller.Request_Recovery"),)),)))
     steps.append(executed(slot))
     items.append(
         Subprogram("Run_Watch", (EXECUTED,), declarations=tuple(locals_), body=tuple(steps))

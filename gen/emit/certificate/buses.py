@@ -17,14 +17,14 @@ from itertools import pairwise
 
 from ravenchart.gen.derive.identifiers import leading
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import Chain, Comment, Decl, Expr, Ref, number
+from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.claims import Claim, Claims
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System
 
 from .frames import explained, length_terms, rate_terms, span
-from .interference import Ladder, Step, W, asked
+from .interference import Interferer, Ladder, W, asked
 from .terms import (
     LATE,
     ONE,
@@ -85,7 +85,7 @@ def _order(messages: list[Message], bus: Bus) -> list[Decl]:
     """Arbitration has the order that the sums suppose."""
     alike = len({message.extended for message in messages}) == 1
     ranks = [Ref(f"{name_of(m.element)}_Id") if alike else _rank(m) for m in messages]
-    wrong = [Chain(">=", pair) for pair in pairwise(ranks)]
+    wrong = [OperatorChain(">=", pair) for pair in pairwise(ranks)]
     return none_of(wrong, bus.name, "must keep the order of its identifiers")
 
 
@@ -159,7 +159,7 @@ class _Level:
         longest = name_of(max(self.before, key=self._span).element)
         bits = times(Ref(f"{line}_Error_Bits"), Ref(f"{line}_Bit"))
         hit = plus(bits, Ref(f"{longest}_C"))
-        burst = Chain("-", (Ref(f"{line}_Error_Burst"), ONE))
+        burst = OperatorChain("-", (Ref(f"{line}_Error_Burst"), ONE))
         return [times(burst, hit), asked(window, number(0), Ref(f"{line}_Error_T"), hit)]
 
 
@@ -182,11 +182,11 @@ def _ladders(system: System, bus: Bus, order: list[Message], claims: Claims) -> 
             own = name_of(other.element)
             late: Expr = Ref(f"{own}_J")
             if other.source is not None and system.queue(other) != queue:
-                late = Chain("-", (Ref(f"{own}_R"), Ref(f"{own}_C")))
+                late = OperatorChain("-", (Ref(f"{own}_R"), Ref(f"{own}_C")))
                 if other.element in claims.waits:
                     late = plus(Ref(f"{own}_Wait"), Ref(f"{own}_J"))
             level = len(order) if other.element in inside else place
-            steps.append(Step(own, (_sent(own, late),), level))
+            steps.append(Interferer(own, (_sent(own, late),), level))
         found[queue] = Ladder(tuple(steps), *names)
     return found
 
@@ -221,7 +221,7 @@ def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> li
     line = ada_case(bus.name)
     busiest = Ref(f"{line}_Busiest")
     own = [name_of(message.element) for message in order]
-    steps = (Step(one, (_sent(one, Ref(f"{one}_J")),), n) for n, one in enumerate(own))
+    steps = (Interferer(one, (_sent(one, Ref(f"{one}_J")),), n) for n, one in enumerate(own))
     ladder = Ladder(tuple(steps), "Queued")
     lost = _Level(bus, order[0], order, [], ladder).lost(busiest)
     items: list[Decl] = [
@@ -234,7 +234,7 @@ def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> li
     for message in order:
         if message.element in claims.waits:
             wait = f"{name_of(message.element)}_Wait"
-            longest = Chain("-", (busiest, Ref(f"{name_of(message.element)}_C")))
+            longest = OperatorChain("-", (busiest, Ref(f"{name_of(message.element)}_C")))
             items.append(stated(wait, claims.waits[message.element]))
             items.append(exact(Ref(wait), [longest], message.element, "wait in a queue"))
     return items
@@ -257,7 +257,7 @@ def _of_message(level: _Level, claims: Claims) -> list[Decl]:
     items: list[Decl] = [Comment(f"[{message.element}] what delays it")]
     items += _busy(own, message.element, claim, demand)
     sent = Ref(f"{own}_C")
-    last = Chain("-", (response, jitter, sent)) if len(claim.windows) == 1 else None
+    last = OperatorChain("-", (response, jitter, sent)) if len(claim.windows) == 1 else None
     items += _windows(own, message.element, claim, waiting, (busy, jitter), last=last)
     if last is None:
         ends = [
@@ -322,7 +322,7 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
     steps = []
     for one in received:
         late, period = (Ref(f"{name_of(one.driver)}_R"), Ref(f"{name_of(one.message.element)}_T"))
-        steps.append(Step(name_of(one.element), (asked(W, late, period, separation),), 0))
+        steps.append(Interferer(name_of(one.element), (asked(W, late, period, separation),), 0))
     ladder = Ladder(tuple(steps), "Turn_Up", "Turn_Rest")
     line = name_of(processor.name)
     busy = Ref(f"{line}_Busy")

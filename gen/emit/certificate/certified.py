@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ravenchart.gen.emit.ada.naming import constant_name as name_of
 from ravenchart.gen.emit.ada.naming import row_name
-from ravenchart.gen.emit.ada.syntax import Chain, Decl, Expr, Pragma, Ref, both
+from ravenchart.gen.emit.ada.syntax import Decl, Expr, OperatorChain, Pragma, Ref, both
 from ravenchart.gen.model.system import Processor
 
 from .terms import differs
@@ -32,7 +32,7 @@ def rows_agree(processor: Processor, table: str) -> list[Decl]:
     for slot in processor.slots:
         row = f"{table} ({row_name(slot)})"
         same = [
-            Chain("=", (Ref(f"{row}.{what}"), fact(slot.element, what)))
+            OperatorChain("=", (Ref(f"{row}.{what}"), fact(slot.element, what)))
             for what in ("Divisor", "Phase")
         ]
         found.append(Pragma("Assert", (both(*same),)))

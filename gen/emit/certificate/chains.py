@@ -6,19 +6,18 @@ Which sums, the model says (`certificate_hops`); claims are numbers only.
 from __future__ import annotations
 
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import Chain, Comment, Decl, Expr, Ref, number
+from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
 from ravenchart.gen.model.claims import ChainClaim
-from ravenchart.gen.model.system import Chain as ModelChain
-from ravenchart.gen.model.system import Processor, System
+from ravenchart.gen.model.system import Chain, Processor, System
 
-from .hops import Hop, hops_of
+from .hops import ClaimedHop, hops_of
 from .terms import assured, exact, name_of, named, plus, refuse, stated, times
 
 SUFFIX = {"row": "Done", "item": "R", "handed": "Handed", "transfer": "Transfer"}
 """What the response of a step is called."""
 
 
-def chain_claims(system: System, chain: ModelChain, claim: ChainClaim) -> list[Decl]:
+def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
     """The reaction time and the age of a chain as sums.
 
     What is released by the step before it counts from the same event, so of such
@@ -40,10 +39,10 @@ def chain_claims(system: System, chain: ModelChain, claim: ChainClaim) -> list[D
             del reaction[-1], age[-1]  # its response counts from the same event
             if hop.rare and before.kind == "row":
                 words.append(f"{hop.element} follows some jobs of {before.element} only.")
-                reaction.append(Chain("-", (_period(system, hop), _period(system, before))))
+                reaction.append(OperatorChain("-", (_period(system, hop), _period(system, before))))
             if hop.kind == "transfer":
                 words.append(f"{hop.element} waits for the value before it.")
-                reaction.append(Chain("-", (_longest(system, hop), _period(system, hop))))
+                reaction.append(OperatorChain("-", (_longest(system, hop), _period(system, hop))))
         elif hop.how == "sampled":
             words.append(f"{hop.element} samples.")
             reaction.append(_period(system, hop))
@@ -86,11 +85,11 @@ def chain_claims(system: System, chain: ModelChain, claim: ChainClaim) -> list[D
     return items
 
 
-def _response(hop: Hop) -> Expr:
+def _response(hop: ClaimedHop) -> Expr:
     return Ref(f"{name_of(hop.element)}_{SUFFIX[hop.kind]}")
 
 
-def _period(system: System, hop: Hop) -> Expr:
+def _period(system: System, hop: ClaimedHop) -> Expr:
     """The distance of its outputs."""
     if hop.kind != "row":
         return Ref(f"{name_of(hop.element)}_T")
@@ -98,12 +97,12 @@ def _period(system: System, hop: Hop) -> Expr:
     return times(number(_divisor(processor, hop.element)), Ref(f"{name_of(processor.name)}_T"))
 
 
-def _longest(system: System, hop: Hop) -> Expr:
+def _longest(system: System, hop: ClaimedHop) -> Expr:
     """The longest distance of its outputs."""
     return Ref(f"{name_of(hop.renewed)}_Renewal") if hop.renewed else _period(system, hop)
 
 
-def _renewal(system: System, hops: tuple[Hop, ...]) -> Expr:
+def _renewal(system: System, hops: tuple[ClaimedHop, ...]) -> Expr:
     """How often new values come out of these steps: what only passes them on adds nothing."""
     begins = max((n for n, hop in enumerate(hops) if hop.how == "sampled"), default=0)
     slowest = next((hop for hop in hops[begins:] if hop.renewed), hops[begins])
@@ -115,7 +114,7 @@ def _divisor(processor: Processor, row: str) -> int:
 
 
 def _queue(
-    system: System, wait: str, hops: tuple[Hop, Hop], claimed: int, chain: str
+    system: System, wait: str, hops: tuple[ClaimedHop, ClaimedHop], claimed: int, chain: str
 ) -> list[Decl]:
     """How long an item waits for its reader, who takes one in a job.
 
@@ -128,9 +127,9 @@ def _queue(
     label, many = f"chain {chain}", number(hop.at_once)
     last = times(Ref(burst), many, cycle)
     full = plus(times(plus(Ref(burst), number(1)), many, cycle), late)
-    following = Chain("-", (full, times(Ref(burst), period)))
+    following = OperatorChain("-", (full, times(Ref(burst), period)))
     return [
-        named(burst, plus(Chain("/", (late, period)), number(1))),
+        named(burst, plus(OperatorChain("/", (late, period)), number(1))),
         stated(wait, claimed),
         refuse(times(many, cycle), period, label, "can fill a queue"),
         exact(Ref(wait), [last, following], label, "wait in a queue"),

@@ -10,7 +10,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import Chain, Decl, Expr, Ref, number
+from ravenchart.gen.emit.ada.syntax import Decl, Expr, OperatorChain, Ref, number
 from ravenchart.gen.model.buses import Bus, Message
 
 from .terms import ONE, ceiling, name_of, named, plus, stated, times
@@ -78,11 +78,11 @@ def length_terms(message: Message, bus: Bus) -> list[Decl]:
 
 def _quarter(stuffed: Expr) -> Expr:
     """Stuff bits at most: one behind the first five bits, then one behind every four."""
-    return Chain("/", (_less(stuffed, ONE), number(4)))
+    return OperatorChain("/", (_less(stuffed, ONE), number(4)))
 
 
 def _less(left: Expr, right: Expr) -> Expr:
-    return Chain("-", (left, right))
+    return OperatorChain("-", (left, right))
 
 
 def rate_terms(bus: Bus) -> list[Decl]:

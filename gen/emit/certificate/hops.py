@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.component import Activity, PortKind
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Chain, Processor, Slot, System
+from ravenchart.gen.model.system import Carried, Chain, Processor, Slot, Stop, System
 
 
 @dataclass(frozen=True, slots=True)
-class Hop:
+class ClaimedHop:
     """One step of a chain: a row, a task, a message, or a message's handing over.
 
     ``how`` values come to it: ``released`` by the step before or the chain's event,
@@ -39,14 +39,14 @@ class Hop:
     renewed: str = ""
 
 
-def hops_of(system: System, chain: Chain) -> tuple[Hop, ...]:
+def hops_of(system: System, chain: Chain) -> tuple[ClaimedHop, ...]:
     """The steps of a chain, from its way; none where that is broken."""
-    hops: list[Hop] = []
+    hops: list[ClaimedHop] = []
     sure = True  # whether the row before renews what stands between it and the next
     for number, place in enumerate(chain.way):
-        if place.startswith("message "):
-            following = next(iter(chain.way[number + 1 :]), "")
-            hops += _message(system, place.removeprefix("message "), following)
+        following = next(iter(chain.way[number + 1 :]), None)
+        if isinstance(place, Carried):
+            hops += _message(system, place.message, following)
             continue
         owner, _, name = place.partition(".")
         component = system.instance(owner).component
@@ -62,39 +62,38 @@ def hops_of(system: System, chain: Chain) -> tuple[Hop, ...]:
         else:
             row = rows[name]
             hops.append(_row(system, place, row, hops))
-            if number + 1 < len(chain.way):
-                sure = component.renews(row, chain.way[number + 1].rpartition(".")[2])
+            if following is not None:
+                sure = component.renews(row, str(following).rpartition(".")[2])
     return tuple(_irregular(system, chain, hops))
 
 
-def _irregular(system: System, chain: Chain, hops: list[Hop]) -> list[Hop]:
+def _irregular(system: System, chain: Chain, hops: list[ClaimedHop]) -> list[ClaimedHop]:
     """The steps, the first not sure where it is a sporadic message that something samples.
 
     What it releases runs as seldom as it comes; what samples it may find the same value
     any number of times.
     """
-    begins = chain.way[0].removeprefix("message ") if chain.way else ""
-    rare = any(message.sporadic and message.name == begins for message in system.messages)
+    rare = any(m.sporadic and chain.way[:1] == (Carried(m.name),) for m in system.messages)
     if rare and any(hop.how != "released" for hop in hops[1:]):
         return [replace(hops[0], sure=False), *hops[1:]]
     return hops
 
 
-def _message(system: System, name: str, following: str) -> Iterator[Hop]:
+def _message(system: System, name: str, following: Stop | None) -> Iterator[ClaimedHop]:
     """The driver's work and the frame, then its reception for the port that follows."""
     message = named(system.messages, name)
     mode = message.transmission
-    hops: list[Hop] = []
+    hops: list[ClaimedHop] = []
     rare = mode is not None or message.transport is not None
     if message.source is not None:
-        hops.append(Hop(message.sending, "item", "released", rare=rare))
-    hops.append(Hop(message.element, "item", "released"))
+        hops.append(ClaimedHop(message.sending, "item", "released", rare=rare))
+    hops.append(ClaimedHop(message.element, "item", "released"))
     received = system.reception(message, following)
     if received is not None:
-        hops.append(Hop(received.driver, "item", "released"))
-        hops.append(Hop(received.element, "handed", "released"))
+        hops.append(ClaimedHop(received.driver, "item", "released"))
+        hops.append(ClaimedHop(received.element, "handed", "released"))
     if message.transport is not None:
-        last = Hop(message.element, "transfer", "released", renewed=message.element)
+        last = ClaimedHop(message.element, "transfer", "released", renewed=message.element)
         hops = [*hops[:-1], last]
     elif mode is not None and mode.longest is not None:
         hops = [replace(hop, renewed=message.element) for hop in hops]
@@ -103,14 +102,16 @@ def _message(system: System, name: str, following: str) -> Iterator[Hop]:
     yield from hops
 
 
-def _row(system: System, element: str, row: Region | Activity, hops: list[Hop]) -> Hop:
+def _row(
+    system: System, element: str, row: Region | Activity, hops: list[ClaimedHop]
+) -> ClaimedHop:
     """A region or activity."""
     follows = bool(hops) and _follows(system, hops[-1], element)
     waits = isinstance(row, Region) and row.takes_turns
-    return Hop(element, "row", "released" if follows else "sampled", open=waits)
+    return ClaimedHop(element, "row", "released" if follows else "sampled", open=waits)
 
 
-def _handler(system: System, owner: str, port: str, hops: list[Hop]) -> Hop:
+def _handler(system: System, owner: str, port: str, hops: list[ClaimedHop]) -> ClaimedHop:
     """The port region of an instance, as far as it handles this port."""
     element = f"{owner}.ports"
     queued = system.instance(owner).component.port(port).kind is PortKind.QUEUED
@@ -122,13 +123,13 @@ def _handler(system: System, owner: str, port: str, hops: list[Hop]) -> Hop:
         if connection.source.port in row.sends
     ]
     if queued and hops and sum(many) > 1:
-        return Hop(element, "row", "queued", max(many), open=len(many) > 1)
+        return ClaimedHop(element, "row", "queued", max(many), open=len(many) > 1)
     if hops and _follows(system, hops[-1], element):
-        return Hop(element, "row", "released")
-    return Hop(element, "row", "queued" if queued and hops else "sampled")
+        return ClaimedHop(element, "row", "released")
+    return ClaimedHop(element, "row", "queued" if queued and hops else "sampled")
 
 
-def _follows(system: System, before: Hop, element: str) -> bool:
+def _follows(system: System, before: ClaimedHop, element: str) -> bool:
     """Whether a row runs in the same jobs as the one before, after it."""
     if before.kind != "row":
         return False

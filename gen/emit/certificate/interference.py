@@ -41,7 +41,7 @@ def asked(window: Expr, jitter: Expr, period: Expr, cost: Expr) -> Expr:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class Interferer:
     """One of those that delay others: its name, and what it asks for within W."""
 
     name: str
@@ -58,7 +58,7 @@ class Ladder:
     and of those behind it on its level. ``base`` delays all of them.
     """
 
-    steps: tuple[Step, ...]
+    steps: tuple[Interferer, ...]
     up: str = "Up"
     rest: str = "Rest"
     base: str = ""
@@ -150,7 +150,7 @@ def platform(
 def of_tasks(system: System, node: Node) -> Ladder:
     """The tasks of a node."""
     steps = (
-        Step(
+        Interferer(
             name_of(task.element),
             tuple(_released(task, divisor, Ref(c)) for divisor, c in costs(task).items()),
             task.priority,

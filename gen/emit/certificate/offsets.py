@@ -11,7 +11,7 @@ and after the last of a cycle comes the first once more.
 from __future__ import annotations
 
 from ravenchart.gen.derive.instants import Instant, cycle_of, instants, lateness, phased
-from ravenchart.gen.emit.ada.syntax import Chain, Comment, Decl, Expr, Ref, number
+from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.claims import Claim
 from ravenchart.gen.model.system import System, Task
@@ -51,7 +51,7 @@ def offset_claims(system: System, task: Task, claim: Claim) -> list[Decl]:
             "instants between Since, that of the one before or its Reach, and At."
         ),
         stated(f"{own}_Reach", reach),
-        refuse(Chain("-", (bound, jitter, Ref(f"{own}_Reach"))), deadline, label, LATE),
+        refuse(OperatorChain("-", (bound, jitter, Ref(f"{own}_Reach"))), deadline, label, LATE),
         refuse(deadline, period, label, OVERLAP),
     ]
     found = instants(system, task, reach) or ()
@@ -73,7 +73,7 @@ def offset_claims(system: System, task: Task, claim: Claim) -> list[Decl]:
             refuse(plus(due, jitter, ONE), plus(at, period), label, UNLISTED),
             assured((needs, window)),
         ]
-        reached = Chain("-", (due, Ref(f"{own}_Reach")))
+        reached = OperatorChain("-", (due, Ref(f"{own}_Reach")))
         between += _all_between(system, task, found, place, reached, reach)
     return items + between
 
@@ -88,7 +88,7 @@ def _begun(system: System, task: Task) -> list[Decl]:
         name = name_of(other.element)
         for divisor in sorted({slot.divisor for slot in other.slots}):
             period = times(number(divisor), Ref(f"{name}_T"))
-            whole = times(Chain("/", (cycle, period)), period)
+            whole = times(OperatorChain("/", (cycle, period)), period)
             items.append(refuse(cycle, whole, label, UNLISTED))
         first = plus(Ref(f"{name}_O"), Ref(f"{name}_J"), cycle)
         items.append(refuse(first, Ref(f"{own}_At_1"), label, UNLISTED))
@@ -104,7 +104,7 @@ def _all_between(
     before: Expr = Ref(f"{own}_At_{place - 1}")
     last = found[place - 2].time
     if place == 1:
-        before = Chain("-", (Ref(f"{own}_At_{len(found)}"), Ref(f"{own}_Cycle")))
+        before = OperatorChain("-", (Ref(f"{own}_At_{len(found)}"), Ref(f"{own}_Cycle")))
         last = Ns(last - cycle_of(phased(system, task)))
     due = task.offset + found[place - 1].release * task.period
     missed = []
@@ -112,8 +112,12 @@ def _all_between(
         name = name_of(other.element)
         begin = before if other is task else since
         late, period = (Ref(f"{name}_O"), Ref(f"{name}_J")), Ref(f"{name}_T")
-        end = Chain("-", (plus(begin, ONE), *late))
-        missed.append(Chain("-", (ceiling(Chain("-", (at, *late)), period), ceiling(end, period))))
+        end = OperatorChain("-", (plus(begin, ONE), *late))
+        missed.append(
+            OperatorChain(
+                "-", (ceiling(OperatorChain("-", (at, *late)), period), ceiling(end, period))
+            )
+        )
     return [
         named(f"{own}_Since_{place}", before if last >= due - reach else reached),
         refuse(before, since, label, UNLISTED),
@@ -134,9 +138,9 @@ def _delay(system: System, task: Task, at: Expr, window: Expr) -> list[Expr]:
         if other.element not in known:
             return asked(window, Ref(f"{own}_J"), period, cost)
         offset = Ref(f"{own}_O")
-        end = Chain("-", (plus(at, window), offset))
-        begin = Chain("-", (at, Ref(f"{own}_J"), offset))
-        return times(Chain("-", (ceiling(end, period), ceiling(begin, period))), cost)
+        end = OperatorChain("-", (plus(at, window), offset))
+        begin = OperatorChain("-", (at, Ref(f"{own}_J"), offset))
+        return times(OperatorChain("-", (ceiling(end, period), ceiling(begin, period))), cost)
 
     for other in system.tasks:
         if other.node == task.node and other is not task and other.priority >= task.priority:

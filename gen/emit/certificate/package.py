@@ -17,11 +17,11 @@ from ravenchart.gen.emit.ada.naming import ada_case, priority
 from ravenchart.gen.emit.ada.syntax import (
     SPARK,
     Aspect,
-    Chain,
     Comment,
     Decl,
     Expr,
     Object,
+    OperatorChain,
     Package,
     Ref,
     Unit,
@@ -243,7 +243,7 @@ def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[
         tail = "" if len(windows) == 1 else f"_{job + 1}"
         last, needs = Ref(f"{own}_W{tail}"), f"{own}_Needs{tail}"
         if len(windows) == 1:
-            items.append(named(f"{own}_W", Chain("-", (bound, jitter))))
+            items.append(named(f"{own}_W", OperatorChain("-", (bound, jitter))))
         else:
             items.append(stated(f"{own}_W{tail}", window))
         items.append(named(needs, demand(system, task, last, work(task, job + 1))))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from math import comb
 
-from ravenchart.gen.emit.ada.syntax import Chain, Comment, Decl, Expr, Ref, number
+from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.instances import End
@@ -58,13 +58,15 @@ def _residual(message: Message, own: Protection, claimed: int) -> list[Decl]:
     """The probability that a corrupted frame is used, and how often that is in an hour."""
     element, profile = name_of(message.element), own.profile
     bits, few, right = (Ref(f"{element}_{part}") for part in ("Data_Bits", "Few", "Residual"))
-    whole = Chain("**", (number(100), bits))
-    checks = Chain("**", (number(2), number(profile.crc_bits)))
+    whole = OperatorChain("**", (number(100), bits))
+    checks = OperatorChain("**", (number(2), number(profile.crc_bits)))
     patterns: list[Expr] = []
     for wrong in range(profile.found_bits + 1):
-        sound = Chain("**", (number(99), Chain("-", (bits, number(wrong))) if wrong else bits))
+        sound = OperatorChain(
+            "**", (number(99), OperatorChain("-", (bits, number(wrong))) if wrong else bits)
+        )
         patterns.append(times(number(comb(8 * message.length, wrong)), sound))
-    missed = Chain("-", (whole, few))
+    missed = OperatorChain("-", (whole, few))
     needs = Ref(f"{right.text}_Needs")
     return [
         Comment(f"[{message.element}] what its {own.name} finds"),
@@ -92,7 +94,7 @@ def _stale(system: System, message: Message, end: End, claimed: int) -> list[Dec
     limit, period = Ref(f"{own}_Max_Age"), Ref(f"{own}_Looks")
     needs = plus(
         Ref(f"{name_of(received.element)}_Handed"),
-        times(plus(Chain("/", (limit, period)), number(2)), period),
+        times(plus(OperatorChain("/", (limit, period)), number(2)), period),
         Ref(f"{name_of(processor.name)}_R"),
     )
     words = (

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from ravenchart.gen.emit.ada.syntax import Chain, Decl, Expr, Ref, number
+from ravenchart.gen.emit.ada.syntax import Decl, Expr, OperatorChain, Ref, number
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System, Task
 
@@ -21,7 +21,7 @@ def order(system: System, node: Node) -> list[Decl]:
     wrong: list[Expr] = []
     for high, low in pairwise(by_priority(system, node)):
         above, below = (Ref(f"{name_of(t.element)}_Priority") for t in (high, low))
-        wrong.append(Chain("/=" if high.priority == low.priority else "<=", (above, below)))
+        wrong.append(OperatorChain("/=" if high.priority == low.priority else "<=", (above, below)))
     problem = "must keep the order of its priorities"
     return none_of(wrong, node.name, problem)
 
@@ -36,8 +36,8 @@ def table_terms(task: Task) -> list[Decl]:
         row = name_of(slot.element)
         divisor, phase = Ref(f"{row}_Divisor"), Ref(f"{row}_Phase")
         items += [stated(divisor.text, slot.divisor), stated(phase.text, slot.phase)]
-        wrong.append(Chain("/=", (divisor, number(slot.divisor))))
-        late: Expr = Chain(">=", (phase, divisor))
-        wrong.append(Chain("/=", (phase, number(0))) if slot.divisor == 1 else late)
+        wrong.append(OperatorChain("/=", (divisor, number(slot.divisor))))
+        late: Expr = OperatorChain(">=", (phase, divisor))
+        wrong.append(OperatorChain("/=", (phase, number(0))) if slot.divisor == 1 else late)
     problem = "must keep divisors and phases of its rows"
     return items + none_of(wrong, task.element, problem)

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 from ravenchart.gen.emit.ada.naming import constant_name
 from ravenchart.gen.emit.ada.syntax import (
-    Chain,
     Decl,
     Expr,
     Object,
+    OperatorChain,
     Pragma,
     Ref,
     both,
@@ -48,7 +48,9 @@ def plus(*terms: Expr) -> Expr:
     """The sum; of one term, that."""
     flat: list[Expr] = []
     for term in terms:
-        flat += term.operands if isinstance(term, Chain) and term.operator == "+" else (term,)
+        flat += (
+            term.operands if isinstance(term, OperatorChain) and term.operator == "+" else (term,)
+        )
     return chain("+", [term for term in flat if term != number(0)], number(0))
 
 
@@ -59,29 +61,29 @@ def times(*factors: Expr) -> Expr:
 
 def less_periods(time: Expr, own: str, jobs: int) -> Expr:
     """Less the periods of an element that lie before a job, counted from 0."""
-    return Chain("-", (time, times(number(jobs), Ref(f"{own}_T")))) if jobs else time
+    return OperatorChain("-", (time, times(number(jobs), Ref(f"{own}_T")))) if jobs else time
 
 
 def ceiling(dividend: Expr, divisor: Expr) -> Expr:
     """The quotient of numbers that are not negative, rounded up."""
-    return Chain("/", (plus(dividend, Chain("-", (divisor, ONE))), divisor))
+    return OperatorChain("/", (plus(dividend, OperatorChain("-", (divisor, ONE))), divisor))
 
 
 def refuse(left: Expr, right: Expr, element: str, problem: str) -> Decl:
     """A build fails, with our words, when ``left`` exceeds ``right``."""
-    return _refused(Chain(">", (left, right)), element, problem)
+    return _refused(OperatorChain(">", (left, right)), element, problem)
 
 
 def differs(left: Expr, right: Expr, element: str, problem: str) -> Decl:
     """A build fails, with our words, when the two differ."""
-    return _refused(Chain("/=", (left, right)), element, problem)
+    return _refused(OperatorChain("/=", (left, right)), element, problem)
 
 
 def _refused(condition: Expr, element: str, problem: str) -> Decl:
     words = f"{element} {problem}"
     split: Expr = Ref(f'"{words}"')
     if len(words) > LONG:
-        split = Chain("&", (Ref(f'"{element} "'), Ref(f'"{problem}"')))
+        split = OperatorChain("&", (Ref(f'"{element} "'), Ref(f'"{problem}"')))
     return Pragma("Compile_Time_Error", (condition, split))
 
 
@@ -99,12 +101,12 @@ def exact(claimed: Expr, terms: Sequence[Expr], element: str, what: str, least: 
     longest = terms[-1]
     for term in reversed(terms[:-1]):
         longest = call("Time'Max", term, longest)
-    other: Expr = Chain("/=", (claimed, longest))
+    other: Expr = OperatorChain("/=", (claimed, longest))
     if least:
-        other = Chain("or else", (Chain("<", (claimed, number(least))), other))
+        other = OperatorChain("or else", (OperatorChain("<", (claimed, number(least))), other))
     return _refused(other, element, f"claims a wrong {what}")
 
 
 def assured(*pairs: tuple[Expr, Expr]) -> Decl:
     """For gnatprove: of each pair the first is no more than the second."""
-    return Pragma("Assert", (both(*(Chain("<=", pair) for pair in pairs)),))
+    return Pragma("Assert", (both(*(OperatorChain("<=", pair) for pair in pairs)),))

@@ -14,13 +14,13 @@ from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Call,
     CaseExpr,
-    Chain,
     Comment,
     Decl,
     Expr,
     ForAll,
     ForSome,
     IfExpr,
+    OperatorChain,
     Package,
     Param,
     Pragma,
@@ -37,7 +37,7 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
     one_of,
 )
-from ravenchart.gen.emit.language.compound import PASSED, Firing, Kind
+from ravenchart.gen.emit.language.compound import PASSED, Firing, FiringKind
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.emit.language.terms import emit_expression
 from ravenchart.gen.model.component import Component
@@ -141,7 +141,7 @@ def _enabled(shape: RegionShape, firing: Firing) -> Expr:
     else:
         parts.append(member(Ref("Now"), " | ".join(triggers)))
     parts += [emit_expression(scope, t.condition) for t in firing.triggers if isinstance(t, When)]
-    if firing.kind is Kind.RESTORE:
+    if firing.kind is FiringKind.RESTORE:
         parts.append(Ref(f"Past.{shape.memory(shape.compounds.place(firing.sources[0])).known}"))
     parts += [emit_expression(scope, guard) for guard in firing.guards]
     if len(firing.sources) > 1:
@@ -150,9 +150,9 @@ def _enabled(shape: RegionShape, firing: Firing) -> Expr:
 
 
 def _target(shape: RegionShape, firing: Firing) -> Expr:
-    if firing.kind is Kind.RESTORE:
+    if firing.kind is FiringKind.RESTORE:
         return restored_place(shape, firing.sources[0])
-    if firing.kind in (Kind.INTERNAL, Kind.DEFERRAL):
+    if firing.kind in (FiringKind.INTERNAL, FiringKind.DEFERRAL):
         return Ref(shape.place)
     return shape.configuration(shape.leads_to(firing), shape.place)
 
@@ -220,7 +220,7 @@ def _is_selection(shape: RegionShape, name: str, domain: str) -> Subprogram:
     none = equal(Ref("Chosen"), Ref("None"))
     one = both(member(Ref("Chosen"), domain), enabled("Chosen"))
     rule = chain("or else", [none, one])
-    earlier = Chain("<", (Ref("T"), Ref("Chosen")))
+    earlier = OperatorChain("<", (Ref("T"), Ref("Chosen")))
     first = ForAll("T", domain, IfExpr(((earlier, Prefix("not", enabled("T"))),), None))
     return Subprogram(
         name,

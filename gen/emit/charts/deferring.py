@@ -16,17 +16,17 @@ from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Assign,
     CaseExpr,
-    Chain,
     Comment,
-    Component,
     Decl,
     Expr,
     ForAll,
     IfExpr,
     Old,
+    OperatorChain,
     Param,
     Prefix,
-    RecordType,
+    RecordComponent,
+    RecordDeclaration,
     Ref,
     Stmt,
     Subprogram,
@@ -37,7 +37,7 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
     one_of,
 )
-from ravenchart.gen.emit.language.compound import Kind
+from ravenchart.gen.emit.language.compound import FiringKind
 from ravenchart.gen.emit.language.events import name_of
 
 from .shape import RegionShape
@@ -54,16 +54,16 @@ def kept_events(shape: RegionShape) -> list[str]:
 
 def freed_type(shape: RegionShape) -> list[Decl]:
     """For each event the length of the list when a state that defers it was exited last."""
-    rows = tuple(Component(ada_case(e), "Natural", number(0)) for e in kept_events(shape))
+    rows = tuple(RecordComponent(ada_case(e), "Natural", number(0)) for e in kept_events(shape))
     return [
         Comment("Of each event those among the first so many were kept when an exit freed it."),
-        RecordType(_TYPE, rows),
+        RecordDeclaration(_TYPE, rows),
     ]
 
 
-def freed_field() -> Component:
+def freed_field() -> RecordComponent:
     """Its component of the region's state."""
-    return Component("Freed", _TYPE)
+    return RecordComponent("Freed", _TYPE)
 
 
 def freed_by(shape: RegionShape, state: str) -> tuple[Stmt, ...]:
@@ -109,20 +109,20 @@ def declared_deferrals(shape: RegionShape) -> list[Decl]:
     element = call("Deferrals.Element", Ref("Kept"), Ref("I"))
     limit = call("Freed_Up_To", element, Ref("Freed"))
     waits = call("Is_Deferred", element, Ref(place.name))
-    due = chain("or else", [Prefix("not", waits), Chain("<=", (Ref("I"), limit))])
-    there = Chain("<=", (Ref("I"), call("Deferrals.Count", Ref("Kept"))))
+    due = chain("or else", [Prefix("not", waits), OperatorChain("<=", (Ref("I"), limit))])
+    there = OperatorChain("<=", (Ref("I"), call("Deferrals.Count", Ref("Kept"))))
     without = tuple(
         Arg(
             ada_case(e),
             IfExpr(
-                ((Chain("<=", (Ref("I"), of)), Chain("-", (of, number(1)))),),
+                ((OperatorChain("<=", (Ref("I"), of)), OperatorChain("-", (of, number(1)))),),
                 of,
             ),
         )
         for e in kept_events(shape)
         for of in (Ref(f"Freed.{ada_case(e)}"),)
     )
-    deferrals = [f.literal for f in shape.firings if f.kind is Kind.DEFERRAL]
+    deferrals = [f.literal for f in shape.firings if f.kind is FiringKind.DEFERRAL]
     return [
         Subprogram("Is_Deferred", (item, place), "Boolean", expression=CaseExpr(name, tuple(rows))),
         Comment("Does an active state defer it?"),

@@ -20,8 +20,8 @@ from ravenchart.gen.emit.ada.syntax import (
     Decl,
     Do,
     Expr,
-    If,
     IfExpr,
+    IfStatement,
     Object,
     Old,
     Package,
@@ -40,10 +40,11 @@ from ravenchart.gen.emit.ada.syntax import (
     equal,
     number,
 )
-from ravenchart.gen.emit.language.compound import Effect, Firing, Kind, Place, Step
+from ravenchart.gen.emit.language.compound import Effect, EntryStep, Firing, FiringKind
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.emit.language.terms import certain_sends, emit_flow, flow_names
 from ravenchart.gen.language.terms import Flow
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import PseudoKind
 
 from .history import Restoring
@@ -55,7 +56,7 @@ from .shape import START, RegionShape
 
 MANY = 24
 """More transitions than so many are fired by procedures of a few each (`BATCH`)."""
-BATCH = 8
+BATCH = 6
 """So many transitions each of them fires: what the prover must see at a time stays small."""
 
 _Row = tuple[str, tuple[Stmt, ...]]
@@ -187,14 +188,14 @@ class Moves:
         rows = [self._flows(self.shape.start)]
         for firing in self.shape.firings:
             flows = [e.flow for e in firing.effects] + self._flows(firing.entries)
-            if firing.kind is Kind.MOVE and firing.domain is not None:
+            if firing.kind is FiringKind.MOVE and firing.domain is not None:
                 path = self._path(firing)
                 flows += [region.state(s).exit for s in path if region.pseudostate(s) is None]
             rows.append(flows)
         sends = set(region.sends)
         return not region.raises and all(set().union(*map(certain_sends, r)) == sends for r in rows)
 
-    def _flows(self, steps: tuple[Step, ...]) -> list[Flow]:
+    def _flows(self, steps: tuple[EntryStep, ...]) -> list[Flow]:
         found: list[Flow] = []
         for step in steps:
             if isinstance(step, Effect):
@@ -207,9 +208,9 @@ class Moves:
 
     def _row(self, firing: Firing) -> tuple[Stmt, ...]:
         effect = self._effects(firing.effects)
-        if firing.kind is Kind.DEFERRAL:
+        if firing.kind is FiringKind.DEFERRAL:
             return self._defer(firing)
-        if firing.kind is Kind.INTERNAL:
+        if firing.kind is FiringKind.INTERNAL:
             return effect or (NULL,)
         assert firing.domain is not None
         out = self._leave(firing)
@@ -217,7 +218,7 @@ class Moves:
         if terminates(self.shape, firing):
             entered = self._steps(firing.entries[:-1])
             return joined((*out, *effect, *entered, *self._stop(firing)))
-        if firing.kind is Kind.RESTORE:
+        if firing.kind is FiringKind.RESTORE:
             pseudo = self.region.pseudostate(firing.sources[0])
             assert pseudo is not None
             deep = pseudo.kind is PseudoKind.DEEP_HISTORY
@@ -251,7 +252,7 @@ class Moves:
             call("Deferrals.Count", Ref("Self.Deferred")), number(self.region.deferral_depth)
         )
         return (
-            If(
+            IfStatement(
                 ((full, (Assign("Self.Lost", TRUE),)),),
                 (Do("Deferrals.Append", arguments(Ref("Self.Deferred"), item)),),
             ),
@@ -292,7 +293,7 @@ class Moves:
         kept = flat([self.nodes.agreed(self.held, others)]) if others else []
         return both(*self.nodes.empty(domain), *kept)
 
-    def _steps(self, steps: tuple[Step, ...]) -> tuple[Stmt, ...]:
+    def _steps(self, steps: tuple[EntryStep, ...]) -> tuple[Stmt, ...]:
         found: list[Stmt] = []
         entered: str | None = None
         for step in steps:

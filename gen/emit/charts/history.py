@@ -15,8 +15,8 @@ from ravenchart.gen.emit.ada.syntax import (
     Comment,
     Decl,
     Expr,
-    If,
     IfExpr,
+    IfStatement,
     Param,
     Ref,
     Stmt,
@@ -27,15 +27,16 @@ from ravenchart.gen.emit.ada.syntax import (
     choice_of,
     equal,
 )
-from ravenchart.gen.emit.language.compound import PASSED, Enter, Place, Step
+from ravenchart.gen.emit.language.compound import PASSED, Enter, EntryStep
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import Lane, PseudoKind
 
-from .shape import Memory, RegionShape
+from .shape import HistoryMemory, RegionShape
 
 
-def _wanted(shape: RegionShape) -> list[tuple[Memory, bool]]:
+def _wanted(shape: RegionShape) -> list[tuple[HistoryMemory, bool]]:
     """Each memory with the depth to which it is restored."""
-    found: dict[tuple[Memory, bool], None] = {}
+    found: dict[tuple[HistoryMemory, bool], None] = {}
     for pseudo in shape.region.pseudostates:
         if pseudo.kind in PASSED and pseudo.kind is not PseudoKind.CHOICE:
             own = shape.compounds.place(pseudo.name)
@@ -52,7 +53,7 @@ def _wanted(shape: RegionShape) -> list[tuple[Memory, bool]]:
     return sorted(found, key=lambda k: -len(shape.compounds.places(k[0].place.owner or "")))
 
 
-def _function(memory: Memory, deep: bool) -> str:
+def _function(memory: HistoryMemory, deep: bool) -> str:
     return f"{'Deep' if deep else 'Shallow'}_{memory.label}"
 
 
@@ -127,7 +128,7 @@ def restored_place(shape: RegionShape, history: str) -> Expr:
     return Aggregate(tuple(rows), base=shape.place if len(rows) < len(shape.lanes) else None)
 
 
-def _lane_again(shape: RegionShape, memory: Memory, lane: Lane, deep: bool) -> Expr:
+def _lane_again(shape: RegionShape, memory: HistoryMemory, lane: Lane, deep: bool) -> Expr:
     """The leaf of a lane below: remembered, by default, or as it was when not entered."""
     assert lane.owner is not None
     default = Ref(shape.literal(shape.default_leaf(lane)))
@@ -149,7 +150,7 @@ def _lane_again(shape: RegionShape, memory: Memory, lane: Lane, deep: bool) -> E
     return IfExpr(((remembered, call(_function(own, True), Ref("Past"))), (entered, default)), kept)
 
 
-def _all_remembered(shape: RegionShape, memory: Memory, lane: Lane) -> Expr:
+def _all_remembered(shape: RegionShape, memory: HistoryMemory, lane: Lane) -> Expr:
     assert lane.owner is not None
     outer = shape.region.lane(lane.owner)
     owner = Ref(shape.literal(lane.owner))
@@ -167,7 +168,7 @@ class Restoring:
     """The statements that enter what a history restores."""
 
     def __init__(
-        self, shape: RegionShape, run: Callable[[tuple[Step, ...]], tuple[Stmt, ...]]
+        self, shape: RegionShape, run: Callable[[tuple[EntryStep, ...]], tuple[Stmt, ...]]
     ) -> None:
         self.shape = shape
         self.run = run
@@ -181,9 +182,9 @@ class Restoring:
         )
         default = self._steps(self.shape.compounds.default(place))
         known = (case_of(Ref(f"Past.{memory.last}"), rows),)
-        return (If(((Ref(f"Past.{memory.known}"), known),), default),)
+        return (IfStatement(((Ref(f"Past.{memory.known}"), known),), default),)
 
-    def _steps(self, steps: tuple[Step, ...]) -> tuple[Stmt, ...]:
+    def _steps(self, steps: tuple[EntryStep, ...]) -> tuple[Stmt, ...]:
         return self.run(steps)
 
     def _row(self, place: Place, leaf: str, deep: bool) -> tuple[Stmt, ...]:

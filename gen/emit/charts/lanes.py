@@ -16,17 +16,17 @@ from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Assign,
     Call,
-    Chain,
     Comment,
     Decl,
     Do,
     Expr,
     ForAll,
     ForSome,
-    If,
     IfExpr,
+    IfStatement,
     Loop,
     Object,
+    OperatorChain,
     Param,
     Pragma,
     Prefix,
@@ -76,7 +76,7 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
     params = shape.choice_params()
     chosen = Call("Is_Choice", (Arg(None, Ref("Choose'Result")), *plain_args(params)))
     found = ForSome("I", _FIRED, equal(Ref(_ITEM), Ref("T")))
-    earlier = Chain("<", (Ref("Fired.Items (J)"), Ref(_ITEM)))
+    earlier = OperatorChain("<", (Ref("Fired.Items (J)"), Ref(_ITEM)))
     pairs = ForAll("J", "1 .. I - 1", _unless_segment(shape, earlier, "J"))
     ghost = (Aspect("Ghost"),)
     return [
@@ -123,7 +123,9 @@ _DROPPED = "of two that conflict, as one leaves a state in which the other fires
 
 def _starts_with(shape: RegionShape, fired: Param) -> list[Decl]:
     first = [
-        Chain(">" if shape.passes else "=", (Ref("Fired.Count"), number(0 if shape.passes else 1))),
+        OperatorChain(
+            ">" if shape.passes else "=", (Ref("Fired.Count"), number(0 if shape.passes else 1))
+        ),
         equal(Ref("Fired.Items (1)"), Ref("T")),
     ]
     items: list[Decl] = []
@@ -161,7 +163,7 @@ def is_segment(shape: RegionShape, firing: Firing) -> bool:
 def _unless_segment(shape: RegionShape, fact: Expr, index: str) -> Expr:
     if not shape.passes:
         return fact
-    return Chain("or else", (call("Is_Segment", Ref(f"Fired.Items ({index})")), fact))
+    return OperatorChain("or else", (call("Is_Segment", Ref(f"Fired.Items ({index})")), fact))
 
 
 def _choice(shape: RegionShape, lane: Lane) -> Expr:
@@ -191,13 +193,15 @@ def _asked(shape: RegionShape, lanes: Sequence[Lane]) -> list[Expr]:
     ways go on from choices and histories, what is chosen for the first lane that asks."""
     if not shape.passes:
         return [fact for n in lanes for fact in (_has(shape, n), *_apart(shape, n))]
-    rows = ((Chain("/=", (_choice(shape, n), Ref("None"))), _fired(shape, n)) for n in lanes)
+    rows = (
+        (OperatorChain("/=", (_choice(shape, n), Ref("None"))), _fired(shape, n)) for n in lanes
+    )
     return [IfExpr(tuple(rows), None)]
 
 
 def _has(shape: RegionShape, lane: Lane) -> Expr:
     """What is chosen for a lane is fired, unless what conflicts with it was."""
-    asked: list[Expr] = [Chain("/=", (_choice(shape, lane), Ref("None")))]
+    asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), Ref("None")))]
     before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
     asked += [Prefix("not", clash) for clash in _clashes(shape, lane, before)]
     return IfExpr(((both(*asked), _fired(shape, lane)),), None)
@@ -234,7 +238,7 @@ def _unmoved(shape: RegionShape, done: Sequence[Lane]) -> Iterator[Expr]:
         around = [ada_case(s) for s in shape.watched if lane in shape.lanes_in(s)]
         if around:
             stays = [Prefix("not", call(f"Has_Left_{s}", Ref("Fired"))) for s in around]
-            asked: list[Expr] = [Chain("/=", (_choice(shape, lane), Ref("None"))), *stays]
+            asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), Ref("None"))), *stays]
             same = [
                 equal(Ref(shape.at(f"Self.{shape.place}", n)), Ref(shape.at(BEFORE, n)))
                 for n in shape.lanes_around(lane)
@@ -255,8 +259,10 @@ def followed(shape: RegionShape) -> Expr:
     only = call("Is_Only", Ref("Fired"), Ref(START))
     follows = call("Follows", Ref("Fired"), choice)
     #  no `if`: 'Old behind a condition known on entry wants an exception handler
-    goes_on = Chain("/=", (Ref("Now"), Ref("Start_Of_Region")))
-    return Chain("or", (Chain("and", (begun, only)), Chain("and", (goes_on, follows))))
+    goes_on = OperatorChain("/=", (Ref("Now"), Ref("Start_Of_Region")))
+    return OperatorChain(
+        "or", (OperatorChain("and", (begun, only)), OperatorChain("and", (goes_on, follows)))
+    )
 
 
 # --- The step ----------------------------------------------------------------
@@ -271,7 +277,7 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
     if shape.deferring:
         fields = [f"C.{shape.lane_name(n)}" for n in shape.busy_lanes]
         rows = [(call("Is_Deferral", Ref(f)), (do("Fire_Whole", Ref(f)),)) for f in fields]
-        work = (If(tuple(rows), work),)
+        work = (IfStatement(tuple(rows), work),)
     choose = Assign("C", Call("Choose", shape.choice_args()))
     declared: list[Decl] = [Object("C", "Choice")]
     if shape.watched and not shape.passes:
@@ -283,8 +289,8 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
 def passing_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
     """One transition, then the segments that its way passes."""
     pick = Assign("Chosen", Call("Select_Transition", shape.choice_args()))
-    some = Chain("/=", (Ref("Chosen"), Ref("None")))
-    work = (pick, If(((some, (do("Fire_Whole", Ref("Chosen")),)),)))
+    some = OperatorChain("/=", (Ref("Chosen"), Ref("None")))
+    work = (pick, IfStatement(((some, (do("Fire_Whole", Ref("Chosen")),)),)))
     return _step(shape, moves, profile, [Object("Chosen", "Selection")], work)
 
 
@@ -303,7 +309,7 @@ def _step(
         declarations=(*declared, _fire_whole(shape, moves)),
         body=(
             Assign("Fired", _nothing()),
-            If(((begun, (do("Fire_Whole", Ref(START)),)),), work),
+            IfStatement(((begun, (do("Fire_Whole", Ref(START)),)),), work),
         ),
     )
 
@@ -312,7 +318,7 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
     """Fire the transition of a lane, unless an earlier one left its state, or it would leave
     a state in which an earlier one fired: one that was dropped is no obstacle."""
     chosen = _choice(shape, lane)
-    free: list[Expr] = [Chain("/=", (chosen, Ref("None")))]
+    free: list[Expr] = [OperatorChain("/=", (chosen, Ref("None")))]
     around = [s for s in shape.watched if lane in shape.lanes_in(s)]
     for state in around:
         inside = shape.lanes_in(state)
@@ -323,10 +329,10 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
         still = [Prefix("not", call("Has", Ref("Fired"), _choice(shape, n))) for n in earlier]
         stays = Prefix("not", call(f"Leaves_{name}", chosen))
         free.append(Prefix("not", call(f"Has_Left_{name}", Ref("Fired"))))
-        free.append(Chain("or else", (stays, chain("and then", still))))
+        free.append(OperatorChain("or else", (stays, chain("and then", still))))
     if lane != shape.busy_lanes[0] and _overtaken(shape, lane):
         free.append(call("In_Source", chosen, Ref(f"Self.{shape.place}")))
-    return If(((chain("and then", free), (do("Fire_Whole", chosen),)),))
+    return IfStatement(((chain("and then", free), (do("Fire_Whole", chosen),)),))
 
 
 def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
@@ -335,9 +341,9 @@ def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
     each = chain("or else", [equal(Ref(_ITEM), _choice(shape, n)) for n in done])
     few: list[Expr] = []
     if lane != shape.busy_lanes[-1]:
-        last = Chain("<=", (Ref(_ITEM), Ref(f"{shape.lane_name(lane)}_Transition'Last")))
+        last = OperatorChain("<=", (Ref(_ITEM), Ref(f"{shape.lane_name(lane)}_Transition'Last")))
         each = both(last, each)
-        few = [Chain("<=", (_COUNT, number(len(done) * (1 + shape.most_segments))))]
+        few = [OperatorChain("<=", (_COUNT, number(len(done) * (1 + shape.most_segments))))]
     facts = (
         *few,
         ForAll("I", _FIRED, _unless_segment(shape, each, "I")),
@@ -359,7 +365,7 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
     )
     most = shape.most_segments
     before = shape.most_firings - 1 - most
-    room = Chain("<=" if before else "=", (_COUNT, number(before)))
+    room = OperatorChain("<=" if before else "=", (_COUNT, number(before)))
     left = call("Segments_Left", held)
     body: list[Stmt] = [fire(moves, "T"), *_note("T")]
     declarations: tuple[Decl, ...] = ()
@@ -371,7 +377,7 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
             Object("Before", "Firing_List", Ref("Fired"), constant=True, aspects=ghost),
             Object("Segment", "Selection"),
         )
-        bound = Chain("<=", (left, Chain("-", (number(most + 1), Ref("I")))))
+        bound = OperatorChain("<=", (left, OperatorChain("-", (number(most + 1), Ref("I")))))
         counted = equal(_COUNT, Ref("Before.Count + I"))
         noted = _noted(shape, "Before.Count", "Before.Items")
         going_on = Pragma("Loop_Invariant", (both(counted, *noted, bound, *safe),))
@@ -380,7 +386,7 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
                 f"for I in 1 .. {most}",
                 (
                     going_on,
-                    If(((equal(left, number(0)), (Say("exit"),)),)),
+                    IfStatement(((equal(left, number(0)), (Say("exit"),)),)),
                     Assign("Segment", segment(shape, "Self.")),
                     fire(moves, "Segment"),
                     *_note("Segment"),
@@ -390,7 +396,7 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
         if before:
             grown = member(_COUNT, f"Fired.Count'Old + 1 .. Fired.Count'Old + {most + 1}")
         else:
-            grown = Chain(">=", (_COUNT, number(1)))
+            grown = OperatorChain(">=", (_COUNT, number(1)))
         settled = [equal(left, number(0))]
     else:
         settled = [equal(held, shape.target("T"))]
@@ -424,6 +430,6 @@ def _noted(shape: RegionShape, count: str, items: str) -> list[Expr]:
 def _note(fired: str) -> tuple[Stmt, ...]:
     """It is the last that has fired."""
     return (
-        Assign("Fired.Count", Chain("+", (_COUNT, number(1)))),
+        Assign("Fired.Count", OperatorChain("+", (_COUNT, number(1)))),
         Assign("Fired.Items (Fired.Count)", Ref(fired)),
     )

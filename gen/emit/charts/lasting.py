@@ -19,7 +19,6 @@ from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Call,
     CaseExpr,
-    Chain,
     Comment,
     Decl,
     EnumType,
@@ -27,6 +26,7 @@ from ravenchart.gen.emit.ada.syntax import (
     ForAll,
     IfExpr,
     Old,
+    OperatorChain,
     Param,
     Pragma,
     Prefix,
@@ -40,12 +40,13 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
     one_of,
 )
-from ravenchart.gen.emit.language.compound import TOP, Firing, Kind, Place
+from ravenchart.gen.emit.language.compound import TOP, Firing, FiringKind
 from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import After, Every
 
 from .deferring import COUNT, freed_after, freed_after_exit, kept_events
-from .shape import START, Memory, RegionShape
+from .shape import START, HistoryMemory, RegionShape
 
 _STOPPED = "Ravenchart.Timers.Stopped"
 
@@ -67,8 +68,8 @@ def of_before(fact: Expr) -> Expr:
     match fact:
         case Old(name, part):
             return Ref(f"Before.{name.removeprefix('Self.')}{part}")
-        case Chain(operator, operands):
-            return Chain(operator, tuple(map(of_before, operands)))
+        case OperatorChain(operator, operands):
+            return OperatorChain(operator, tuple(map(of_before, operands)))
         case Prefix(operator, operand):
             return Prefix(operator, of_before(operand))
         case Call(name, args):
@@ -180,7 +181,10 @@ def _timer_after(shape: RegionShape, ends: bool) -> list[Decl]:
         places = shape.compounds.places(timed.source)
         active = both(
             *flat(
-                [Chain("/=", (Ref("D"), Ref("Beginning"))), shape.in_state("Before", timed.source)]
+                [
+                    OperatorChain("/=", (Ref("D"), Ref("Beginning"))),
+                    shape.in_state("Before", timed.source),
+                ]
             )
         )
         after = shape.in_state("After", timed.source)
@@ -215,7 +219,9 @@ def _remembered(shape: RegionShape) -> list[Decl]:
         leaf = Ref(shape.at(shape.place, shape.lane_of(memory.place)))
         left = flat([_left(shape, memory), _active(shape, memory)])
         children = shape.region.children(memory.place.owner, memory.place.region)
-        goes_on = [Chain("/=", (leaf, Ref(shape.literal(s.name)))) for s in children if s.final]
+        goes_on = [
+            OperatorChain("/=", (leaf, Ref(shape.literal(s.name)))) for s in children if s.final
+        ]
         last = IfExpr(((both(*left, *goes_on), leaf),), Ref(f"Past.{memory.last}"))
         known = IfExpr(((both(*left), both(*goes_on)),), Ref(f"Past.{memory.known}"))
         rows += [Arg(memory.last, last), Arg(memory.known, known)]
@@ -234,7 +240,7 @@ def _remembered(shape: RegionShape) -> list[Decl]:
     ]
 
 
-def _left(shape: RegionShape, memory: Memory) -> Expr:
+def _left(shape: RegionShape, memory: HistoryMemory) -> Expr:
     """Is the leaf of the memory's region left, when there is one?"""
     assert memory.place.owner is not None
     around = [memory.place, *shape.compounds.places(memory.place.owner)]
@@ -251,13 +257,13 @@ def _left(shape: RegionShape, memory: Memory) -> Expr:
     return _spans([*inner, *around])
 
 
-def _active(shape: RegionShape, memory: Memory) -> Expr:
+def _active(shape: RegionShape, memory: HistoryMemory) -> Expr:
     """Is there a leaf in the memory's region? A pseudostate is not remembered."""
     assert memory.place.owner is not None
     passed = {p.name for p in shape.region.pseudostates}
     leaf = shape.at(shape.place, shape.lane_of(memory.place))
     not_left = [
-        Chain("/=", (Ref(leaf), Ref(shape.literal(v))))
+        OperatorChain("/=", (Ref(leaf), Ref(shape.literal(v))))
         for v in shape.literals_in(memory.place)
         if v in passed
     ]
@@ -279,7 +285,7 @@ class Lasting:
         """The numbers of a state's time-outs."""
         return [i for i, t in enumerate(self.shape.timers, 1) if t.source == state]
 
-    def remembered(self, leaf: str) -> list[tuple[Memory, bool]]:
+    def remembered(self, leaf: str) -> list[tuple[HistoryMemory, bool]]:
         """The memories that the exit of a leaf changes; False: there is nothing to remember."""
         if not self.shape.is_literal(leaf):
             return []
@@ -393,16 +399,16 @@ class Lasting:
             if any(terminates(self.shape, f) for f in self.shape.firings):
                 #  where the region ends, nothing will be remembered
                 over = equal(domain, Ref("Ending"))
-                facts.append(Chain("or", (started, kept)))
-                facts.append(Chain("or", (starts, over, known)))
+                facts.append(OperatorChain("or", (started, kept)))
+                facts.append(OperatorChain("or", (starts, over, known)))
             else:
-                same = Chain("and", (started, known)), Chain("and", (starts, kept))
-                facts.append(Chain("or", same))
+                same = OperatorChain("and", (started, known)), OperatorChain("and", (starts, kept))
+                facts.append(OperatorChain("or", same))
         if self.shape.deferring:
             count = call("Deferrals.Count", Old("Self.Deferred"))
             freed = freed_after(self.shape, domain, count)
             ends = any(terminates(self.shape, f) for f in self.shape.firings)
-            goes_on = Chain("/=", (domain, Ref("Ending")))
+            goes_on = OperatorChain("/=", (domain, Ref("Ending")))
             facts.append(IfExpr(((goes_on, freed),), None) if ends else freed)
         return [*facts, *self._deferred(chosen)]
 
@@ -411,18 +417,18 @@ class Lasting:
     def _deferred(self, chosen: str) -> list[Expr]:
         """A deferral keeps its event, or counts it as lost; nothing else touches what is kept."""
         shape = self.shape
-        deferrals = [f for f in shape.firings if f.kind is Kind.DEFERRAL]
+        deferrals = [f for f in shape.firings if f.kind is FiringKind.DEFERRAL]
         if not deferrals:
             return []
         kept, before = Ref("Self.Deferred"), Old("Self.Deferred")
         full = equal(call("Deferrals.Count", before), number(self.region.deferral_depth))
-        lost = equal(Ref("Self.Lost"), Chain("or", (Old("Self.Lost"), full)))
+        lost = equal(Ref("Self.Lost"), OperatorChain("or", (Old("Self.Lost"), full)))
         names: dict[Ref, list[str]] = {}
         for firing in deferrals:
             names.setdefault(shape.deferred_item(firing), []).append(firing.literal)
         added = tuple(
             (
-                Chain("in", (Ref(chosen), Ref(" | ".join(of)))),
+                OperatorChain("in", (Ref(chosen), Ref(" | ".join(of)))),
                 both(call("Deferrals.Is_Appended", before, item, kept), lost),
             )
             for item, of in names.items()
@@ -443,12 +449,12 @@ class Lasting:
         facts: list[Expr] = [equal(Ref(f"Self.Timers ({i})"), value) for i, value in values]
         if len(values) < len(self.shape.timers):
             numbers = " | ".join(str(i) for i, _ in values)
-            others = Chain("not in" if len(values) > 1 else "/=", (Ref("I"), Ref(numbers)))
+            others = OperatorChain("not in" if len(values) > 1 else "/=", (Ref("I"), Ref(numbers)))
             same = equal(Ref("Self.Timers (I)"), Old("Self.Timers", " (I)"))
             facts.append(ForAll("I", "Self.Timers'Range", IfExpr(((others, same),), None)))
         return facts
 
-    def _memory(self, changed: list[tuple[Memory, bool]], leaf: str) -> list[Expr]:
+    def _memory(self, changed: list[tuple[HistoryMemory, bool]], leaf: str) -> list[Expr]:
         if not self.shape.memories:
             return []
         if not changed:

@@ -16,7 +16,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Decl,
     Do,
     Expr,
-    If,
+    IfStatement,
     Old,
     Ref,
     Stmt,
@@ -29,10 +29,11 @@ from ravenchart.gen.emit.ada.syntax import (
     equal,
     number,
 )
-from ravenchart.gen.emit.language.compound import Enter, Place
+from ravenchart.gen.emit.language.compound import Enter
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.emit.language.terms import emit_flow
 from ravenchart.gen.language.terms import Flow
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import After, Every
 
 from .deferring import freed_by
@@ -240,7 +241,7 @@ class Moving:
                 if s.final
             ]
             parts.append(chain("or else", finals, FALSE))
-        return (If(((both(*parts), (done,)),)),) if parts else (done,)
+        return (IfStatement(((both(*parts), (done,)),)),) if parts else (done,)
 
     def _leaving(self, place: Place) -> Subprogram:
         assert place.owner is not None

@@ -17,12 +17,12 @@ from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Assign,
     Call,
-    Chain,
     Decl,
     EnumType,
     Expr,
     IfExpr,
     Object,
+    OperatorChain,
     Package,
     Param,
     Ref,
@@ -34,8 +34,8 @@ from ravenchart.gen.emit.ada.syntax import (
     names_in,
     number,
 )
-from ravenchart.gen.emit.language.compound import Place
 from ravenchart.gen.emit.language.own_names import node_literal
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import Lane
 
 from .shape import RegionShape
@@ -111,7 +111,7 @@ class Nodes:
         """A leaf, which stands among the nodes in the order of its type; a number for provers."""
         shape = self.shape
         leaf = call(f"{shape.states}.{shape.lane_type(lane)}'Pos", Ref(shape.at(shape.place, lane)))
-        found: Expr = call("Node'Val", Chain("+", (leaf, number(before))))
+        found: Expr = call("Node'Val", OperatorChain("+", (leaf, number(before))))
         if lane.owner is not None:
             found = IfExpr(((shape.in_state(shape.place, lane.owner), found),), Ref(_NOWHERE))
         params = (Param(shape.place, "in", shape.place_type),)

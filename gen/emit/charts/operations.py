@@ -11,7 +11,6 @@ from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Call,
     CaseExpr,
-    Chain,
     Comment,
     Decl,
     Expr,
@@ -19,6 +18,7 @@ from ravenchart.gen.emit.ada.syntax import (
     ForSome,
     IfExpr,
     Old,
+    OperatorChain,
     Param,
     Prefix,
     Ref,
@@ -150,7 +150,7 @@ def _taken(shape: RegionShape) -> list[Expr]:
     facts: list[Expr] = []
     for state in shape.completing:
         flag = f"Self.{shape.completed(state)}"
-        other = Chain("/=", (Ref("Now"), Ref(f"Completion_Of_{ada_case(state)}")))
+        other = OperatorChain("/=", (Ref("Now"), Ref(f"Completion_Of_{ada_case(state)}")))
         facts.append(equal(Ref(flag), both(Old(flag), other)))
     if shape.timers:
         times = Old("Self.Timers"), Ref("Self.Timers")
@@ -185,5 +185,5 @@ def _stepped(shape: RegionShape) -> list[Expr]:
     if not shape.single:
         return [*facts, followed(shape)]
     only = call("Is_Only", Ref("Fired"), Ref(first))
-    some = IfExpr(((Chain(">", (Ref("Fired.Count"), number(0))), only),), None)
+    some = IfExpr(((OperatorChain(">", (Ref("Fired.Count"), number(0))), only),), None)
     return [*facts, IfExpr(((begun, started),), chosen), some]

@@ -10,6 +10,7 @@ from ravenchart.gen.emit.ada.naming import (
     default_value,
     type_name,
     value,
+    where,
 )
 from ravenchart.gen.emit.ada.syntax import (
     FALSE,
@@ -18,15 +19,15 @@ from ravenchart.gen.emit.ada.syntax import (
     Comment,
     Decl,
     EnumType,
-    Instance,
+    GenericInstance,
     PlainType,
-    RecordType,
+    RecordDeclaration,
     Ref,
     UseType,
     arguments,
     number,
 )
-from ravenchart.gen.emit.ada.syntax import Component as Field
+from ravenchart.gen.emit.ada.syntax import RecordComponent as Field
 from ravenchart.gen.emit.components.packages import reading_type
 from ravenchart.gen.emit.language.events import null_event
 
@@ -49,7 +50,7 @@ def region_types(shape: RegionShape) -> list[Decl]:
         Comment(f"[{path}] what a step can be made for"),
         EnumType("Occurrence", shape.occurrences()),
         Comment(f"[{path}.transitions] in order of precedence, innermost source first"),
-        EnumType("Selection", (START, *names, "None")),
+        EnumType("Selection", (START, *names, "None"), _places(shape)),
         PlainType(
             "Firing", f"Selection range {START} .. {names[-1] if names else 'None'}", subtype=True
         ),
@@ -58,6 +59,12 @@ def region_types(shape: RegionShape) -> list[Decl]:
     if not shape.single:
         items += _lane_types(shape)
     return items + _records(shape)
+
+
+def _places(shape: RegionShape) -> tuple[Comment, ...]:
+    """The transition that each line of the chart is, and where it stands in the model."""
+    model = shape.system.origin
+    return (Comment(""), *(where(f.name, f.origins, model) for f in shape.firings), Comment(""))
 
 
 def _selection_of(names: Sequence[str]) -> str:
@@ -94,7 +101,7 @@ def _lane_types(shape: RegionShape) -> list[Decl]:
         fields.append(Field(name, "Selection", Ref("None")))
     items += [
         Comment("What one occurrence fires: at most one transition in each lane."),
-        RecordType("Choice", tuple(fields)),
+        RecordDeclaration("Choice", tuple(fields)),
     ]
     return items
 
@@ -112,14 +119,17 @@ def _records(shape: RegionShape) -> list[Decl]:
             for d in component.data
             if d.name in region.writes
         )
-        items += [Comment("The data that this region alone writes."), RecordType("Variables", rows)]
+        items += [
+            Comment("The data that this region alone writes."),
+            RecordDeclaration("Variables", rows),
+        ]
     if shape.inputs:
         rows = tuple(
             Field(ada_case(n), reading_type(shape.system, component, n)) for n in shape.inputs
         )
         items += [
             Comment("What it reads, copied in once per execution."),
-            RecordType("Inputs", rows),
+            RecordDeclaration("Inputs", rows),
         ]
     if shape.has_box:
         sent: list[Field] = [Field("Raised", "Event_Lists.List")] if region.raises else []
@@ -130,7 +140,10 @@ def _records(shape: RegionShape) -> list[Decl]:
                 if not port.is_void:
                     sent.append(Field(name, of_type, default_value(shape.system, port.type)))
                 sent.append(Field(f"{name}_Sent", "Boolean", FALSE))
-        items += [Comment("What one step sends and raises."), RecordType("Outbox", tuple(sent))]
+        items += [
+            Comment("What one step sends and raises."),
+            RecordDeclaration("Outbox", tuple(sent)),
+        ]
     if shape.memories:
         past: list[Field] = []
         for one in shape.memories:
@@ -139,11 +152,11 @@ def _records(shape: RegionShape) -> list[Decl]:
             past.append(Field(one.known, "Boolean", FALSE))
         items += [
             Comment("What histories ask for: the last leaf left in a region, if any."),
-            RecordType("Memory", tuple(past)),
+            RecordDeclaration("Memory", tuple(past)),
         ]
     if shape.deferring:
         items += [
-            Instance(
+            GenericInstance(
                 "Deferrals",
                 "Ravenchart.Event_Lists",
                 arguments(
@@ -161,7 +174,7 @@ def _records(shape: RegionShape) -> list[Decl]:
         items += [
             PlainType("Firing_Array", f"array (1 .. {most}) of Selection"),
             Comment("What one step has fired, in order; None behind the last."),
-            RecordType(
+            RecordDeclaration(
                 "Firing_List",
                 (
                     Field("Count", f"Natural range 0 .. {most}", number(0)),
@@ -170,7 +183,10 @@ def _records(shape: RegionShape) -> list[Decl]:
             ),
         ]
     items += done_types(shape)
-    items += [Comment("The region's own state."), RecordType("Region", _region_fields(shape))]
+    items += [
+        Comment("The region's own state."),
+        RecordDeclaration("Region", _region_fields(shape)),
+    ]
     return items
 
 

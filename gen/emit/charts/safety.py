@@ -35,11 +35,12 @@ from ravenchart.gen.emit.ada.syntax import (
     equal,
     names_in,
 )
-from ravenchart.gen.emit.language.compound import Firing, Place
+from ravenchart.gen.emit.language.compound import Firing
 from ravenchart.gen.emit.language.effects import effect_of
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.emit.language.terms import Scope, emit_expression, operators_in
 from ravenchart.gen.language import terms as m
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.component import Invariant
 from ravenchart.gen.model.safety import knows_guards
 from ravenchart.gen.model.statechart import When

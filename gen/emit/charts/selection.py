@@ -13,12 +13,12 @@ from ravenchart.gen.emit.ada.syntax import (
     Assign,
     Call,
     CaseExpr,
-    Chain,
     Decl,
     Expr,
-    If,
     IfExpr,
+    IfStatement,
     Object,
+    OperatorChain,
     Ref,
     Return,
     Stmt,
@@ -30,9 +30,10 @@ from ravenchart.gen.emit.ada.syntax import (
     member,
     number,
 )
-from ravenchart.gen.emit.language.compound import PASSED, TOP, Firing, Kind, Place
+from ravenchart.gen.emit.language.compound import PASSED, TOP, Firing, FiringKind
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.emit.language.terms import emit_expression
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import Lane, When
 
 from .shape import HELD, PASSING, RegionShape, plain_args
@@ -64,7 +65,7 @@ def _segments(shape: RegionShape) -> list[Decl]:
     args = all_args[1:] if shape.single else all_args
     rows = [(shape.in_state(shape.place, p), Call(f"In_{ada_case(p)}", args)) for p in passed]
     chosen: Expr = IfExpr(tuple(rows[:-1]), rows[-1][1]) if rows[1:] else rows[0][1]
-    waits = Chain(">", (call("Segments_Left", Ref(shape.place)), number(0)))
+    waits = OperatorChain(">", (call("Segments_Left", Ref(shape.place)), number(0)))
     result = Ref("Select_Segment'Result")
     post = both(
         Call("Enabled", (Arg(None, result), *all_args)),
@@ -180,7 +181,7 @@ def _condition(shape: RegionShape, firing: Firing, leaf: str) -> Expr:
         else member(Ref("Now"), " | ".join(triggers))
     ]
     parts += [emit_expression(scope, t.condition) for t in firing.triggers if isinstance(t, When)]
-    if firing.kind is Kind.RESTORE:
+    if firing.kind is FiringKind.RESTORE:
         parts.append(Ref(f"Past.{shape.memory(shape.compounds.place(leaf)).known}"))
     parts += [emit_expression(scope, guard) for guard in firing.guards]
     if len(firing.sources) > 1:
@@ -198,7 +199,7 @@ def _choose(shape: RegionShape) -> Subprogram:
         name = shape.lane_name(lane)
         take = Assign(f"C.{name}", Call(f"Select_{name}", args))
         idle = [equal(Ref(f"C.{shape.lane_name(n)}"), Ref("None")) for n in shape.inner_lanes(lane)]
-        steps.append(If(((chain("and then", idle), (take,)),)) if idle else take)
+        steps.append(IfStatement(((chain("and then", idle), (take,)),)) if idle else take)
     return Subprogram(
         "Choose",
         params,

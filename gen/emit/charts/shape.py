@@ -20,7 +20,7 @@ from ravenchart.gen.emit.ada.syntax import (
     call,
     chain,
 )
-from ravenchart.gen.emit.language.compound import PASSED, TOP, Firing, Kind, Place, Step
+from ravenchart.gen.emit.language.compound import PASSED, TOP, EntryStep, Firing, FiringKind
 from ravenchart.gen.emit.language.events import carries, event_value
 from ravenchart.gen.emit.language.own_names import event_literal, lane_name
 from ravenchart.gen.emit.language.places import Places, flat
@@ -33,6 +33,7 @@ from ravenchart.gen.emit.language.terms import (
     raise_in_list,
 )
 from ravenchart.gen.language import terms as m
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.safety import SafeRegion
 from ravenchart.gen.model.statechart import (
@@ -74,7 +75,7 @@ ITEM = Param("Item", "in", "Event")
 
 
 @dataclass(frozen=True, slots=True)
-class Memory:
+class HistoryMemory:
     """What a history needs to know: the last leaf left in a region."""
 
     place: Place
@@ -108,7 +109,7 @@ class RegionShape(Places):
         return self.compounds.firings
 
     @cached_property
-    def start(self) -> tuple[Step, ...]:
+    def start(self) -> tuple[EntryStep, ...]:
         """The entries of the region's start."""
         return self.compounds.default(TOP)
 
@@ -284,9 +285,9 @@ class RegionShape(Places):
     # --- memory
 
     @cached_property
-    def memories(self) -> tuple[Memory, ...]:
+    def memories(self) -> tuple[HistoryMemory, ...]:
         """The regions whose last leaf some history asks for."""
-        found: dict[Place, Memory] = {}
+        found: dict[Place, HistoryMemory] = {}
         for pseudo in self.region.pseudostates:
             if pseudo.kind in PASSED and pseudo.kind is not PseudoKind.CHOICE:
                 own = self.compounds.place(pseudo.name)
@@ -296,14 +297,14 @@ class RegionShape(Places):
                     wanted += [p for p in lanes if own in self.compounds.places(p.owner or "")]
                 for place in wanted:
                     label = place.region or place.owner or ""
-                    found[place] = Memory(place, ada_case(label))
+                    found[place] = HistoryMemory(place, ada_case(label))
         return tuple(found.values())
 
-    def memory(self, place: Place) -> Memory:
+    def memory(self, place: Place) -> HistoryMemory:
         """The memory of a region that has one."""
         return next(one for one in self.memories if one.place == place)
 
-    def memory_type(self, memory: Memory) -> str:
+    def memory_type(self, memory: HistoryMemory) -> str:
         """The type of its last leaf."""
         owner = self.region.state(memory.place.owner or "")
         if owner.is_orthogonal:
@@ -427,7 +428,7 @@ class RegionShape(Places):
     def target_params(self) -> tuple[Param, ...]:
         """Target looks at the place and the past only when it needs to."""
         params = []
-        stays = (Kind.INTERNAL, Kind.DEFERRAL)
+        stays = (FiringKind.INTERNAL, FiringKind.DEFERRAL)
         if not self.single or any(f.kind in stays for f in self.firings):
             params.append(Param(self.place, "in", self.place_type))
         if self.memories:

@@ -10,14 +10,14 @@ from ravenchart.gen.emit.ada.syntax import (
     Assign,
     Call,
     Case,
-    Chain,
     Decl,
     Do,
     Expr,
     ForAll,
-    If,
+    IfStatement,
     Loop,
     Object,
+    OperatorChain,
     Param,
     Pragma,
     Prefix,
@@ -104,7 +104,7 @@ def _polling(shape: RegionShape) -> list[Decl]:
             "Poll",
             params,
             declarations=tuple(declarations),
-            body=(*before, If(tuple(branches), rest)),
+            body=(*before, IfStatement(tuple(branches), rest)),
         )
     )
     return items
@@ -121,7 +121,7 @@ def _deferred(shape: RegionShape) -> tuple[Stmt, ...]:
         "for I in 1 .. Deferrals.Count (Self.Deferred)",
         (
             Pragma("Loop_Invariant", (both(none_yet, waiting),)),
-            If(((due_i, (Assign("Released", Ref("I")), Say("exit"))),)),
+            IfStatement(((due_i, (Assign("Released", Ref("I")), Say("exit"))),)),
         ),
     )
     found = (Ref("Self.Deferred"), Ref(held), Ref(FREED), Ref("Released"))
@@ -137,7 +137,7 @@ def _deferred(shape: RegionShape) -> tuple[Stmt, ...]:
         Assign("Now", Ref("Conditions")),
         Assign("Released", number(0)),
         search,
-        If(((Chain(">", (Ref("Released"), number(0))), take),)),
+        IfStatement(((OperatorChain(">", (Ref("Released"), number(0))), take),)),
     )
 
 
@@ -162,14 +162,14 @@ def _step(shape: RegionShape, moves: Moves) -> Subprogram:
 def _plain_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
     pick = Assign("Fired", Call("Select_Transition", shape.choice_args()))
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
-    some = Chain("/=", (Ref("Fired"), Ref("None")))
+    some = OperatorChain("/=", (Ref("Fired"), Ref("None")))
     seen: tuple[Stmt, ...] = ()
     if _is_large(shape):
         held = Arg(None, Ref("Fired"))
-        seen = (If(((some, (Do("Sources_Hold", (held, *shape.choice_args())),)),)),)
+        seen = (IfStatement(((some, (Do("Sources_Hold", (held, *shape.choice_args())),)),)),)
     return (
-        If(((begun, (Assign("Fired", Ref(START)),)),), (pick, *seen)),
-        If(((some, (fire(moves, "Fired"),)),)),
+        IfStatement(((begun, (Assign("Fired", Ref(START)),)),), (pick, *seen)),
+        IfStatement(((some, (fire(moves, "Fired"),)),)),
     )
 
 

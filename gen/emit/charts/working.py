@@ -14,13 +14,13 @@ from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Assign,
     Comment,
-    Component,
     Decl,
     Expr,
-    If,
+    IfStatement,
     Param,
     Prefix,
-    RecordType,
+    RecordComponent,
+    RecordDeclaration,
     Ref,
     Stmt,
     Subprogram,
@@ -39,20 +39,20 @@ def done_types(shape: RegionShape) -> list[Decl]:
     """The record of what is done."""
     if not shape.working:
         return []
-    flags = tuple(Component(ada_case(s), "Boolean", FALSE) for s in shape.working)
+    flags = tuple(RecordComponent(ada_case(s), "Boolean", FALSE) for s in shape.working)
     return [
         Comment("Is the do activity of an active state done?"),
-        RecordType("Done_States", flags),
+        RecordDeclaration("Done_States", flags),
     ]
 
 
-def work_fields(shape: RegionShape) -> list[Component]:
+def work_fields(shape: RegionShape) -> list[RecordComponent]:
     """The components of the region's own state."""
     if not shape.working:
         return []
     visits = (shape.visits(s) for s in shape.working)
-    counts = [Component(v, "Ravenchart.Event_Count", number(0)) for v in visits]
-    return [Component("Done_In", "Done_States"), *counts]
+    counts = [RecordComponent(v, "Ravenchart.Event_Count", number(0)) for v in visits]
+    return [RecordComponent("Done_In", "Done_States"), *counts]
 
 
 def notices(shape: RegionShape, kept: Expr) -> list[Decl]:
@@ -87,7 +87,7 @@ def notice_bodies(shape: RegionShape) -> list[Decl]:
         if state in shape.completing:
             completes = (Assign(f"Self.{shape.completed(state)}", TRUE),)
             if ends := shape.finals(state, held):
-                completes = (If(((both(*flat(ends)), completes),)),)
-        body = If(((news, (Assign(done, TRUE), *completes)),))
+                completes = (IfStatement(((both(*flat(ends)), completes),)),)
+        body = IfStatement(((news, (Assign(done, TRUE), *completes)),))
         items.append(Subprogram(f"Notice_{ada_case(state)}", _PARAMS, body=(body,)))
     return items

@@ -27,12 +27,12 @@ from ravenchart.gen.emit.ada.syntax import (
     Do,
     EnumType,
     Expr,
-    If,
+    IfStatement,
     Object,
     Package,
     Param,
     Pragma,
-    RecordType,
+    RecordDeclaration,
     Ref,
     Say,
     Stmt,
@@ -41,9 +41,9 @@ from ravenchart.gen.emit.ada.syntax import (
     arguments,
     number,
 )
-from ravenchart.gen.emit.ada.syntax import Chain as Operation
-from ravenchart.gen.emit.ada.syntax import Component as Field
-from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
+from ravenchart.gen.emit.ada.syntax import OperatorChain as Operation
+from ravenchart.gen.emit.ada.syntax import RecordComponent as Field
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.language.terms import Type, named
 from ravenchart.gen.model.commands import Binding, Device, Need, Provided, Remote, Server
@@ -148,7 +148,7 @@ def _queued(
         declarations.append(UseType(STATUS))
         full = Operation("/=", (Ref(status), Ref("Ravenchart.Queueing.Queued")))
         event = event_value(instance.component, need.on_full)
-        body.append(If(((full, (Do("Offer", arguments(event)),)),)))
+        body.append(IfStatement(((full, (Do("Offer", arguments(event)),)),)))
     return declarations, body
 
 
@@ -274,7 +274,7 @@ def request_types(system: System, component: Component) -> Iterator[Decl]:
             yield Comment(f"[{component.name}.{provided.name}] what can be asked, with arguments")
             items: tuple[Decl, ...] = (
                 EnumType("Command", tuple(f"{ada_case(r.name)}_Asked" for r in provided.requests)),
-                RecordType("Request", _fields(system, provided)),
+                RecordDeclaration("Request", _fields(system, provided)),
                 Object(
                     "No_Request", "Request", Aggregate((Arg("others", Ref("<>")),)), constant=True
                 ),
@@ -305,7 +305,7 @@ def put_body(instance: Instance, provided: Provided, lost: tuple[Stmt, ...]) -> 
     spec = put_spec(instance, provided)
     queue = f"{ada_case(provided.name)}_Queue"
     full = Operation("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
-    body = (Do(f"{queue}.Put", arguments(Ref("Item"), Ref("Status"))), If(((full, lost),)))
+    body = (Do(f"{queue}.Put", arguments(Ref("Item"), Ref("Status"))), IfStatement(((full, lost),)))
     return Subprogram(spec.name, spec.params, declarations=(UseType(STATUS),), body=body)
 
 
@@ -357,7 +357,7 @@ def served(
             take = take if is_own else f"{ada_case(binding.instance)}.{take}"
             asks = Operation("=", (Ref("Asked.Caller"), number(index)))
             reply = Ref(reply_param(binding.need.name))
-            replied.append(If(((asks, (Do(take, arguments(reply)),)),)))
+            replied.append(IfStatement(((asks, (Do(take, arguments(reply)),)),)))
     replied += replies(system, instance, provided, len(asking), reply_param)
     return (
         Do(f"{ada_case(provided.name)}_Queue.Take", arguments(Ref("Asked"), Ref("Taken"))),

@@ -21,17 +21,17 @@ from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Assign,
     Comment,
-    Component,
     Decl,
     Do,
     Expr,
-    If,
+    IfStatement,
     Object,
     Package,
     Param,
     PlainType,
     Pragma,
     Protected,
+    RecordComponent,
     Ref,
     Stmt,
     Subprogram,
@@ -40,7 +40,7 @@ from ravenchart.gen.emit.ada.syntax import (
     arguments,
     number,
 )
-from ravenchart.gen.emit.ada.syntax import RecordType as AdaRecord
+from ravenchart.gen.emit.ada.syntax import RecordDeclaration as AdaRecord
 from ravenchart.gen.language.terms import RecordType, Type
 from ravenchart.gen.model.commands import CommandKind, Device, DeviceType, DriverCommand
 from ravenchart.gen.model.system import System
@@ -139,7 +139,7 @@ def _operations(system: System, kind: DeviceType) -> Iterator[tuple[Subprogram, 
 
 def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Unit, Unit]:
     """What a simulated device remembers, and a body that gives it back: a starting point."""
-    kept = [Component("Calls", "Call_Count", Ref("0"))]
+    kept = [RecordComponent("Calls", "Call_Count", Ref("0"))]
     bodies: list[Decl] = []
     given = {ada_case(one.name): one for one in kind.provides}
     for operation, what, _ in _operations(system, kind):
@@ -152,7 +152,7 @@ def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Uni
             for of_type, slot in ((command.argument, name), (command.reply, f"{name}_Reply")):
                 if of_type is not None:
                     start = default_value(system, of_type)
-                    kept.append(Component(slot, type_name(system, of_type), start))
+                    kept.append(RecordComponent(slot, type_name(system, of_type), start))
             if command.is_event:
                 assert command.argument is not None
                 steps.append(Assign("Is_Raised", FALSE))
@@ -245,7 +245,7 @@ def _work(
     does = Do(f"{ada_case(kind.name)}.{ada_case(command.name)}", (*own, *_passed(command)))
     steps: tuple[Stmt, ...] = (does,)
     if kind.lifecycle.given and command.command.kind is not CommandKind.READ:
-        steps = (If(((Ref("Is_Ready"), steps),)),)
+        steps = (IfStatement(((Ref("Is_Ready"), steps),)),)
         if command.reply is not None:
             steps = (Assign("Reply", default_value(system, command.reply)), *steps)
         if command.is_event:

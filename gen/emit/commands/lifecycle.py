@@ -15,12 +15,12 @@ from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Aspect,
     Assign,
-    Chain,
     Comment,
     Decl,
     Do,
-    If,
+    IfStatement,
     Object,
+    OperatorChain,
     Package,
     Param,
     Prefix,
@@ -85,16 +85,16 @@ def emit_lifecycle(system: System, header: str) -> list[Unit]:
             Assign("Passed", FALSE),
         )
         steps.append(Do(f"{ada_case(device.name)}.Start", arguments(Ref("Started"))))
-        steps.append(If(((Prefix("not", Ref("Started")), failed),)))
+        steps.append(IfStatement(((Prefix("not", Ref("Started")), failed),)))
     late = (Do(f"{FAILURES}.Note_Late"), Assign("Passed", FALSE))
     steps.append(Do("Ravenchart.Epochs.Since_Start", arguments(Ref("Elapsed"))))
-    steps.append(If(((Chain(">", (Ref("Elapsed"), number(0))), late),)))
+    steps.append(IfStatement(((OperatorChain(">", (Ref("Elapsed"), number(0))), late),)))
     if ended:
         spec += [
             Subprogram("Make_All_Safe", aspects=LAST_CHANCE),
             Comment("Make each device safe."),
         ]
-        steps.append(If(((Prefix("not", Ref("Passed")), (Do("Make_All_Safe"),)),)))
+        steps.append(IfStatement(((Prefix("not", Ref("Passed")), (Do("Make_All_Safe"),)),)))
     bodies: list[Decl] = [
         Subprogram(
             "Start_All",
@@ -149,7 +149,7 @@ def lifecycle_bodies(device: Device, driver: str, own: tuple[Arg, ...]) -> list[
     if life.initialise is not None:
         steps.append(Do(f"{driver}.Initialise", (*own, passed)))
         if life.self_test is not None:
-            steps.append(If(((Ref("Passed"), (tested,)),)))
+            steps.append(IfStatement(((Ref("Passed"), (tested,)),)))
     else:
         steps.append(tested if life.self_test is not None else Assign("Passed", TRUE))
     steps.append(Assign("Is_Ready", Ref("Passed")))

@@ -20,7 +20,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Decl,
     Do,
     Expr,
-    If,
+    IfStatement,
     Object,
     Param,
     Ref,
@@ -32,8 +32,8 @@ from ravenchart.gen.emit.ada.syntax import (
     member,
     number,
 )
-from ravenchart.gen.emit.ada.syntax import Chain as Operation
-from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
+from ravenchart.gen.emit.ada.syntax import OperatorChain as Operation
 from ravenchart.gen.language.terms import RecordType, Type
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, Provided, Remote, RemoteRead
@@ -120,7 +120,7 @@ def sent_call(
     queued = equal(Ref("Status"), Ref("Ravenchart.Queueing.Queued"))
     body: list[Stmt] = [
         Do(f"{name}_Call.Start", arguments(Ref("Number"), Ref("Status"))),
-        If(((queued, (Do(send, arguments(frame)),)),), full),
+        IfStatement(((queued, (Do(send, arguments(frame)),)),), full),
     ]
     return declarations, body
 
@@ -139,7 +139,7 @@ def watch_body(need: Need, kept: str, passed: tuple[Stmt, ...]) -> Subprogram:
         declarations=(Object("Status", status), UseType(status)),
         body=(
             Do(f"{kept}.Tick", arguments(Ref("Status"))),
-            If(((late, passed),)),
+            IfStatement(((late, passed),)),
         ),
     )
 
@@ -171,7 +171,7 @@ def answers(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Su
             declarations.append(UseType(of_type))
             awaited = equal(Ref(status), Ref(f"{CALLS}.Awaited"))
             reply = value_of(system, message, remote.need.reply)
-            body.append(If(((awaited, (Do(f"Take_{name}", arguments(reply)),)),)))
+            body.append(IfStatement(((awaited, (Do(f"Take_{name}", arguments(reply)),)),)))
         yield (
             spec,
             Subprogram(spec.name, spec.params, declarations=tuple(declarations), body=tuple(body)),
@@ -196,7 +196,7 @@ def asked_from_afar(
     first = equal(Ref("Hearing"), Ref(f"{CALLS}.Heard_First"))
     body = (
         Do(f"{CALLS}.Hear", arguments(kept, _number(message), Ref("Hearing"))),
-        If(((first, (Do(put, arguments(request, Ref("Unused_Status"))),)),)),
+        IfStatement(((first, (Do(put, arguments(request, Ref("Unused_Status"))),)),)),
     )
     declarations = (
         Object("Hearing", f"{CALLS}.Hearing"),
@@ -230,7 +230,7 @@ def replies(
         called = Call("Ravenchart.Number", arguments(caller))
         frame = _framed(back, called, Ref(reply(need.name)), need.reply)
         send = f"{ada_case(back.bus)}.Send_{ada_case(back.name)}"
-        yield If(((asks, (Do(send, arguments(frame)),)),))
+        yield IfStatement(((asks, (Do(send, arguments(frame)),)),))
 
 
 def reply_to(system: System, message: Message) -> Message | None:

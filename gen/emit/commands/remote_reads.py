@@ -10,7 +10,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Comment,
     Decl,
     Do,
-    If,
+    IfStatement,
     Object,
     Param,
     Ref,
@@ -19,7 +19,7 @@ from ravenchart.gen.emit.ada.syntax import (
     arguments,
     number,
 )
-from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, RemoteRead
 from ravenchart.gen.model.component import Activity
@@ -110,4 +110,4 @@ def publishes(
         declarations.append(Object(due, "Boolean"))
         turn = arguments(Ref(_left(message)), Every=number(message.every), Is_Due=Ref(due))
         yield Do(f"{CALLS}.Take_Turn", turn)
-        yield If(((Ref(due), (sent,)),))
+        yield IfStatement(((Ref(due), (sent,)),))

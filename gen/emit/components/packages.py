@@ -18,7 +18,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Comment,
     Decl,
     Expr,
-    Instance,
+    GenericInstance,
     Package,
     Param,
     PlainType,
@@ -82,7 +82,7 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
     if component.events:
         items += event_types(system, component)
         items.append(
-            Instance(
+            GenericInstance(
                 "Event_Lists",
                 "Ravenchart.Event_Lists",
                 arguments(
@@ -95,12 +95,12 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
     items += request_types(system, component)
     for region in component.regions:
         items.append(Comment(f"[{component.name}.{region.name}.states]"))
-        items.append(Places(region).package_of_states())
+        items.append(Places(region).package_of_states(system.origin))
     for port in component.inputs():
         name = ada_case(port.name)
         items.append(Comment(f"[{component.name}.{port.name}] what its readers see"))
         items.append(
-            Instance(
+            GenericInstance(
                 f"{name}_Port",
                 "Ravenchart.Port_Regions",
                 arguments(

@@ -19,13 +19,13 @@ from ravenchart.gen.emit.ada.syntax import (
     SPARK,
     Assign,
     Case,
-    Chain,
     Comment,
     Decl,
     Do,
     Expr,
-    If,
+    IfStatement,
     Object,
+    OperatorChain,
     Package,
     Param,
     Pragma,
@@ -37,7 +37,7 @@ from ravenchart.gen.emit.ada.syntax import (
     arguments,
     number,
 )
-from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
 from ravenchart.gen.emit.charts.shape import RegionShape
 from ravenchart.gen.emit.commands.device_calls import (
     call_body,
@@ -373,8 +373,8 @@ class Glue(Site):
             )
         lost: list[Stmt] = [self._fault("Queue_Overflow")]
         lost += self._note("Fault", port.name, "port", self._fault_number("Queue_Overflow"))
-        condition = Chain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
-        body.append(If(((condition, tuple(lost)),)))
+        condition = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
+        body.append(IfStatement(((condition, tuple(lost)),)))
         return Subprogram(
             f"Put_{name}",
             self._put_spec(port).params,
@@ -423,11 +423,11 @@ class Glue(Site):
         full += self._note("Fault", region.name, "region", self._fault_number("Queue_Overflow"))
         if tells and region.on_overflow is not None:
             full += self.overflowed(region.on_overflow)
-        condition = Chain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
+        condition = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
         args = [item, Ref("Status")]
         if event.overflow is not None and event.overflow is not region.overflow:
             args.append(Ref(f"Ravenchart.Queueing.{ada_case(event.overflow.value)}"))
-        return [Do(f"{queue}.Put", arguments(*args)), If(((condition, tuple(full)),))]
+        return [Do(f"{queue}.Put", arguments(*args)), IfStatement(((condition, tuple(full)),))]
 
     def overflowed(self, name: str) -> list[Stmt]:
         """Raise the event that tells of a loss; what is lost by that is only counted."""

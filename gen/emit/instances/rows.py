@@ -8,13 +8,13 @@ from ravenchart.gen.emit.ada.syntax import (
     Assign,
     Call,
     Case,
-    Chain,
     Decl,
     Do,
     Expr,
-    If,
+    IfStatement,
     Loop,
     Object,
+    OperatorChain,
     Param,
     Pragma,
     Ref,
@@ -108,16 +108,16 @@ class Rows(Site):
         arrived = Do(f"Put_{ada_case(poll.port)}", arguments(Ref(told)))
         return [
             Do(asked, arguments(Ref(f"{told}_Now"), Ref(told))),
-            If(((Ref(f"{told}_Now"), (arrived,)),)),
+            IfStatement(((Ref(f"{told}_Now"), (arrived,)),)),
         ]
 
     def _watch_losses(self, port: Port, event: str) -> list[Stmt]:
         """Raise the overflow event when the mailbox has lost more than last time."""
         name = ada_case(port.name)
-        grown = Chain("/=", (Ref(f"{name}_Losses"), Ref(f"{name}_Lost_Before")))
+        grown = OperatorChain("/=", (Ref(f"{name}_Losses"), Ref(f"{name}_Lost_Before")))
         return [
             Assign(f"{name}_Losses", Ref(f"{name}_Mailbox.Lost")),
-            If(((grown, (self._raise(event),)),)),
+            IfStatement(((grown, (self._raise(event),)),)),
             Assign(f"{name}_Lost_Before", Ref(f"{name}_Losses")),
         ]
 
@@ -242,7 +242,7 @@ class Rows(Site):
             convert = Assign("Now", call(f"{package}.To_Occurrence", Ref("Event")))
             idle = equal(Ref("Now"), Ref(f"{package}.Conditions"))
             take = Do(f"{name}_Queue.Take", arguments(Ref("Event"), Ref("Status")))
-            body.append(If(((idle, (take, If(((taken, (convert,)),)))),)))
+            body.append(IfStatement(((idle, (take, IfStatement(((taken, (convert,)),)))),)))
         args = [Ref(f"{name}_Region"), Ref("Now")]
         args += [Ref("Ins")] if shape.inputs else []
         args += [Ref("Event")] if shape.takes_item else []
@@ -258,7 +258,7 @@ class Rows(Site):
             told = [self._fault("Queue_Overflow")]
             told += self._note("Fault", region.name, "region", self._fault_number("Queue_Overflow"))
             told += [self._raise(region.on_overflow)] if region.on_overflow is not None else []
-            body.append(If(((Ref(lost), (*told, Assign(lost, Ref("False")))),)))
+            body.append(IfStatement(((Ref(lost), (*told, Assign(lost, Ref("False")))),)))
         params = (Param("Ins", "in", f"{package}.Inputs"),) if shape.inputs else ()
         return Subprogram(
             f"Step_{name}", params, declarations=tuple(declarations), body=tuple(body)
@@ -274,26 +274,26 @@ class Rows(Site):
                 box = f"Box.{ada_case(port.name)}"
                 item = () if port.is_void else arguments(Ref(box))
                 send = Do(send_flag(port), item)
-                moved.append(If(((Ref(f"{box}_Sent"), (send,)),)))
+                moved.append(IfStatement(((Ref(f"{box}_Sent"), (send,)),)))
         if region.raises:
             lists = f"{self.component}.Event_Lists"
             offer = Do("Offer", arguments(call(f"{lists}.Element", Ref("Box.Raised"), Ref("I"))))
             moved.append(Loop(f"for I in 1 .. {lists}.Count (Box.Raised)", (offer,)))
         if not moved:
             return [Pragma("Unreferenced", (Ref("Fired"),))]
-        any_fired = Chain("/=", (Ref("Fired"), Ref(f"{package}.None")))
+        any_fired = OperatorChain("/=", (Ref("Fired"), Ref(f"{package}.None")))
         if shape.listed:
-            any_fired = Chain(">", (Ref("Fired.Count"), number(0)))
-        return [If(((any_fired, tuple(moved)),))]
+            any_fired = OperatorChain(">", (Ref("Fired.Count"), number(0)))
+        return [IfStatement(((any_fired, tuple(moved)),))]
 
     def _report_firings(self, shape: RegionShape, package: str) -> list[Stmt]:
         fired = Ref("Fired.Items (I)" if shape.listed else "Fired")
         first = Call(f"{package}.Selection'Pos", arguments(Ref(f"{package}.Transition'First")))
-        position = Chain("-", (Call(f"{package}.Selection'Pos", arguments(fired)), first))
+        position = OperatorChain("-", (Call(f"{package}.Selection'Pos", arguments(fired)), first))
         taken = self._note("Transition", shape.region.name, "region", position)
         if not taken:
             return []
-        report = If(((Chain("in", (fired, Ref(f"{package}.Transition"))), taken),))
+        report = IfStatement(((OperatorChain("in", (fired, Ref(f"{package}.Transition"))), taken),))
         return [Loop("for I in 1 .. Fired.Count", (report,)) if shape.listed else report]
 
     def _report_leaves(self, shape: RegionShape) -> list[Stmt]:
@@ -306,7 +306,7 @@ class Rows(Site):
             leaf = Call(f"{of_type}'Pos", arguments(Ref(shape.at(held, lane))))
             note = self._note("State", shape.traced(lane), "region", leaf)
             if lane.owner is not None and note:
-                note = (If(((shape.in_state(held, lane.owner, prefix), note),)),)
+                note = (IfStatement(((shape.in_state(held, lane.owner, prefix), note),)),)
             found += note
         return found
 
@@ -345,14 +345,14 @@ class Rows(Site):
             args.append(Arg(flag, Ref(flag)))
             if event == DONE:
                 done = do(f"{ada_case(activity.name)}_Done_Board.Write", Ref("Visit"))
-                after.append(If(((Ref(flag), (done,)),)))
+                after.append(IfStatement(((Ref(flag), (done,)),)))
                 continue
             given: Expr | None = None
             if (carried := raised_type(component, event)) is not None:
                 given = Ref(raise_value(event))
                 declarations.append(Object(raise_value(event), type_name(self.system, carried)))
                 args.append(Arg(raise_value(event), given))
-            after.append(If(((Ref(flag), (self._raise(event, given),)),)))
+            after.append(IfStatement(((Ref(flag), (self._raise(event, given),)),)))
         home = activity_package(component, activity)
         work = Do(f"{self.component}.{home}.{ada_case(activity.name)}", tuple(args))
         expected = [p.name for p in activity_params(self.system, component, activity)]
@@ -364,7 +364,7 @@ class Rows(Site):
         if guard is not None:
             region_name = ada_case(activity.while_in.region)  # type: ignore[union-attr]
             read = Do(f"{region_name}_Board.Read", arguments(Ref(f"{region_name}_Now")))
-            body = (read, If(((guard, body),)))
+            body = (read, IfStatement(((guard, body),)))
         sent = publishes(self.system, self.instance, activity, declarations)
         body = (*watched(self.system, self.instance, activity), *body, *sent)
         body = (*body, *transmits(self.system, self.instance, activity))
@@ -404,7 +404,7 @@ class Rows(Site):
             flag, asked = send_flag(port), f"{idle}{send_flag(port)}_Asked"
             declarations.append(Object(asked, "Boolean"))
             args.append(Arg(flag, Ref(asked)))
-            send = If(((Ref(asked), (send,)),))
+            send = IfStatement(((Ref(asked), (send,)),))
         return [] if idle else [send]
 
     def _active_in(self, region: Region, state: str, declarations: list[Decl]) -> Expr:

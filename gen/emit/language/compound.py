@@ -13,6 +13,7 @@ from enum import Enum
 from functools import cached_property, lru_cache
 
 from ravenchart.gen.language.terms import Expression, Flow
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import (
     Completion,
     Lane,
@@ -25,6 +26,7 @@ from ravenchart.gen.model.statechart import (
     TransitionKind,
     Trigger,
 )
+from ravenchart.gen.origins import Origin
 
 from .own_names import transition_literal
 
@@ -32,21 +34,13 @@ PASSED = (PseudoKind.CHOICE, PseudoKind.HISTORY, PseudoKind.DEEP_HISTORY)
 """Pseudostates that an execution passes through as a leaf."""
 
 
-class Kind(Enum):
+class FiringKind(Enum):
     """What a firing is."""
 
     MOVE = "move"
     INTERNAL = "internal"
     DEFERRAL = "deferral"
     RESTORE = "restore"
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """A region of the chart: of state ``owner``, or the top-level one for None."""
-
-    owner: str | None
-    region: str
 
 
 TOP = Place(None, "")
@@ -68,7 +62,7 @@ class Enter:
     vertex: str
 
 
-Step = Effect | Enter
+EntryStep = Effect | Enter
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +70,7 @@ class Firing:
     """One line of the declared chart; see the module."""
 
     name: str
-    kind: Kind
+    kind: FiringKind
     lane: Lane
     sources: tuple[str, ...]
     triggers: tuple[Trigger | str, ...]
@@ -85,9 +79,11 @@ class Firing:
     domain: Place | None
     """The innermost region that holds all it leaves and enters; None: it moves nothing."""
     effects: tuple[Effect, ...] = ()
-    entries: tuple[Step, ...] = ()
+    entries: tuple[EntryStep, ...] = ()
     goal: str | None = None
     """The pseudostate or state it leads to; None for a fork."""
+    origins: tuple[Origin, ...] = ()
+    """Where the transitions that it consists of stand, or the vertex that it comes from."""
 
     @property
     def literal(self) -> str:
@@ -147,7 +143,7 @@ class Compounds:
 
     # --- entries
 
-    def default(self, place: Place) -> tuple[Step, ...]:
+    def default(self, place: Place) -> tuple[EntryStep, ...]:
         """Default entry of a region: its initial effect, then its initial state."""
         if place.owner is None:
             label, initial = self.region.name, self.region.initial
@@ -159,7 +155,7 @@ class Compounds:
 
     def into(
         self, place: Place, targets: list[str], effects: dict[str, Effect] | None = None
-    ) -> tuple[Step, ...]:
+    ) -> tuple[EntryStep, ...]:
         """Entry from ``place`` down to ``targets``; each one's effect runs before its region."""
         top = self.below(place, targets[0])[0]
         if self.region.pseudostate(top) is not None:
@@ -171,7 +167,7 @@ class Compounds:
 
     def _nested(
         self, place: Place, targets: list[str], effects: dict[str, Effect]
-    ) -> tuple[Step, ...]:
+    ) -> tuple[EntryStep, ...]:
         here = [t for t in targets if place in self.places(t)]
         if not here:
             return self.default(place)
@@ -204,33 +200,36 @@ class Compounds:
                 lines += [
                     Firing(
                         f"Defer_{e}_In_{state.name}",
-                        Kind.DEFERRAL,
+                        FiringKind.DEFERRAL,
                         lane,
                         (state.name,),
                         (e,),
                         (),
                         None,
+                        origins=(state.origin,),
                     )
                     for e in state.defers
                 ]
         for pseudo in self.region.pseudostates:
             if self.region.lane(pseudo.name) == lane and pseudo.kind in PASSED:
-                lines += self._passing(pseudo.name, pseudo.kind, lane)
+                lines += self._passing(pseudo, lane)
         return lines
 
-    def _passing(self, name: str, kind: PseudoKind, lane: Lane) -> list[Firing]:
+    def _passing(self, pseudo: Pseudostate, lane: Lane) -> list[Firing]:
+        name, kind = pseudo.name, pseudo.kind
         lines: list[Firing] = []
         if kind is not PseudoKind.CHOICE:
             lines.append(
                 Firing(
                     f"Restore_{name}",
-                    Kind.RESTORE,
+                    FiringKind.RESTORE,
                     lane,
                     (name,),
                     (Segment(),),
                     (),
                     self.place(name),
                     goal=name,
+                    origins=(pseudo.origin,),
                 )
             )
         out = self.region.outgoing(name)
@@ -242,7 +241,7 @@ class Compounds:
             lines.append(
                 Firing(
                     f"Default_Of_{name}",
-                    Kind.MOVE,
+                    FiringKind.MOVE,
                     lane,
                     (name,),
                     (Segment(),),
@@ -250,6 +249,7 @@ class Compounds:
                     place,
                     (),
                     entries,
+                    origins=(pseudo.origin,),
                 )
             )
         return lines
@@ -291,8 +291,19 @@ class Compounds:
             triggers = (Completion(),)
         guards = tuple(t.guard for t in path if t.guard is not None)
         effects = tuple(Effect(t.name, t.effect) for t in path)
+        origins = tuple(t.origin for t in path)
         if main.kind is TransitionKind.INTERNAL:
-            return Firing(name, Kind.INTERNAL, lane, sources, triggers, guards, None, effects)
+            return Firing(
+                name,
+                FiringKind.INTERNAL,
+                lane,
+                sources,
+                triggers,
+                guards,
+                None,
+                effects,
+                origins=origins,
+            )
         targets: list[str] = [last.target]
         before: dict[str, Effect] = {}
         pseudo = self.region.pseudostate(last.target)
@@ -302,10 +313,11 @@ class Compounds:
             targets = [t.target for t in prongs]
             before = {t.target: Effect(t.name, t.effect) for t in prongs}
             goal = None
+            origins += tuple(t.origin for t in prongs)
         domain = self._domain(main, sources, targets)
         return Firing(
             name,
-            Kind.MOVE,
+            FiringKind.MOVE,
             lane,
             sources,
             triggers,
@@ -314,6 +326,7 @@ class Compounds:
             effects,
             self.into(domain, targets, before),
             goal,
+            origins,
         )
 
     def _domain(self, main: Transition, sources: tuple[str, ...], targets: list[str]) -> Place:

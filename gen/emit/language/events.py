@@ -11,10 +11,10 @@ from ravenchart.gen.emit.ada.syntax import (
     EnumType,
     Expr,
     Object,
-    RecordType,
+    RecordDeclaration,
     Ref,
 )
-from ravenchart.gen.emit.ada.syntax import Component as Field
+from ravenchart.gen.emit.ada.syntax import RecordComponent as Field
 from ravenchart.gen.language.terms import Type, named
 from ravenchart.gen.model.component import Component, Event
 from ravenchart.gen.model.system import System
@@ -47,7 +47,7 @@ def event_types(system: System, component: Component) -> list[Decl]:
         title,
         EnumType("Event_Name", names),
         Comment("An event with its value; components that it does not use keep their default."),
-        RecordType("Event", tuple(fields)),
+        RecordDeclaration("Event", tuple(fields)),
         Object("No_Event", "Event", Aggregate((Arg("others", Ref("<>")),)), constant=True),
     ]
 

@@ -9,26 +9,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.emit.ada.naming import ada_case, states_package
+from ravenchart.gen.emit.ada.naming import ada_case, states_package, where
 from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
-    Chain,
-    Component,
+    Comment,
     Decl,
     EnumType,
     Expr,
+    OperatorChain,
     Package,
     PlainType,
-    RecordType,
+    RecordComponent,
+    RecordDeclaration,
     Ref,
     both,
     equal,
     member,
 )
+from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Region
+from ravenchart.gen.origins import Origin
 
-from .compound import Enter, Place, Step, compounds_of
+from .compound import Enter, EntryStep, compounds_of
 from .own_names import state_literal
 
 
@@ -135,27 +138,38 @@ class Places:
             at = lane.owner
         return tuple(found)
 
-    def package_of_states(self) -> Package:
-        """The enumerations, the composites, and the configuration where there are lanes."""
+    def package_of_states(self, model: Origin) -> Package:
+        """The enumerations, the composites, and the configuration where there are lanes.
+
+        Each state with the place where it stands, as seen from ``model``.
+        """
         items: list[Decl] = []
         for lane in reversed(self.lanes):
-            names = tuple(state_literal(n) for n in self.literals(lane))
-            items.append(EnumType(self.lane_type(lane), names))
+            leaves = list(self.literals(lane))
+            names = tuple(map(state_literal, leaves))
+            notes = tuple(self._where(name, model) for name in leaves)
+            items.append(EnumType(self.lane_type(lane), names, notes))
         for state in self.region.states:
             if len(state.regions) == 1:
                 leaves = list(self.literals_in(Place(state.name, state.regions[0].name)))
                 outer = self.parent_type(state.name)
                 bounds = f"{outer} range {state_literal(leaves[0])} .. {state_literal(leaves[-1])}"
+                items.append(self._where(state.name, model))
                 items.append(PlainType(state_literal(state.name), bounds, subtype=True))
         if not self.single:
             rows = tuple(
-                Component(
+                RecordComponent(
                     self.lane_field(n), self.lane_type(n), Ref(state_literal(self.default_leaf(n)))
                 )
                 for n in reversed(self.lanes)
             )
-            items.append(RecordType("Configuration", rows))
+            items.append(RecordDeclaration("Configuration", rows))
         return Package(self.states, tuple(items))
+
+    def _where(self, vertex: str, model: Origin) -> Comment:
+        """The state or pseudostate, and where it stands in the model."""
+        found = self.region.pseudostate(vertex) or self.region.state(vertex)
+        return where(found.name, (found.origin,), model)
 
     def parent_type(self, state: str) -> str:
         """The type that a composite's leaves are a range of."""
@@ -173,7 +187,7 @@ class Places:
         """The lanes that begin in an orthogonal state."""
         return tuple(n for n in self.lanes if n.owner == state)
 
-    def after(self, entries: tuple[Step, ...]) -> dict[Lane, str]:
+    def after(self, entries: tuple[EntryStep, ...]) -> dict[Lane, str]:
         """The leaves that entries lead to, lane by lane; other lanes keep theirs."""
         found: dict[Lane, str] = {}
         for step in entries:
@@ -205,7 +219,7 @@ def flat(parts: list[Expr]) -> list[Expr]:
     """One conjunction instead of nested ones."""
     found: list[Expr] = []
     for part in parts:
-        if isinstance(part, Chain) and part.operator == "and then":
+        if isinstance(part, OperatorChain) and part.operator == "and then":
             found += flat(list(part.operands))
         else:
             found.append(part)

@@ -1,59 +1,110 @@
 """Models in which the compiler can decide conditions, and what keeps it from saying so.
 
 A type of one value, a region of one leaf or a guard that ranges decide are
-sound, and the compiler warns of each. Only programs of such models say that
-these warnings are not wanted.
+sound, and the compiler warns of each. Only the units in which such a condition
+can stand say that these warnings are not wanted.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from ravenchart.gen.emit.ada.syntax import Package, Pragma, Ref, Unit
+from ravenchart.gen.emit.ada.syntax import Package, Pragma, Ref, Unit, compares
 from ravenchart.gen.language import terms as m
-from ravenchart.gen.model.statechart import When
+from ravenchart.gen.model.chart.tree import Place
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.statechart import Region, When
 from ravenchart.gen.model.system import System
 
-from .compound import Place
 from .places import Places
 from .terms import expressions_in
 
-_WORDS = ("can only be", "can never be", "explicit membership test", "'Valid attribute")
-_COMPUTED = "condition is always"
+_DECIDED = ("can only be", "can never be")
+_MEMBERSHIP = ("explicit membership test", "'Valid attribute")
+"""What it says of a state that is always active."""
+_COMPUTED = ("condition is always",)
 """What it says where operators, and not types alone, decide."""
 
 
-def quiet(unit: Unit, *, computed: bool) -> Unit:
-    """The unit, with these warnings off; ``computed``: there are comparisons of results."""
-    if not isinstance(unit.item, Package):
+def quiet(unit: Unit, words: Sequence[str]) -> Unit:
+    """The unit, with the warnings of these words off where a comparison stands in it."""
+    if not isinstance(unit.item, Package) or not words or not compares(unit.item):
         return unit
-    words = (*_WORDS, _COMPUTED) if computed else _WORDS
     pragmas = (Pragma("Warnings", (Ref("Off"), Ref(f'"*{word} *"'))) for word in words)
     return replace(unit, item=replace(unit.item, items=(*pragmas, *unit.item.items)))
 
 
-def has_computed_conditions(system: System) -> bool:
-    """Can the compiler decide a comparison of what operators yield?"""
-    return any(_is_decided(e, computed=True) for e in _expressions(system))
+class OfComponent:
+    """What the compiler says of conditions that it can decide in the units of a component.
+
+    ``types`` is what it says of the types of the system (`words_of_types`).
+    """
+
+    def __init__(self, component: Component, types: Sequence[str]) -> None:
+        self.component, self.types = component, types
+        self._states = {r.name: _words_of_states(r) for r in component.regions}
+
+    def region(self, region: Region) -> tuple[str, ...]:
+        """In the package of a region, which may ask for the states of others."""
+        asked = (self._states[name] for name in region.reads if name in self._states)
+        return _in_order(_words([*_of_region(region)], [region]), self.types, *asked)
+
+    def activities(self) -> tuple[str, ...]:
+        """In the packages of its activities."""
+        own = _words([*_of_activities(self.component)], [])
+        return _in_order(own, self.types, *self._states.values())
 
 
-def has_decided_conditions(system: System) -> bool:
-    """Can the compiler decide a condition of the generated program?"""
-    if any(_has_one_value(t) for t in system.types):
-        return True
+def words_of_system(system: System) -> tuple[str, ...]:
+    """The same in the units that belong to no component."""
     regions = [r for c in system.components for r in c.regions]
-    if any(not r.transitions or _has_whole_lane(Places(r)) for r in regions):
-        return True
-    return any(_is_decided(e) for e in _expressions(system))
+    expressions = [e for c in system.components for e in _of_component(c)]
+    return _in_order(_words(expressions, regions), words_of_types(system))
 
 
-def _has_whole_lane(places: Places) -> bool:
-    """Is a lane a single leaf, or has it a composite that holds all its leaves?"""
+def words_of_types(system: System) -> tuple[str, ...]:
+    """What it says of the only value of a type."""
+    return _DECIDED if any(_has_one_value(t) for t in system.types) else ()
+
+
+def _in_order(*found: Iterable[str]) -> tuple[str, ...]:
+    wanted = {word for words in found for word in words}
+    return tuple(word for word in (*_DECIDED, *_MEMBERSHIP, *_COMPUTED) if word in wanted)
+
+
+def _words(expressions: Sequence[m.Expression], regions: Sequence[Region]) -> Iterator[str]:
+    """The words for what stands in expressions, and for the places of regions."""
+    if any(_is_decided(e) for e in expressions):
+        yield from _DECIDED
+    if any(_is_decided(e, computed=True) for e in expressions):
+        yield from _COMPUTED
+    if any(not region.transitions for region in regions):
+        yield from _DECIDED
+    for region in regions:
+        yield from _words_of_states(region)
+
+
+def _words_of_states(region: Region) -> tuple[str, ...]:
+    """The words for a state that is active whatever its region does."""
+    if _has_whole_state(region):
+        return (*_DECIDED, *_MEMBERSHIP)
+    return _DECIDED if _has_single_leaf(region) else ()
+
+
+def _has_single_leaf(region: Region) -> bool:
+    """Is a lane a single leaf?"""
+    places = Places(region)
+    return any(len(places.literals(lane)) == 1 for lane in places.lanes)
+
+
+def _has_whole_state(region: Region) -> bool:
+    """Holds a composite all the leaves of its lane?"""
+    places = Places(region)
     lanes = [places.literals(lane) for lane in places.lanes]
-    nested = (s for s in places.region.states if len(s.regions) == 1)
+    nested = (s for s in region.states if len(s.regions) == 1)
     inside = (tuple(places.literals_in(Place(s.name, s.regions[0].name))) for s in nested)
-    return any(len(leaves) == 1 for leaves in lanes) or any(leaves in lanes for leaves in inside)
+    return any(leaves in lanes for leaves in inside)
 
 
 def _has_one_value(of_type: m.Type) -> bool:
@@ -66,18 +117,25 @@ def _has_one_value(of_type: m.Type) -> bool:
             return False
 
 
-def _expressions(system: System) -> Iterator[m.Expression]:
-    for component in system.components:
-        for region in component.regions:
-            for transition in region.transitions:
-                yield from (e for e in (transition.guard,) if e is not None)
-                if isinstance(transition.trigger, When):
-                    yield transition.trigger.condition
-                yield from expressions_in(transition.effect)
-            for state in region.states:
-                yield from (*expressions_in(state.entry), *expressions_in(state.exit))
-        for activity in component.activities:
-            yield from expressions_in(activity.flow or ())
+def _of_component(component: Component) -> Iterator[m.Expression]:
+    for region in component.regions:
+        yield from _of_region(region)
+    yield from _of_activities(component)
+
+
+def _of_region(region: Region) -> Iterator[m.Expression]:
+    for transition in region.transitions:
+        yield from (e for e in (transition.guard,) if e is not None)
+        if isinstance(transition.trigger, When):
+            yield transition.trigger.condition
+        yield from expressions_in(transition.effect)
+    for state in region.states:
+        yield from (*expressions_in(state.entry), *expressions_in(state.exit))
+
+
+def _of_activities(component: Component) -> Iterator[m.Expression]:
+    for activity in component.activities:
+        yield from expressions_in(activity.flow or ())
 
 
 def _is_decided(expression: m.Expression, *, computed: bool = False) -> bool:

@@ -13,11 +13,11 @@ from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Assign,
     Call,
-    Chain,
     Do,
     Expr,
-    If,
     IfExpr,
+    IfStatement,
+    OperatorChain,
     Prefix,
     Ref,
     Stmt,
@@ -213,7 +213,7 @@ def emit_expression(scope: Scope, expression: m.Expression, unit: str | None = N
             return Ref(_name(scope, expression))
         case m.PortTest(port, state):
             view = scope.variable(port)
-            return Chain("=", (Ref(f"{view}.State"), Ref(f"Ravenchart.{ada_case(state)}")))
+            return OperatorChain("=", (Ref(f"{view}.State"), Ref(f"Ravenchart.{ada_case(state)}")))
         case m.InState(region, state):
             return _in_state(scope, region, state)
         case m.Operation():
@@ -268,8 +268,8 @@ def _operation(scope: Scope, operation: m.Operation, place: str | None) -> Expr:
     if operator in _FUNCTIONS or operator == "clamp":
         return _bounded(scope, operation, operands, unit)
     if operator in ("*", "/"):
-        return Chain(operator, tuple(_scaled(scope, unit, o) for o in operation.operands))
-    return Chain(_CHAINS.get(operator, operator), operands)
+        return OperatorChain(operator, tuple(_scaled(scope, unit, o) for o in operation.operands))
+    return OperatorChain(_CHAINS.get(operator, operator), operands)
 
 
 def _bounded(
@@ -312,7 +312,7 @@ def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
             return scope.raised(event, _given(scope, of_type, values) if of_type else None)
         case m.If(_, condition, then, otherwise):
             branch = (emit_expression(scope, condition), emit_flow(scope, then))
-            return (If((branch,), emit_flow(scope, otherwise)),)
+            return (IfStatement((branch,), emit_flow(scope, otherwise)),)
 
 
 def _unit_in(of_type: m.Type, field: str | None) -> str | None:

@@ -22,8 +22,8 @@ from ravenchart.gen.emit.ada.syntax import (
     Ref,
     Unit,
 )
-from ravenchart.gen.emit.ada.syntax import Component as RecordComponent
-from ravenchart.gen.emit.ada.syntax import RecordType as AdaRecord
+from ravenchart.gen.emit.ada.syntax import RecordComponent as RecordComponent
+from ravenchart.gen.emit.ada.syntax import RecordDeclaration as AdaRecord
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     EnumerationType,

@@ -17,15 +17,15 @@ from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Call,
     Case,
-    Chain,
     Comment,
     Decl,
     Do,
     EnumType,
     Expr,
-    If,
-    Instance,
+    GenericInstance,
+    IfStatement,
     Object,
+    OperatorChain,
     Package,
     Param,
     PlainType,
@@ -92,7 +92,7 @@ def _holding(
 ) -> Unit:
     """A unit around an instance: gnatprove checks no ceiling in an instance that is a unit."""
     root = root_package(system)
-    package = Package(f"{root}.{unit}", (Instance(name, generic, args), *checks), (SPARK,))
+    package = Package(f"{root}.{unit}", (GenericInstance(name, generic, args), *checks), (SPARK,))
     return Unit(header, (generic, f"{root}.{CERTIFICATE}" if checks else "System"), package)
 
 
@@ -176,7 +176,7 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         items += _budgets(processor)
     items.append(Comment(f"[{processor.name}]"))
     named = arguments(Name=Ref(f'"{processor.name}"'))
-    items.append(Instance("Processor", generic, (*named, *args, *shared)))
+    items.append(GenericInstance("Processor", generic, (*named, *args, *shared)))
     items += _checks(processor, offset)
     withs = {generic, "System", f"{root}.{CERTIFICATE}"}
     if processor.released_by is None:
@@ -270,9 +270,9 @@ def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
         Subprogram("On_Deadline_Miss", body=missed),
     ]
     if processor.on_overrun:
-        over = Chain(">", (Ref("Used"), Ref("Budgets (Item)")))
+        over = OperatorChain(">", (Ref("Used"), Ref("Budgets (Item)")))
         raised = _fault(system, processor, "Overrun", processor.on_overrun)
-        found.append(Subprogram("On_Executed", _EXECUTED, body=(If(((over, raised),)),)))
+        found.append(Subprogram("On_Executed", _EXECUTED, body=(IfStatement(((over, raised),)),)))
     return (*uses, *found)
 
 

@@ -8,13 +8,13 @@ from ravenchart.gen.emit.ada.syntax import (
     TRUE,
     Aspect,
     Assign,
-    Chain,
     Comment,
     Decl,
     Do,
-    If,
+    IfStatement,
     Loop,
     Object,
+    OperatorChain,
     Package,
     Prefix,
     Ref,
@@ -124,7 +124,7 @@ def _drain() -> Subprogram:
                 "",
                 (
                     Do("Trace.Buffer.Take", arguments(Ref("Item"), Ref("Status"))),
-                    If(((empty, (Say("exit"),)),)),
+                    IfStatement(((empty, (Say("exit"),)),)),
                     Do("Ravenchart.Hosts.Put_Trace", arguments(Ref("Item"))),
                 ),
             ),
@@ -168,7 +168,7 @@ def emit_main(system: System, header: str) -> Unit:
     root = root_package(system)
     drain: tuple[Stmt, ...] = (Do(f"{root}.Reports.Drain_Trace"),) if traced(system) else ()
     wait: tuple[Stmt, ...] = (
-        Assign("Next", Chain("+", (Ref("Next"), Ref("Step")))),
+        Assign("Next", OperatorChain("+", (Ref("Next"), Ref("Step")))),
         Say("delay until Next"),
     )
     shutdown = [
@@ -181,7 +181,7 @@ def emit_main(system: System, header: str) -> Unit:
     steps = -(-system.shutdown.grace // POLL_NS)
     begins = has_lifecycle(system)
     started = (do(f"{root}.{LIFECYCLE}.Start_All", Ref("Started")),) if begins else ()
-    ended = Chain("or else", (Ref("Stop"), Prefix("not", Ref("Started"))))
+    ended = OperatorChain("or else", (Ref("Stop"), Prefix("not", Ref("Started"))))
     body: list[Stmt] = [
         Do("Ravenchart.Hosts.Start"),
         do("Ravenchart.Hosts.Put_Model", Ref(f"{root}.{CERTIFICATE}.Model_Digest")),
@@ -191,7 +191,7 @@ def emit_main(system: System, header: str) -> Unit:
             (
                 *drain,
                 Assign("Stop", Ref("Ravenchart.Hosts.Stop_Requested")),
-                If(((ended if begins else Ref("Stop"), (Say("exit"),)),)),
+                IfStatement(((ended if begins else Ref("Stop"), (Say("exit"),)),)),
                 *wait,
             ),
         ),

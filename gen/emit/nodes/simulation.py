@@ -17,12 +17,12 @@ from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Assign,
     Case,
-    Chain,
     Decl,
     Do,
     Expr,
-    If,
+    IfStatement,
     Object,
+    OperatorChain,
     Param,
     PlainType,
     Prefix,
@@ -37,7 +37,7 @@ from ravenchart.gen.emit.ada.syntax import (
     equal,
     number,
 )
-from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
 from ravenchart.gen.emit.commands.lifecycle import UNIT as LIFECYCLE
 from ravenchart.gen.emit.commands.lifecycle import has_lifecycle
 from ravenchart.gen.emit.language.events import event_value
@@ -107,9 +107,9 @@ def emit_simulation(system: System, header: str) -> Unit:
                 Assign("Executed", number(0)),
                 do(f"{root}.{ada_case(slot.owner)}.Run_{ada_case(slot.name)}", Ref("Executed")),
             )
-            turn = Chain("mod", (Ref("Count"), number(slot.divisor)))
+            turn = OperatorChain("mod", (Ref("Count"), number(slot.divisor)))
             due = equal(turn, number(slot.phase))
-            rows += run if slot.divisor == 1 else (If(((due, run),)),)
+            rows += run if slot.divisor == 1 else (IfStatement(((due, run),)),)
         releases.append((str(position), tuple(rows)))
     executes = any(rows for _, rows in releases)
     takes = [
@@ -166,7 +166,7 @@ def _start(system: System) -> tuple[Stmt, ...]:
         return ()
     failed = Say('raise Program_Error with "a device has not started"')
     start = do(f"{root_package(system)}.{LIFECYCLE}.Start_All", Ref("Started"))
-    return start, If(((Prefix("not", Ref("Started")), (failed,)),))
+    return start, IfStatement(((Prefix("not", Ref("Started")), (failed,)),))
 
 
 def _instants(times: list[int]) -> Expr:

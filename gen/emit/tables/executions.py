@@ -11,8 +11,8 @@ from dataclasses import replace
 from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Assign,
-    Chain,
     Expr,
+    OperatorChain,
     Param,
     Ref,
     Stmt,
@@ -50,7 +50,7 @@ def run_spec(name: str, slot: Slot) -> Subprogram:
 
 def executed(slot: Slot) -> Stmt:
     """Note in its body that the row is executed."""
-    return Assign("Executed", Chain("+", (Ref("Executed"), row_of(slot))))
+    return Assign("Executed", OperatorChain("+", (Ref("Executed"), row_of(slot))))
 
 
 def executing(run: Subprogram, slot: Slot) -> Subprogram:

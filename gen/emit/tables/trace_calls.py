@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 from ravenchart.gen.emit.ada.naming import constant_name
-from ravenchart.gen.emit.ada.syntax import Chain, Do, Expr, Ref, Stmt, arguments, call, number
+from ravenchart.gen.emit.ada.syntax import (
+    Do,
+    Expr,
+    OperatorChain,
+    Ref,
+    Stmt,
+    arguments,
+    call,
+    number,
+)
 from ravenchart.gen.model.system import Processor, System
 
 
@@ -36,4 +45,4 @@ def row_number(processor: Processor, row_type: str, row: str) -> Expr:
     """The element number of a row: those of a table follow their processor's."""
     position = call("Ravenchart.Element_Id", call(f"{row_type}'Pos", Ref(row)))
     first = Ref(f"Elements.{element_constant(processor.name, 'processor')}")
-    return Chain("+", (first, number(1), position))
+    return OperatorChain("+", (first, number(1), position))

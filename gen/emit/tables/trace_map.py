@@ -7,7 +7,6 @@ directly, so that row k of the table is the processor's number + 1 + k.
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import dataclass
 from itertools import product
 
@@ -21,7 +20,7 @@ CONTROLLER_STATES = ("Stopped", "Error_Active", "Error_Passive", "Bus_Off")
 
 
 @dataclass(frozen=True, slots=True)
-class Element:
+class MappedElement:
     """One traced element.
 
     ``leaves`` are the states of a region or of a bus, and ``transitions`` those of a region, in
@@ -36,12 +35,12 @@ class Element:
     transitions: tuple[str, ...] = ()
 
 
-def elements(system: System) -> tuple[Element, ...]:
+def elements(system: System) -> tuple[MappedElement, ...]:
     """Every traced element of the system, numbered from 1."""
-    found: list[Element] = []
+    found: list[MappedElement] = []
 
     def add(element: str, kind: str, origin: Origin, **more: tuple[str, ...]) -> None:
-        found.append(Element(len(found) + 1, element, kind, origin, **more))
+        found.append(MappedElement(len(found) + 1, element, kind, origin, **more))
 
     for processor in system.processors:
         add(processor.name, "processor", processor.origin)
@@ -76,11 +75,13 @@ def elements(system: System) -> tuple[Element, ...]:
     return (*found, *_controllers(system, len(found)))
 
 
-def _controllers(system: System, last: int) -> tuple[Element, ...]:
+def _controllers(system: System, last: int) -> tuple[MappedElement, ...]:
     """The controllers of each bus with `watch`, ``node.bus``, numbered behind ``last``."""
     watched = [bus for bus in system.buses if bus.watch is not None]
     return tuple(
-        Element(number, f"{node.name}.{bus.name}", "bus", bus.origin, leaves=CONTROLLER_STATES)
+        MappedElement(
+            number, f"{node.name}.{bus.name}", "bus", bus.origin, leaves=CONTROLLER_STATES
+        )
         for number, (bus, node) in enumerate(product(watched, system.nodes), last + 1)
     )
 
@@ -106,5 +107,4 @@ def trace_json(system: System) -> str:
 
 def _place(origin: Origin, model: Origin) -> str:
     """Where an element stands, from the model's folder: the same wherever that is."""
-    file = os.path.relpath(origin.file, os.path.dirname(model.file) or ".")
-    return f"{file}:{origin.line}:{origin.column}"
+    return f"{origin.beside(model)}:{origin.column}"

@@ -6,12 +6,10 @@ found unreachable is, and what is found reachable may not be.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
-
-import networkx
 
 from ravenchart.gen.model.statechart import Completion, PseudoKind, Transition, TransitionKind
 
@@ -118,25 +116,23 @@ class Reach:
     # --- from where to where
 
     @cached_property
-    def graph(self) -> networkx.DiGraph[Any]:
-        """An edge where one vertex can be active, or passed, and another follow.
+    def before(self) -> Mapping[str, set[str]]:
+        """The vertices that can be active, or passed, where a vertex follows.
 
         A state that stays active beside one that moves can be followed by what that enters.
         """
-        graph: networkx.DiGraph[Any] = networkx.DiGraph()
-        graph.add_nodes_from(self.found)
+        before: defaultdict[str, set[str]] = defaultdict(set)
         for transition in self.tree.region.transitions:
-            if not self.fires(transition):
-                continue
-            after = self.after(transition)
-            graph.add_edges_from((transition.source, target) for target in after)
+            if self.fires(transition):
+                for target in self.after(transition):
+                    before[target].add(transition.source)
         for state in self.tree.states:
             if state not in self.found:
                 continue
             for outer in self.tree.above(state):
-                graph.add_edge(state, outer)
-                graph.add_edges_from((state, other) for other in self._beside(outer, state))
-        return graph
+                for other in (outer, *self._beside(outer, state)):
+                    before[other].add(state)
+        return before
 
     def _beside(self, outer: str, state: str) -> Iterator[str]:
         """What may be active in the other regions of an orthogonal state."""
@@ -146,6 +142,10 @@ class Reach:
 
     def leading_to(self, state: str) -> set[str]:
         """The vertices from which some way leads to a state, or that are in it."""
-        inside = {s for s in self.found if s == state or state in self.tree.above(s)}
-        ahead = self.graph.reverse(copy=False)
-        return inside.union(*(networkx.descendants(ahead, one) for one in inside))
+        leading = {s for s in self.found if s == state or state in self.tree.above(s)}
+        new = list(leading)
+        while new:
+            found = self.before.get(new.pop(), set()) - leading
+            leading |= found
+            new += found
+        return leading

@@ -32,7 +32,7 @@ class Place(NamedTuple):
     region: str
 
 
-class Entry(NamedTuple):
+class EntryFlow(NamedTuple):
     """One behaviour on the way in: of a state, or (None) of an initial transition."""
 
     state: str | None
@@ -162,19 +162,19 @@ class Tree:
 
     # --- entries
 
-    def entries(self, place: Place, targets: tuple[str, ...]) -> Iterator[Entry]:
+    def entries(self, place: Place, targets: tuple[str, ...]) -> Iterator[EntryFlow]:
         """What entering a region on the way to ``targets`` runs; with none, by default.
 
         A target that is a pseudostate ends the way in its region.
         """
         if not targets:
             initial = self.initial(place)
-            yield Entry(None, initial.effect)
+            yield EntryFlow(None, initial.effect)
             targets = (initial.target,)
         child = self.child(place, targets[0])
         if child is None or child not in self.states:
             return
-        yield Entry(child, self.states[child].entry)
+        yield EntryFlow(child, self.states[child].entry)
         for nested in self.regions(child):
             yield from self.entries(nested, tuple(t for t in targets if self.child(nested, t)))
 

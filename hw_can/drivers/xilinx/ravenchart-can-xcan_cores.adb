@@ -6,6 +6,9 @@ is
    pragma Warnings
      (GNATprove, Off, "writing to * is assumed to have no effects on other*",
       Reason => "ASM-022, the words are those of the controller alone");
+   pragma Warnings
+     (GNATprove, Off, "address specification on * is imprecisely supported*",
+      Reason => "ASM-022, each word is read and written whole");
 
    use type Xcan_Registers.Register;
 

@@ -16,25 +16,27 @@ is
 
    function Identity_Of (F : Frame) return Word is
       Bits   : constant Word := Word (F.Id);
-      Result : Word;
+      Result : Image;
    begin
       pragma Assert (Bits <= 16#1FFF_FFFF#);
       pragma Assert (if F.Format = Can.Standard then Bits <= 16#7FF#);
       if F.Format = Extended then
-         Result :=
+         Result.Identity :=
            (Interfaces.Shift_Left (Bits, 3) and 16#FFE0_0000#)
            or (Interfaces.Shift_Left (Bits, 1) and 16#7_FFFE#)
            or Remote_Standard
            or Extended_Bit
            or (if F.Kind = Remote then Remote_Extended else 0);
       else
-         Result :=
+         Result.Identity :=
            Interfaces.Shift_Left (Bits, 21)
            or (if F.Kind = Remote then Remote_Standard else 0);
       end if;
-      pragma Assert (Bits_Of (Result) = Bits);
+      pragma Assert (Bits_Of (Result.Identity) = Bits);
       pragma Assert (Identifier (Bits) = F.Id);
-      return Result;
+      pragma Assert (Id_Of (Result) = Identifier (Bits_Of (Result.Identity)));
+      pragma Assert (Id_Of (Result) = F.Id);
+      return Result.Identity;
    end Identity_Of;
 
    --------------

@@ -5,11 +5,6 @@
 package Two_Nodes.Elements
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  Numbers of the model's elements; trace.json has their names and
    --  places.
    Reception_Drive_Processor : constant Ravenchart.Element_Id := 1;

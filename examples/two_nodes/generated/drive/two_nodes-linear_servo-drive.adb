@@ -5,11 +5,6 @@
 package body Two_Nodes.Linear_Servo.Drive
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    function Select_Transition
      (Leaf : Drive_States.Leaf; Now : Occurrence; Ins : Inputs)
      return Selection is
@@ -71,6 +66,7 @@ is
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)

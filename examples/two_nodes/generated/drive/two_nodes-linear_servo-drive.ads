@@ -5,11 +5,6 @@
 package Two_Nodes.Linear_Servo.Drive
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    use type Drive_States.Leaf;
 
    --  [Linear_Servo.Drive] what a step can be made for
@@ -20,8 +15,19 @@ is
    --  [Linear_Servo.Drive.transitions] in order of precedence, innermost
    --  source first
    type Selection is
-     (Initial_Entry, Go, Rest, Lost_At_Rest, Lost, Cut_Off_At_Rest, Cut_Off,
-      Cut_Off_Besides, Still_Cut_Off, Told_Off_Bus, Connected, Back, None);
+     (Initial_Entry,
+      Go,               --  [go] servo.yaml:33
+      Rest,             --  [rest] servo.yaml:34
+      Lost_At_Rest,     --  [lost_at_rest] servo.yaml:35
+      Lost,             --  [lost] servo.yaml:36
+      Cut_Off_At_Rest,  --  [cut_off_at_rest] servo.yaml:37
+      Cut_Off,          --  [cut_off] servo.yaml:38
+      Cut_Off_Besides,  --  [cut_off_besides] servo.yaml:39
+      Still_Cut_Off,    --  [still_cut_off] servo.yaml:40
+      Told_Off_Bus,     --  [told_off_bus] servo.yaml:41
+      Connected,        --  [connected] servo.yaml:42
+      Back,             --  [back] servo.yaml:43
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Back;
    subtype Transition is Selection range Go .. Back;

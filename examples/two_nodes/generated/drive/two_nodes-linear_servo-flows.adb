@@ -5,11 +5,6 @@
 package body Two_Nodes.Linear_Servo.Flows
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    use type Drive_States.Leaf;
 
    procedure Control

@@ -5,11 +5,6 @@
 package Two_Nodes.Linear_Servo.Flows
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    procedure Control
      (Order    : Linear_Servo.Order_View;
       Drive    : Linear_Servo.Drive_States.Leaf;

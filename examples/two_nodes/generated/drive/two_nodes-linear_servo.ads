@@ -8,11 +8,6 @@ with Ravenchart.Port_Regions;
 package Two_Nodes.Linear_Servo
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  [Linear_Servo.events]
    type Event is (Told, Nobody_Tells, Bus_Failed, Bus_Back);
 
@@ -23,7 +18,12 @@ is
 
    --  [Linear_Servo.Drive.states]
    package Drive_States is
-      type Leaf is (Standing, Following, Safe, Safe_Off_Bus);
+      type Leaf is
+        (Standing,      --  [Standing] servo.yaml:28
+         Following,     --  [Following] servo.yaml:29
+         Safe,          --  [Safe] servo.yaml:30
+         Safe_Off_Bus   --  [Safe_Off_Bus] servo.yaml:31
+        );
    end Drive_States;
 
    --  [Linear_Servo.order] what its readers see

@@ -14,8 +14,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    --  [link.watch] the controller at the last look
    Seen : Ravenchart.Can.Fault_Notices.Fault_Log;
@@ -25,6 +23,7 @@ is
 
    procedure Run_Watch (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Controller_State;
+
       Now : Ravenchart.Can.Fault_Notices.Fault_Log;
       Found : Ravenchart.Can.Fault_Notices.Notices;
       Is_Due : Boolean;

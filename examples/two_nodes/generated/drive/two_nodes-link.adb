@@ -13,8 +13,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    function Frame_Of_Servo_Report
      (Item : Two_Nodes.Servo_Report)
@@ -30,6 +28,7 @@ is
 
    procedure Send_Servo_Report (Item : Two_Nodes.Servo_Report) is
       use type Ravenchart.Can.Send_Status;
+
       Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
         Frame_Of_Servo_Report (Item);
       Status : Ravenchart.Can.Send_Status;

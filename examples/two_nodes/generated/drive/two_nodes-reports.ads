@@ -5,11 +5,6 @@
 package Two_Nodes.Reports
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    procedure Drain_Trace;
    --  Hand what was traced to the host.
 

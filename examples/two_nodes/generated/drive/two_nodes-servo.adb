@@ -19,8 +19,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    --  [servo.order]
    package Order_Mailbox is new Ravenchart.Queues
@@ -72,6 +70,7 @@ is
 
    procedure Offer (Item : Linear_Servo.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
@@ -134,7 +133,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Order_Item : Two_Nodes.Servo_Order;
       Order_Change : Linear_Servo.Order_Port.Change;
    begin
@@ -168,10 +169,13 @@ is
    procedure Step_Drive (Ins : Linear_Servo.Drive.Inputs) is
       Now : Linear_Servo.Drive.Occurrence;
       Fired : Linear_Servo.Drive.Selection;
+
       use type Linear_Servo.Drive.Selection;
       use type Linear_Servo.Drive.Occurrence;
+
       Event : Linear_Servo.Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
    begin
       Linear_Servo.Drive.Poll (Drive_Region, Now);

@@ -21,11 +21,10 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
+
       Item : Ravenchart.Traces.Trace_Record;
       Status : Ravenchart.Queueing.Take_Status;
    begin
@@ -40,6 +39,7 @@ is
 
    procedure Report_Reception_Panel is
       use type Ravenchart.Element_Id;
+
       Found : Reception_Panel.Processor.Statistics;
    begin
       Reception_Panel.Processor.Observe (Found);
@@ -55,6 +55,7 @@ is
 
    procedure Report_Supervision is
       use type Ravenchart.Element_Id;
+
       Found : Supervision.Processor.Statistics;
    begin
       Supervision.Processor.Observe (Found);

@@ -19,8 +19,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    --  [supervisor.report]
    package Report_Mailbox is new Ravenchart.Queues
@@ -70,6 +68,7 @@ is
 
    procedure Offer (Item : Traveller.Event) is
       Status : Ravenchart.Queueing.Put_Status;
+
       use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
@@ -121,7 +120,9 @@ is
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
+
       Report_Item : Two_Nodes.Servo_Report;
       Report_Change : Traveller.Report_Port.Change;
    begin
@@ -154,10 +155,13 @@ is
    procedure Step_Mission (Ins : Traveller.Mission.Inputs) is
       Now : Traveller.Mission.Occurrence;
       Fired : Traveller.Mission.Selection;
+
       use type Traveller.Mission.Selection;
       use type Traveller.Mission.Occurrence;
+
       Event : Traveller.Event;
       Status : Ravenchart.Queueing.Take_Status;
+
       use type Ravenchart.Queueing.Take_Status;
    begin
       Traveller.Mission.Poll (Mission_Region, Now);

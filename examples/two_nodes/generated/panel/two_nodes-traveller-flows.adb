@@ -5,11 +5,6 @@
 package body Two_Nodes.Traveller.Flows
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    procedure Plan
      (Goal       : Two_Nodes.Position;
       Report     : Traveller.Report_View;

@@ -7,8 +7,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    function Select_Transition
      (Leaf : Mission_States.Leaf; Now : Occurrence; Ins : Inputs)
@@ -77,10 +75,12 @@ is
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
+
       Active : Chart.Node :=
         (if Self.Started then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
+
       procedure Enter_Outward
       with
         Post =>
@@ -94,6 +94,7 @@ is
          Active := Chart.Moved (Active, Chart.Travelling, Chart.Outward);
          Self.Data.Goal := 20_000;
       end Enter_Outward;
+
       procedure Enter_Homeward
       with
         Post =>

@@ -7,8 +7,6 @@ with SPARK_Mode
 is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
 
    use type Mission_States.Leaf;
    use type Ravenchart.Freshness;
@@ -20,8 +18,18 @@ is
    --  [Traveller.Mission.transitions] in order of precedence, innermost
    --  source first
    type Selection is
-     (Initial_Entry, There, Home, Go, Lost, Cut_Off_Early, Cut_Off,
-      Cut_Off_Besides, Still_Cut_Off, Connected, Again, None);
+     (Initial_Entry,
+      There,            --  [there] supervisor.yaml:32
+      Home,             --  [home] supervisor.yaml:33
+      Go,               --  [go] supervisor.yaml:31
+      Lost,             --  [lost] supervisor.yaml:34
+      Cut_Off_Early,    --  [cut_off_early] supervisor.yaml:35
+      Cut_Off,          --  [cut_off] supervisor.yaml:36
+      Cut_Off_Besides,  --  [cut_off_besides] supervisor.yaml:37
+      Still_Cut_Off,    --  [still_cut_off] supervisor.yaml:38
+      Connected,        --  [connected] supervisor.yaml:39
+      Again,            --  [again] supervisor.yaml:40
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Again;
    subtype Transition is Selection range There .. Again;

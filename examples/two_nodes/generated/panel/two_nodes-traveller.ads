@@ -8,11 +8,6 @@ with Ravenchart.Port_Regions;
 package Two_Nodes.Traveller
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  [Traveller.events]
    type Event is (Servo_Lost, Bus_Failed, Bus_Back);
 
@@ -23,8 +18,15 @@ is
 
    --  [Traveller.Mission.states]
    package Mission_States is
-      type Leaf is (Waiting, Outward, Homeward, Safe, Safe_Off_Bus);
+      type Leaf is
+        (Waiting,       --  [Waiting] supervisor.yaml:20
+         Outward,       --  [Outward] supervisor.yaml:24
+         Homeward,      --  [Homeward] supervisor.yaml:26
+         Safe,          --  [Safe] supervisor.yaml:28
+         Safe_Off_Bus   --  [Safe_Off_Bus] supervisor.yaml:29
+        );
 
+      --  [Travelling] supervisor.yaml:21
       subtype Travelling is Leaf range Outward .. Homeward;
    end Mission_States;
 

@@ -7,11 +7,6 @@ with Ravenchart;
 package Two_Nodes
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  All values counted in um.
    type Unit_Um is new Ravenchart.Number;
    subtype Position is Unit_Um range 0 .. 100_000;
