@@ -237,7 +237,7 @@ def fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Fake:
     made.fact.write_text("")
     monkeypatch.setattr(Program, "build", lambda *a, **more: made.build(*a, **more))
     monkeypatch.setattr(Program, "compilation", lambda *a: made.compilation(*a))
-    monkeypatch.setattr(Compilation, "run", lambda *a: made.run(*a))
+    monkeypatch.setattr(Compilation, "run", lambda *a, **_: made.run(*a))
     monkeypatch.setattr(stacks, "kept", lambda _: MEMORY)
     monkeypatch.setattr(stacks, "facts_of", lambda _: (made.fact,))
     return made
