@@ -314,7 +314,7 @@ def test_gprbuild_that_fails_fails_the_build(
 ) -> None:
     """A source that is no part of the record, or another compiler."""
 
-    def fails(*_: object) -> str:
+    def fails(*_: object, **__: object) -> str:
         raise ToolFailed('x.adb:1:1: error: missing ";"\n')
 
     monkeypatch.setattr(Compilation, "run", fails)
