@@ -67,8 +67,8 @@ ALIASES = {"import": ("import-dbc",)}
 
 JSON = "--json"
 
-WITHOUT_JSON = ("bus", "completion", "language-server", "workbench")
-"""Commands without an answer: three go on until they are stopped, and one prints a script."""
+WITHOUT_JSON = ("language-server",)
+"""Its output is a protocol, JSON-RPC, which an answer would disturb."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -70,8 +70,10 @@ def forget_working_folder() -> None:
 
 def _command(arguments: Sequence[str] | None) -> int:
     """The command itself, imported only now; its output has been written when it returns."""
+    from . import terminal
     from .command_line import main as command
 
+    terminal.LINES.set()
     try:
         status = command(arguments)
     except SystemExit as ended:  # argparse: --help and wrong calls

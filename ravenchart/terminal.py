@@ -1,16 +1,18 @@
 """What is printed for people: tables in at most 80 columns, and progress while they wait.
 
 Colour is for terminals alone. https://no-color.org holds: a `NO_COLOR` that is not empty means
-no colour, and no other style. So does `TERM=dumb`. Progress needs a terminal at standard error,
-and never gets into standard output.
+no colour, and no other style. So does `TERM=dumb`. Progress goes to standard error, and never gets
+into standard output: to a terminal at once, elsewhere as a line whenever time passes in silence.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from threading import Event, Thread
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -18,6 +20,18 @@ if TYPE_CHECKING:
 
 WIDTH = 80
 """Columns of what is printed."""
+
+SILENCE = 1.8
+"""After so long without a word there is a line of progress, in s."""
+
+SHORTEST = 0.3
+"""What takes less, in s, has no line of its own."""
+
+_said = [time.monotonic()]
+"""When there was a line of progress at last; at first the start of the process."""
+
+LINES = Event()
+"""Set in a process of the command line alone: a caller in Python gets no lines of progress."""
 
 
 def console(width: int | None = WIDTH, *, errors: bool = False) -> Console:
@@ -37,9 +51,43 @@ def console(width: int | None = WIDTH, *, errors: bool = False) -> Console:
 @contextmanager
 def progress(text: str) -> Iterator[Callable[[str], None]]:
     """Say what is going on for the time of a block; the function changes the text."""
-    if not (sys.stderr.isatty() and os.environ.get("TERM") != "dumb"):
+    sys.stdout.flush()
+    if sys.stderr.isatty() and os.environ.get("TERM") != "dumb":
+        with console(None, errors=True).status(text) as status:
+            yield lambda changed: status.update(changed)
+    elif LINES.is_set():
+        with _lines(text) as change:
+            yield change
+    else:
         yield lambda _: None
-        return
-    out = console(None, errors=True)
-    with out.status(text) as status:
-        yield lambda changed: status.update(changed)
+
+
+@contextmanager
+def stages(text: str) -> Iterator[Callable[[str], None]]:
+    """The same, where the function says how far it is."""
+    with progress(text) as change:
+        yield lambda stage: change(f"{text}: {stage}")
+
+
+@contextmanager
+def _lines(text: str) -> Iterator[Callable[[str], None]]:
+    """A line with the text and the seconds so far, each time that `SILENCE` has passed.
+
+    It counts over the blocks of a command: a sequence of short ones is not silent either.
+    """
+    texts = [text]
+    ended = Event()
+    begun = time.monotonic()
+
+    def tell() -> None:
+        while not ended.wait(max(_said[0] + SILENCE - time.monotonic(), SHORTEST)):
+            _said[0] = time.monotonic()
+            print(f"{texts[-1]} ({_said[0] - begun:.0f} s)", file=sys.stderr, flush=True)
+
+    teller = Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield texts.append
+    finally:
+        ended.set()
+        teller.join()

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravenchart.tools import toolchain
+from ravenchart.tools import steps, toolchain
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,6 +18,11 @@ class Compilation:
     scenario: Mapping[str, str]
     image: Path
 
-    def run(self, *more: str) -> str:
-        """What gprbuild says where all is well; it compiles what is not up to date."""
-        return toolchain.run("gprbuild", [*self.arguments, *more], self.where, self.scenario)
+    def run(self, *more: str, tell: Callable[[str], None] = lambda _: None) -> str:
+        """What gprbuild says where all is well; it compiles what is not up to date.
+
+        ``tell`` gets how far it is.
+        """
+        words = [steps.OF_GPRBUILD, *self.arguments, *more]
+        taken = steps.Announced(steps.COMPILING, tell).takes
+        return toolchain.run("gprbuild", words, self.where, self.scenario, taken)

@@ -50,12 +50,16 @@ end Gateway;
 
 
 def build(
-    program: Program, board: Board, gateway: Gateway, warn: Callable[[str], None]
+    program: Program,
+    board: Board,
+    gateway: Gateway,
+    warn: Callable[[str], None],
+    tell: Callable[[str], None],
 ) -> tuple[Path, Memory]:
     """Compile the program and the gateway; the path of the image, and the stacks and the memory of
     the program without the gateway. Raises as `Program.build`.
     """
-    memory = stacks.kept(program.build(MODE, gateway.driver, warn=warn, board=board))
+    memory = stacks.kept(program.build(MODE, gateway.driver, warn=warn, board=board, tell=tell))
     home = program.home(gateway.driver, board.target.name) / "gateway"
     home.mkdir(parents=True, exist_ok=True)
     main = f"{ada_case(program.checked.system.name)}_Main"

@@ -89,12 +89,14 @@ class Program:
         warn: Callable[[str], None] = to_standard_error,
         board: targets.Board | None = None,
         stacks_needed: bool = True,
+        tell: Callable[[str], None] = lambda _: None,
     ) -> Path:
         """Compile it; the path of the executable. ToolFailed with the compiler's words, or
         where the memory of the target has no room for it. Refused where a stack is too small;
         without ``stacks_needed`` nobody looks.
 
-        ``warn`` gets the compiler's warnings. Without a ``board`` it is for this machine.
+        ``warn`` gets the compiler's warnings, and ``tell`` how far the build is. Without a
+        ``board`` it is for this machine.
 
         Refused where ``driver`` cannot do what the model wants, and with ``registers`` of the
         hardware where a device has no address.
@@ -104,7 +106,7 @@ class Program:
         made = compilation.image
 
         def compiled(*more: str) -> None:
-            said = compilation.run(*more)
+            said = compilation.run(*more, tell=tell)
             if said.strip():
                 warn(said.rstrip())
 
@@ -112,6 +114,7 @@ class Program:
         if target.facts.memory:
             images.check(made, target)
         if stacks_needed:
+            tell("bounding the stacks")
             if stacks.without_graph(stacks.objects_of(made)):
                 compiled("-f")  # objects of another build, which asked for no call graphs
                 stacks.must_have_graphs(stacks.objects_of(made))

@@ -28,7 +28,7 @@ from ravenchart.failures import OK, WRONG
 from ravenchart.gen.derive.completion import completed
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Processor, Slot, System
-from ravenchart.terminal import console
+from ravenchart.terminal import console, progress
 
 from . import common
 from .allocation_search import SET, Judged, searched
@@ -296,7 +296,8 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Propose it; the exit status."""
     checked = common.checked(options, deadlines=False)
-    proposal = propose(checked.analysis, options.strategy)
+    with progress("allocate"):
+        proposal = propose(checked.analysis, options.strategy)
     options.answer.result = _answer(proposal, options.strategy)
     if options.yaml:
         print(yaml(proposal), end="")

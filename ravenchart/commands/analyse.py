@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ravenchart.analysis.units import microseconds
 from ravenchart.failures import OK, WRONG, Refused
+from ravenchart.terminal import progress
 
 from . import bounds, common, plain
 from .answer import say
@@ -109,8 +110,10 @@ def _of_model(options: argparse.Namespace, checked: Checked) -> bool:
         from ravenchart.analysis.present import report
         from ravenchart.building import programs
 
-        built = {one.node: one.last_build() for one in programs.programs_of(checked)}
-        plain.write(options.html, report.render(analysis, run, changed, built))
+        with progress("write the report"):
+            built = {one.node: one.last_build() for one in programs.programs_of(checked)}
+            page = report.render(analysis, run, changed, built)
+        plain.write(options.html, page)
     return within
 
 

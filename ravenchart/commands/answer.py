@@ -18,7 +18,7 @@ from os import devnull
 from typing import Any
 
 from ravenchart.described import Result
-from ravenchart.failures import INTERNAL, INTERNAL_TEXT
+from ravenchart.failures import INTERNAL, INTERNAL_TEXT, OK
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.paths import version
 from ravenchart.reported import SEVERITIES, Found, Note, Severity, found_of
@@ -48,6 +48,8 @@ class Answer:
     found: list[Found] = field(default_factory=list)
     figures: Mapping[str, Any] = field(default_factory=dict)
     lines: str | None = None
+    write: Callable[[str], object] | None = None
+    """Where it is printed; None once it is, and without `--json`."""
 
     def add(self, diagnostics: Iterable[object]) -> None:
         """Diagnostics of a model."""
@@ -64,6 +66,17 @@ class Answer:
             self.add(kept)
         else:
             self.tell(text)
+
+    def print(self, status: int) -> None:
+        """Print it, once."""
+        if self.write is not None:
+            self.write(self.text(status))
+            self.write = None
+
+    def serves(self, result: Result) -> None:
+        """Print it at once: the command goes on until it is stopped."""
+        self.result = result
+        self.print(OK)
 
     def text(self, status: int) -> str:
         """What is printed."""
@@ -88,25 +101,30 @@ def say(answer: Answer, text: str, severity: Severity = "error") -> None:
 
 def printed(answer: Answer, execute: Callable[[], int]) -> int:
     """Execute a command, and print its answer alone; the exit status."""
-    with _alone() as write:
+    with _alone() as answer.write:
         try:
             status = execute()
         except BrokenPipeError:
             raise
         except Exception:
             answer.tell(INTERNAL_TEXT)
-            write(answer.text(INTERNAL))
+            answer.print(INTERNAL)
             raise
-        write(answer.text(status))
+        answer.print(status)
     return status
 
 
 @contextmanager
-def _alone() -> Iterator[Callable[[str], int]]:
+def _alone() -> Iterator[Callable[[str], None]]:
     """Nothing gets to standard output but what is written by the function."""
     out = sys.stdout
+
+    def write(text: str) -> None:
+        out.write(text)
+        out.flush()
+
     with open(devnull, "w", encoding="utf-8") as nowhere, redirect_stdout(nowhere):
-        yield out.write
+        yield write
 
 
 def found_in(text: str, severity: Severity = "error") -> list[Found]:

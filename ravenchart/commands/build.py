@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from ravenchart.building import unchanged, variants
 from ravenchart.failures import OK
-from ravenchart.terminal import progress
+from ravenchart.terminal import progress, stages
 
 from . import common
 from .answer import say
@@ -65,7 +65,8 @@ def _build(options: argparse.Namespace) -> None:
     board = common.board(options, checked)
     from ravenchart.building import generation, programs, stacks, targets
 
-    written = generation.write_program(checked)
+    with progress("generate"):
+        written = generation.write_program(checked)
     unchanged.keep(checked, written)
     generated = common.tell_written(written, options.answer)
     options.answer.result = BuildResult(generated, [])
@@ -88,8 +89,8 @@ def _build_again(options: argparse.Namespace, before: unchanged.Build) -> None:
     generated = common.generated_before(before.generation, options.answer)
     options.answer.result = BuildResult(generated, [])
     for one in before.programs:
-        with progress(f"compile {one.node}"):
-            said = one.compilation.run()
+        with stages(f"compile {one.node}") as tell:
+            said = one.compilation.run(tell=tell)
         if said.strip():
             _warn(options)(said.rstrip())
         _tell(options, one if before.holds() else _examined(options, one.node))
@@ -107,8 +108,8 @@ def _built(options: argparse.Namespace, made: Program, board: Board | None) -> u
     from ravenchart.building import stacks
 
     choice = options.mode, options.driver, options.registers
-    with progress(f"compile {made.node}"):
-        image = made.build(*choice, _warn(options), board)
+    with stages(f"compile {made.node}") as tell:
+        image = made.build(*choice, _warn(options), board, tell=tell)
     return unchanged.Built(made.node, made.compilation(*choice, board), stacks.kept(image))
 
 

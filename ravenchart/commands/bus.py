@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH, RESTART_LAST
 from ravenchart.running import server
 
 from . import common
+from .answer import say
+from .results import BusResult
 
 FAULTS = (
     "disturbed_bit",
@@ -149,4 +152,10 @@ def _words(most: int, kinds: Sequence[str] = ()) -> Callable[[str], str]:
 
 def execute(options: argparse.Namespace) -> int:
     """Serve until it is stopped; the exit status."""
-    return server.serve(words(options), options.log)
+    if not options.json:
+        return server.serve(words(options), options.log)
+
+    def serves(channel: str) -> None:
+        options.answer.serves(BusResult(channel))
+
+    return server.announced(words(options), options.log, serves, partial(say, options.answer))

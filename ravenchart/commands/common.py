@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from ravenchart.building import variants
 from ravenchart.building.garbage import without_collector
 from ravenchart.failures import Unusable
+from ravenchart.terminal import progress
 
 from .answer import Answer, say
 from .build_results import GenerateResult
@@ -99,7 +100,8 @@ def checked(
     with without_collector():
         from ravenchart.building import checking
 
-    found = checking.check(options.model, deadlines=deadlines, finish=finish)
+    with progress(f"check {options.model.name}"):
+        found = checking.check(options.model, deadlines=deadlines, finish=finish)
     tell_warnings(found.warnings)
     options.answer.add(found.diagnostics)
     return found

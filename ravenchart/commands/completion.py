@@ -9,6 +9,8 @@ import argparse
 
 from ravenchart.failures import OK
 
+from .results import CompletionResult
+
 SHELLS = ("bash", "zsh", "fish")
 
 
@@ -22,5 +24,7 @@ def execute(options: argparse.Namespace) -> int:
     from ravenchart.completions import SCRIPTS
     from ravenchart.grammar import grammar
 
-    print(SCRIPTS[options.shell](grammar(options.parser())), end="")
+    script = SCRIPTS[options.shell](grammar(options.parser()))
+    options.answer.result = CompletionResult(options.shell, script)
+    print(script, end="")
     return OK

@@ -10,6 +10,7 @@ from ravenchart.building.drawings import FORMATS, svg, texts
 from ravenchart.failures import OK, Refused
 from ravenchart.gen.draw.ada_chart import picture_of_ada
 from ravenchart.gen.draw.ada_text import NotDeclaredError
+from ravenchart.terminal import progress
 
 from . import common
 from .results import DrawResult
@@ -67,7 +68,8 @@ def execute(options: argparse.Namespace) -> int:
     else:
         drawings = texts(common.checked(options, deadlines=False).system, options.format)
     folder = options.out or (options.from_ada or options.model).parent / "drawings"
-    write(drawings, folder)
+    with progress("draw"):
+        write(drawings, folder)
     options.answer.result = DrawResult(str(folder), options.format, list(drawings))
     print(f"{folder}: {len(drawings)} drawings")
     return OK

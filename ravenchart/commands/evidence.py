@@ -81,7 +81,9 @@ def execute(options: argparse.Namespace) -> int:
     try:
         listed = options.requirements
         requirements = None if listed is None else lists.read(listed, listed.name)
-        made = folder.make(gathered(options), requirements, options.scenario)
+        found = gathered(options)
+        with progress("judge the claims"):
+            made = folder.make(found, requirements, options.scenario)
     except Refused:
         folder.remove(place)  # it would speak of other content
         raise

@@ -6,6 +6,7 @@ import argparse
 
 from ravenchart.building import unchanged
 from ravenchart.failures import OK
+from ravenchart.terminal import progress
 
 from . import common
 
@@ -21,7 +22,8 @@ def execute(options: argparse.Namespace) -> int:
     checked = common.checked(options)
     from ravenchart.building import generation  # only here: it imports all that writes Ada
 
-    written = generation.write_program(checked)
+    with progress("generate"):
+        written = generation.write_program(checked)
     unchanged.keep(checked, written)
     options.answer.result = common.tell_written(written, options.answer)
     return OK

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ravenchart.databases import database
 from ravenchart.failures import OK, WRONG
+from ravenchart.terminal import progress
 
 from .answer import say
 from .results import ImportResult
@@ -42,14 +43,15 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Print it; the exit status."""
     given = database.periods(options.period, options.periods)
-    found = database.imported(
-        options.database,
-        options.node,
-        given,
-        lenient=options.lenient,
-        bus=options.bus,
-        parts=options.parts,
-    )
+    with progress(f"read {options.database.name}"):
+        found = database.imported(
+            options.database,
+            options.node,
+            given,
+            lenient=options.lenient,
+            bus=options.bus,
+            parts=options.parts,
+        )
     options.answer.result = ImportResult(found.text)
     print(found.text, end="")
     for problem in found.problems:

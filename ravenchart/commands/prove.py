@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import sys
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from ravenchart.building import generation, programs, variants
 from ravenchart.failures import OK, WRONG
 from ravenchart.proof import outside_spark, proving, unproved, verdicts
 from ravenchart.proof.spark_results import Outside
-from ravenchart.terminal import progress
+from ravenchart.terminal import progress, stages
 
 from . import common
 from .answer import say
 from .results import Proved, ProveResult, Unproved
-
-SILENCE = 30.0
-"""So long a proof may say nothing where there is no terminal, in s."""
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
@@ -57,7 +52,9 @@ def _memcached(address: str) -> verdicts.Memcached:
 def execute(options: argparse.Namespace) -> int:
     """Prove every program of the model; the exit status."""
     checked = common.checked(options)
-    generated = common.tell_written(generation.write_program(checked), options.answer)
+    with progress("generate"):
+        written = generation.write_program(checked)
+    generated = common.tell_written(written, options.answer)
     answer = options.answer.result = ProveResult(generated, [])
     driver = options.driver or programs.default_driver(checked)
     programs.check_driver(checked, driver)
@@ -68,13 +65,12 @@ def execute(options: argparse.Namespace) -> int:
     for one in made:
         task = one.proof(driver, whole=options.whole)
         open_: tuple[unproved.Finding, ...] = ()
-        with progress(f"prove {one.node}") as change:
-            tell = _told(one.node, change)
+        with stages(f"prove {one.node}") as tell:
             try:
                 proof = proving.prove(task, fresh=options.fresh, memcached=options.cache, tell=tell)
             except proving.NotProved as left:
                 proof = left.proof
-                change(f"prove {one.node}: looking for values that fail")
+                tell("looking for values that fail")
                 text = proving.examples(task, proof) or str(left)
                 places = [path for path in task.sources if path.is_dir()]
                 found = proof.results.open
@@ -100,20 +96,6 @@ def execute(options: argparse.Namespace) -> int:
 def record_of(path: Path, node: str, *, several: bool) -> Path:
     """Where the record of a node is written: with ``several`` each has a file of its own."""
     return path.with_name(f"{path.stem}-{node}{path.suffix}") if several else path
-
-
-def _told(node: str, change: Callable[[str], None]) -> Callable[[str], None]:
-    """Where there is no terminal, standard error has a line from time to time."""
-    last = time.monotonic()
-
-    def tell(text: str) -> None:
-        nonlocal last
-        change(f"prove {node}: {text}")
-        if not sys.stderr.isatty() and time.monotonic() - last >= SILENCE:
-            last = time.monotonic()
-            print(f"prove {node}: {text}", file=sys.stderr, flush=True)
-
-    return tell
 
 
 def _proved(node: str, proof: proving.Proof, left: Sequence[unproved.Finding]) -> Proved:

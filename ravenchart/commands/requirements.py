@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from ravenchart.failures import OK, WRONG
+from ravenchart.terminal import progress
 
 from . import common, evidence
 from .results import RequirementsResult, TracedElement, TracedRequirement
@@ -29,8 +30,9 @@ def execute(options: argparse.Namespace) -> int:
 
     requirements = lists.read(options.list)
     facts = evidence.gathered(options)
-    found = claims.claims(facts)
-    trace = tracing.traced(facts, found, requirements, options.scenario)
+    with progress("judge the claims"):
+        found = claims.claims(facts)
+        trace = tracing.traced(facts, found, requirements, options.scenario)
     for one in trace.forward:
         print(f"{one.requirement.id}  {one.requirement.text}")
         for title, words in (

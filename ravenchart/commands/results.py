@@ -161,6 +161,16 @@ class DoctorResult(Result):
 
 
 @dataclass(slots=True)
+class ExampleResult(Described):
+    """Files, and what is called beside them."""
+
+    commands: list[str]
+    """The last one reports the code where the files are wrong."""
+    files: dict[str, str]
+    """Each file by its name, with its text."""
+
+
+@dataclass(slots=True)
 class ExplainResult(Result):
     """What a code means."""
 
@@ -168,14 +178,40 @@ class ExplainResult(Result):
     """The code."""
     meaning: str
     """One sentence."""
-    reason: str | None
-    """Why it matters; null where the code has no example yet."""
-    wrong: str | None
-    """A whole model with the error."""
-    corrected: str | None
-    """The same model without it."""
+    reason: str
+    """Why it matters."""
+    wrong: ExampleResult
+    """A whole model, and the files that it needs, with the error."""
+    corrected: ExampleResult
+    """The same without it."""
     text: str
     """What is printed without `--json`."""
+
+
+@dataclass(slots=True)
+class BusResult(Result):
+    """A bus that processes can join from now on."""
+
+    channel: str
+    """Where they join it: `HOST:PORT`."""
+
+
+@dataclass(slots=True)
+class WorkbenchResult(Result):
+    """A workbench that can be opened from now on."""
+
+    address: str
+    """The URL of its page, with the token; whoever has it can change the model."""
+
+
+@dataclass(slots=True)
+class CompletionResult(Result):
+    """The script by which a shell completes commands."""
+
+    shell: str
+    """The shell that reads it."""
+    script: str
+    """The script."""
 
 
 @dataclass(slots=True)
@@ -377,5 +413,8 @@ RESULTS: dict[str, type[Result]] = {
     "requirements": RequirementsResult,
     "evidence": EvidenceResult,
     "tests": TestsResult,
+    "bus": BusResult,
+    "workbench": WorkbenchResult,
+    "completion": CompletionResult,
 }
 """Of each command with such an object; `analyse` and `simulate` have forms of their own."""

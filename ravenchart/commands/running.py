@@ -19,7 +19,7 @@ from ravenchart.running.runs import (
     controller,
     run_on_this_machine,
 )
-from ravenchart.terminal import progress
+from ravenchart.terminal import progress, stages
 
 from . import common
 from .answer import Answer, say
@@ -82,15 +82,17 @@ def controllers(
     mode: str = "checks",
 ) -> tuple[Controller, ...]:
     """The program of each node, generated and built."""
-    common.tell_written(generation.write_program(checked), answer)
+    with progress("generate"):
+        written = generation.write_program(checked)
+    common.tell_written(written, answer)
     warn = partial(say, answer, severity="warning")
     made: list[Controller] = []
     for one in programs.programs_of(checked):
-        with progress(f"compile {one.node}"):
+        with stages(f"compile {one.node}") as tell:
             if board is None or gateway is None:
-                made.append(controller(one, warn, board, mode))
+                made.append(controller(one, warn, board, mode, tell))
             else:
-                image, memory = gateways.build(one, board, gateway, warn)
+                image, memory = gateways.build(one, board, gateway, warn, tell)
                 trace_map = one.generated / TRACE_MAP
                 made.append(Controller(one.node, image, trace_map, memory))
         print(f"built {made[-1].executable}")

@@ -33,7 +33,8 @@ from ravenchart.gen.files.located import lines_of
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import ROOT
-from ravenchart.tools import children, toolchain
+from ravenchart.terminal import progress, stages
+from ravenchart.tools import children, steps, toolchain
 
 from . import common
 
@@ -69,7 +70,8 @@ def _refused(found: Sequence[Diagnostic], path: Path, text: str) -> Refused:
 def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[StepRecord]:
     """What the interpreter executes; Refused when the chart gets stuck."""
     try:
-        return list(Machine(as_one(system)).run(stimuli))
+        with progress("simulate"):
+            return list(Machine(as_one(system)).run(stimuli))
     except Stuck as stuck:
         raise refused_as(stuck) from stuck
 
@@ -117,7 +119,10 @@ def build_simulation(system: System, folder: Path, home: Path) -> Path:
     if has_lifecycle(system):
         places.append(str(ROOT / RUNTIME_FOLDER))
     given = {"RAVENCHART_USER": ",".join(places)} if places else {}
-    toolchain.run("gprbuild", ["-p", "-q", "-j0", "-P", project], source, given)
+    with stages("compile the simulation") as tell:
+        taken = steps.Announced(steps.COMPILING, tell).takes
+        words = ["-p", "-q", "-j0", steps.OF_GPRBUILD, "-P", project]
+        toolchain.run("gprbuild", words, source, given, taken)
     return home / project.removesuffix(".gpr")
 
 
@@ -134,7 +139,8 @@ def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[Step
         values = numbers(of_type, entry.value)
         lines.append(" ".join(map(str, (entry.at, number, *values))))
     text = "".join(f"{line}\n" for line in lines)
-    done = children.run([program], text)
+    with progress("simulate"):
+        done = children.run([program], text)
     if done.returncode:
         raise ToolFailed(f"{program.name}: {done.stderr.strip()}")
     return [parsed(line) for line in done.stdout.splitlines()]

@@ -19,6 +19,7 @@ from ravenchart.building.generation import replace_file
 from ravenchart.failures import OK, WRONG
 from ravenchart.gen.derive.distribution import as_one
 from ravenchart.gen.diagnostics import render
+from ravenchart.terminal import progress
 
 from . import common
 from .results import TestCase, TestGoals, TestsResult
@@ -60,7 +61,8 @@ def execute(options: argparse.Namespace) -> int:
     """Search, write and play the cases; the exit status."""
     checked = common.checked(options, deadlines=False)
     interpreted_alone(checked.system)
-    found = CaseSearch(as_one(checked.system), options.effort).found()
+    with progress("find cases"):
+        found = CaseSearch(as_one(checked.system), options.effort).found()
     folder = options.folder or checked.folder / "cases"
     files = _write(found.cases, folder)
     for case, file in zip(found.cases, files, strict=True):

@@ -7,6 +7,7 @@ import argparse
 from ravenchart.failures import OK
 
 from . import common
+from .results import WorkbenchResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
@@ -34,5 +35,6 @@ def execute(options: argparse.Namespace) -> int:
         options.port,
         browser=not options.no_open,
         say=lambda text: print(text, flush=True),
+        serves=lambda address: options.answer.serves(WorkbenchResult(address)),
     )
     return OK

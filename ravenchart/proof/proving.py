@@ -18,8 +18,9 @@ from pathlib import Path
 
 from ravenchart.failures import ToolFailed
 from ravenchart.paths import ROOT
+from ravenchart.tools import steps
 
-from . import ages, spark_results, steps, verdicts
+from . import ages, spark_results, verdicts
 from . import earlier as proof_cache
 from .spark_results import Results
 from .verdicts import Memcached
@@ -141,7 +142,7 @@ def examples(task: ProofTask, proof: Proof, tell: Callable[[str], None] = lambda
 
 def _run(task: ProofTask, server: str | None, tell: Callable[[str], None], *more: str) -> None:
     arguments = ["-P", task.project.name, "-f", "-q", "--output=oneline", *more]
-    arguments.append(steps.SWITCH)
+    arguments.append(steps.OF_GNATPROVE)
     arguments.append(f"--warnings={task.warnings}")
     if not task.whole:
         arguments.append("--no-subprojects")
@@ -149,7 +150,7 @@ def _run(task: ProofTask, server: str | None, tell: Callable[[str], None], *more
         arguments.append(f"--memcached-server={server}")
     if task.units:
         arguments += ["-u", *task.units]
-    taken = steps.Announced(tell).takes
+    taken = steps.Announced(steps.PROVING, tell).takes
     ages.run(arguments, task.project.parent, task.scenario, taken)
 
 

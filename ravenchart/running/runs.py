@@ -61,9 +61,10 @@ def controller(
     warn: Callable[[str], None] = to_standard_error,
     board: Board | None = None,
     mode: str = "checks",
+    tell: Callable[[str], None] = lambda _: None,
 ) -> Controller:
     """A program built, to be run. ToolFailed with the compiler's words."""
-    executable = made.build(mode, warn=warn, board=board)
+    executable = made.build(mode, warn=warn, board=board, tell=tell)
     return Controller(made.node, executable, made.generated / TRACE_MAP, stacks.kept(executable))
 
 
@@ -143,7 +144,8 @@ def run_model(
         refuse(str(fault))
         return None
     programs = {one.node: one.memory for one in request.controllers}
-    written = write_report(outcome, request.analysis, request.folder, programs)
+    with terminal.progress("write the report"):
+        written = write_report(outcome, request.analysis, request.folder, programs)
     out.print(outcome.title, markup=False)
     print_summary(outcome, out)
     for path in written:

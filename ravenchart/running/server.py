@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
@@ -56,6 +57,28 @@ def serve(told: Sequence[str], log: Path | None = None) -> int:
         return server.wait()
 
 
+def announced(
+    told: Sequence[str],
+    log: Path | None,
+    serves: Callable[[str], None],
+    say: Callable[[str], None],
+) -> int:
+    """The same; ``serves`` gets the channel, and ``say`` each other line of the server."""
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    with (
+        _commanded(told, log) as (words, descriptors),
+        children.running(words, stdin=subprocess.DEVNULL, pass_fds=descriptors, **pipes) as server,
+    ):
+        assert server.stdout is not None
+        for line in server.stdout:
+            found = CHANNEL.fullmatch(line)
+            if found:
+                serves(found[1])
+            else:
+                say(line.rstrip())
+        return server.wait()
+
+
 @contextmanager
 def _commanded(
     told: Sequence[str], log: Path | None
@@ -67,6 +90,10 @@ def _commanded(
     else:
         with bus_log.written(log) as descriptor:
             yield [*words, f"log=/dev/fd/{descriptor}"], (descriptor,)
+
+
+CHANNEL = re.compile(r"bus .* at (\S+:\d+)\n")
+"""The line that the server prints when processes can join the bus."""
 
 
 def uneven(rate: int) -> str:

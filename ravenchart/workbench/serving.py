@@ -29,10 +29,18 @@ PATIENCE = 5
 """Seconds that answers under way may take at the end."""
 
 
-def serve(model: Path, port: int, *, browser: bool, say: Callable[[str], None]) -> None:
+def serve(
+    model: Path,
+    port: int,
+    *,
+    browser: bool,
+    say: Callable[[str], None],
+    serves: Callable[[str], None],
+) -> None:
     """Show the model until a signal asks the process to end; the signal is then raised again.
 
-    ``port`` 0: a free one. Refused where the model has errors, Unusable where the port is taken.
+    ``port`` 0: a free one. ``serves`` gets the address. Refused where the model has errors,
+    Unusable where the port is taken.
     """
     with _bound(port) as listening:
         with terminal.progress(f"read and analyse {model}"):
@@ -40,6 +48,7 @@ def serve(model: Path, port: int, *, browser: bool, say: Callable[[str], None]) 
         hub = Hub(session)
         secret, number = token(), listening.getsockname()[1]
         address = f"http://{ADDRESS}:{number}/{secret}/"
+        serves(address)
         say(f"{model}: the workbench is at {address}")
         say("Ctrl-C ends the workbench. Whoever has the address can change the model.")
         if browser:

@@ -57,7 +57,8 @@ def write(home: Path) -> None:
     """Model, program, record, list, scenario and results in a folder."""
     home.mkdir(parents=True)
     model = home / "model.yaml"
-    model.write_text(edited(BASE.read_text(encoding="utf-8"), EDITS), encoding="utf-8")
+    text = edited({"": BASE.read_text(encoding="utf-8")}, EDITS)[""]
+    model.write_text(text, encoding="utf-8")
     generation.write_program(checking.check(model))
     (home / "requirements.csv").write_text(LIST, encoding="utf-8")
     (home / "results.xml").write_text(RESULTS, encoding="utf-8")

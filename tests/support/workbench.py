@@ -131,11 +131,14 @@ def running(model: Path, *words: str) -> Iterator[Running]:
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
     assert process.stdout is not None
-    lines = [process.stdout.readline()]
-    found = re.search(r"http://127\.0\.0\.1:(\d+)/([\w-]+)/$", lines[0].strip())
+    lines = []
+    found = None
+    while found is None and (line := process.stdout.readline()):  # progress may come before
+        lines.append(line)
+        found = re.search(r"http://127\.0\.0\.1:(\d+)/([\w-]+)/$", line.strip())
     if found is None:
         process.kill()
-        raise AssertionError(lines[0] + process.stdout.read())
+        raise AssertionError("".join(lines))
     bench = Running(process, int(found[1]), found[2], lines)
     threading.Thread(target=lambda: lines.extend(process.stdout or ()), daemon=True).start()
     try:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.gen.explanations import explanations
+from ravenchart.gen.explanations import MODEL, explanations
 from tests.support.processes import ROOT
 
 pytestmark = pytest.mark.slow
@@ -135,7 +135,7 @@ def test_a_model_that_is_not_there_yet_is_waited_for(tmp_path: Path) -> None:
     watch = Watch(path)
     try:
         assert FAILED.fullmatch(watch.run()[-1])
-        path.write_text(explanations()["RV-0305"].corrected or "")
+        path.write_text(explanations()["RV-0305"].corrected.files[MODEL])
         assert watch.run()[-1].endswith("every deadline is met (1 file watched)")
         assert watch.end(signal.SIGTERM)[0] == 143
     finally:

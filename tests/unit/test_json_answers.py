@@ -13,7 +13,7 @@ import pytest
 from ravenchart.command_line import COMMANDS, WITHOUT_JSON, main
 from ravenchart.commands.answer import found_in
 from ravenchart.commands.results import RESULTS
-from ravenchart.gen.explanations import explanations
+from ravenchart.gen.explanations import MODEL, explanations
 from ravenchart.paths import ROOT
 from ravenchart.reported import Found, Note
 from tests.support.answers import answered, valid
@@ -38,7 +38,7 @@ def test_a_wrong_model_is_an_answer_with_located_diagnostics(
     tmp_path: Path, capsys: PRINTED
 ) -> None:
     wrong = tmp_path / "wrong.yaml"
-    wrong.write_text(explanations()["RV-0305"].wrong or "")
+    wrong.write_text(explanations()["RV-0305"].wrong.files[MODEL])
     answer = answered(capsys, "check", wrong, status=1)
     (found,) = answer["diagnostics"]
     assert (found["code"], found["severity"], found["file"]) == ("RV-0305", "error", str(wrong))
@@ -57,7 +57,7 @@ def test_more_errors_than_are_printed_are_all_in_the_answer(
 
 def test_standard_error_is_the_same_as_without(tmp_path: Path, capsys: PRINTED) -> None:
     wrong = tmp_path / "wrong.yaml"
-    wrong.write_text(explanations()["RV-0305"].wrong or "")
+    wrong.write_text(explanations()["RV-0305"].wrong.files[MODEL])
     assert main(["check", str(wrong)]) == 1
     plain = capsys.readouterr().err
     assert main(["check", str(wrong), "--json"]) == 1
@@ -160,10 +160,11 @@ def test_drawings_are_named(tmp_path: Path, capsys: PRINTED) -> None:
 
 
 def test_a_code_is_explained_with_both_models(capsys: PRINTED) -> None:
-    result = answered(capsys, "explain", "305")["result"]
-    found = explanations()["RV-0305"]
-    assert (result["wrong"], result["corrected"]) == (found.wrong, found.corrected)
-    assert answered(capsys, "explain", "RV-1303")["result"]["wrong"] is None
+    result = answered(capsys, "explain", "1303")["result"]
+    found = explanations()["RV-1303"]
+    assert result["wrong"] == {"commands": ["ravenchart run model.yaml --scenario scenario.yaml"],
+                               "files": found.wrong.files}  # fmt: skip
+    assert result["corrected"]["files"] == found.corrected.files
     assert answered(capsys, "explain", "RV-9999", status=1)["result"] is None
 
 
@@ -221,6 +222,13 @@ def test_the_loopback_test_answers_with_its_cases(capsys: PRINTED) -> None:
     }  # fmt: skip
     answer = answered(capsys, "loopback", "--interface", "none", "--channel", "x", status=2)
     assert answer["diagnostics"]
+
+
+def test_a_completion_script_is_in_the_answer(capsys: PRINTED) -> None:
+    assert main(["completion", "fish"]) == 0
+    script = capsys.readouterr().out
+    result = answered(capsys, "completion", "fish")["result"]
+    assert result == {"shell": "fish", "script": script} and script
 
 
 def test_every_command_has_an_answer_or_is_named_as_one_that_has_none() -> None:

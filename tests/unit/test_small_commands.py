@@ -10,7 +10,7 @@ from ravenchart import paths
 from ravenchart.command_line import COMMANDS, main
 from ravenchart.commands.new import project
 from ravenchart.gen.diagnostics import CODES
-from ravenchart.gen.explanations import explanations
+from ravenchart.gen.explanations import MODEL, explanations
 
 
 def test_a_folder_that_is_there_is_not_touched(
@@ -57,11 +57,29 @@ def test_an_unknown_code_is_told_with_what_is_like_it(capsys: pytest.CaptureFixt
 def test_the_models_of_a_code_are_printed_whole(capsys: pytest.CaptureFixture[str]) -> None:
     found = explanations()["RV-0305"]
     assert main(["explain", "RV-0305", "--wrong"]) == 0
-    assert capsys.readouterr().out == found.wrong
+    assert capsys.readouterr().out == found.wrong.files[MODEL]
     assert main(["explain", "RV-0305", "--corrected"]) == 0
-    assert capsys.readouterr().out == found.corrected
-    assert main(["explain", "RV-1303", "--wrong"]) == 1
-    assert "RV-1303 has no example model yet" in capsys.readouterr().err
+    assert capsys.readouterr().out == found.corrected.files[MODEL]
+
+
+def test_several_files_of_a_code_are_printed_below_their_names(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    files = explanations()["RV-1303"].wrong.files
+    assert main(["explain", "RV-1303", "--wrong"]) == 0
+    told = "".join(f"==> {name} <==\n{text}" for name, text in files.items())
+    assert capsys.readouterr().out == told and len(files) == 2
+
+
+def test_the_files_of_a_code_are_written_byte_for_byte(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["explain", "RV-0103", "--wrong", "--out", str(tmp_path / "new")]) == 0
+    assert b"F\xfcllstand" in (tmp_path / "new" / "model.yaml").read_bytes()
+    assert main(["explain", "RV-0103"]) == 0
+    assert "-system: Pump_House  # F\\xfcllstand" in capsys.readouterr().out
+    assert main(["explain", "RV-0103", "--out", str(tmp_path)]) == 2
+    assert "--out needs --wrong or --corrected" in capsys.readouterr().err
 
 
 def test_clean_deletes_what_was_built_of_one_model_alone(

@@ -237,7 +237,7 @@ def fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Fake:
     made.fact.write_text("")
     monkeypatch.setattr(Program, "build", lambda *a, **more: made.build(*a, **more))
     monkeypatch.setattr(Program, "compilation", lambda *a: made.compilation(*a))
-    monkeypatch.setattr(Compilation, "run", lambda *a: made.run(*a))
+    monkeypatch.setattr(Compilation, "run", lambda *a, **_: made.run(*a))
     monkeypatch.setattr(stacks, "kept", lambda _: MEMORY)
     monkeypatch.setattr(stacks, "facts_of", lambda _: (made.fact,))
     return made
@@ -314,7 +314,7 @@ def test_gprbuild_that_fails_fails_the_build(
 ) -> None:
     """A source that is no part of the record, or another compiler."""
 
-    def fails(*_: object) -> str:
+    def fails(*_: object, **__: object) -> str:
         raise ToolFailed('x.adb:1:1: error: missing ";"\n')
 
     monkeypatch.setattr(Compilation, "run", fails)

@@ -12,7 +12,6 @@ import pytest
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
 from ravenchart.proof.spark_results import Open, Results, read_results
-from ravenchart.proof.steps import Announced
 from ravenchart.proof.unproved import IN_GENERATED, Finding, element_of, findings
 
 ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
@@ -116,19 +115,3 @@ def test_elements_of_instances_processors_and_the_rest() -> None:
     assert element_of(system, "Cartesian_Robot.Control.Execute")[0] == "control"
     assert element_of(system, "Ravenchart.Rings.Append") == ("", None)
     assert element_of(system, "Cartesian_Robot_Main") == ("", None)
-
-
-def test_progress_tells_units_and_the_time_left() -> None:
-    told: list[str] = []
-    times = iter([0.0, 5.0, 9.0, 10.0, 20.0, 30.0, 300.0])
-    steps = Announced(told.append, lambda: next(times))
-    for done in (1, 3, 1, 2, 3):
-        assert steps.takes(f"completed {done} out of 3 ({done * 33}%)...\n")
-    assert not steps.takes("unit.adb:1:2: medium: overflow check might fail\n")
-    assert told == [
-        "1 of 3 units read",
-        "3 of 3 units read",
-        "1 of 3 units proved, about 2 s left",
-        "2 of 3 units proved, about 6 s left",
-        "3 of 3 units proved",
-    ]
