@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.processes import LAUNCHER, PYTHON, ROOT
+from tests.support.progress import without_progress
 
 MODEL = ROOT / "examples" / "pump" / "model.yaml"
 HOSTILE = (
