@@ -72,7 +72,8 @@ def test_the_runtime_and_the_hal_keep_the_restrictions(mode: str, tmp_path: Path
     found = refused(paths, [*common, DRIVERS / "loopback"], mode, tmp_path)
     for driver in sorted(DRIVERS.iterdir()):
         if any(driver.glob("*.ad[bs]")):
-            folders = [*common, driver, DRIVERS / "tcp", DRIVERS / "sockets"]
+            shared = (DRIVERS / name for name in ("serial", "tcp", "sockets"))
+            folders = [*common, driver, *shared]
             parent = [CONTROLLERS] if (driver / SUBUNIT).is_file() else []
             found |= refused([*units(driver), *parent], folders, mode, tmp_path)
     assert found.keys() == OF_THE_HOST, found
