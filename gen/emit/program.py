@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TypeVar
 
 from ravenchart.gen.derive.calls import device_types
@@ -94,7 +94,6 @@ class _Maker:
         #  without such a type the root has no need of the runtime, and its children
         #  cannot see it through the root
         self.blind = not any(isinstance(t, IntegerType) for t in system.types)
-        self.words = words_of_system(system)
         self.words_of_types = words_of_types(system)
         used = {i.component.name for i in system.instances}
         self.components = [c for c in system.components if c.name in used]
@@ -120,6 +119,11 @@ class _Maker:
         own = emit_activities(system, component, header)
         found += [quiet(unit, words.activities()) for unit in own]
         return self._read(found)
+
+    @cached_property
+    def words(self) -> tuple[str, ...]:
+        """What the compiler says in the units that belong to no component."""
+        return words_of_system(self.system)
 
     def made(self, found: Sequence[Unit]) -> list[MadeUnit]:
         """Units that belong to no component, with their texts and readings."""
