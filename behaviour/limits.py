@@ -13,6 +13,9 @@ from ravenchart.gen.model.safety import SafeRegion
 EFFORT = 5_000_000
 """What the check of a model may take, in units of z3: about ten seconds of a common machine."""
 
+TO_THE_END = 30 * EFFORT
+"""The same where the check shall come to its end: for evidence, and before a proof."""
+
 UNFINISHED = "RV-1110"
 """The code of a check that was not finished."""
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from ravenchart.behaviour.limits import TO_THE_END
 from ravenchart.building import checking, generation, programs, variants
 from ravenchart.failures import Refused, ToolFailed
 from ravenchart.paths import ROOT
@@ -28,8 +29,6 @@ RECORDS = ROOT / "proofs" / "records"
 """A folder for each age of gnatprove."""
 OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
 """What may be outside SPARK in each target of ``make prove``, with the entry of the ledger."""
-EFFORT = 150_000_000
-"""Work for the rules of behaviour, in units of z3: here they shall come to their end."""
 
 EXAMPLES = (
     "canopen_device",
@@ -137,7 +136,7 @@ def _copied(name: str) -> Path:
 
 def _written(folder: Path) -> checking.Checked:
     """The model in a folder, checked, and its program written."""
-    checked = checking.check(folder / "model.yaml", effort=EFFORT)
+    checked = checking.check(folder / "model.yaml", effort=TO_THE_END)
     generation.write_program(checked)
     return checked
 
@@ -247,7 +246,7 @@ def check(_names: Sequence[str]) -> bool:
     compiler.use()  # `make test` builds the same programs
     fresh = True
     for example in EXAMPLES:
-        checked = checking.check(ROOT / "examples" / example / "model.yaml", effort=EFFORT)
+        checked = checking.check(ROOT / "examples" / example / "model.yaml", effort=TO_THE_END)
         if checked.warnings:
             print(checked.warnings, file=sys.stderr)
             fresh = False

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ravenchart.analysis.findings.deadlines import findings
+from ravenchart.behaviour.limits import TO_THE_END
 from ravenchart.building import checking, generation, programs
 from ravenchart.building.checking import Checked
 from ravenchart.building.programs import Program
@@ -28,8 +29,6 @@ from . import records
 from .records import BelievedRecord
 from .results import Test, junit
 
-EFFORT = 150_000_000
-"""Work for the rules of behaviour, in units of z3."""
 FIRST_DRIVER = "loopback"
 """With it all of the runtime is proved; with another only what differs."""
 OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
@@ -81,7 +80,7 @@ def gather(
     driver: str | None = None,
     given: Sequence[Path] = (),
     tests: Path | None = None,
-    effort: int = EFFORT,
+    effort: int = TO_THE_END,
     memory: Sequence[Path] = (),
 ) -> Facts:
     """What is at hand of a model; Refused where it has errors other than missed deadlines."""

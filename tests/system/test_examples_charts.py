@@ -9,14 +9,13 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.behaviour.limits import TO_THE_END
 from ravenchart.behaviour.rules import findings
 from ravenchart.commands import simulate
 from ravenchart.gen.pipeline import Loaded, load
 from ravenchart.paths import ROOT
 
 EXAMPLES = ("crossing", "pump", "qhsmtst")
-EFFORT = 150_000_000
-"""Work for the rules of behaviour, in units of z3: they shall come to their end."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +47,7 @@ def example(request: pytest.FixtureRequest) -> Example:
 
 def test_nothing_is_found_in_the_model(example: Example) -> None:
     assert example.loaded.system is not None
-    found = findings(example.loaded.system, EFFORT)
+    found = findings(example.loaded.system, TO_THE_END)
     assert [str(one) for one in (*example.loaded.diagnostics, *found)] == []
 
 
@@ -121,7 +120,7 @@ def _found(name: str, old: str, new: str) -> list[str]:
     assert text.count(old) == 1
     changed = load(path, lambda _, limit: text.replace(old, new).encode()[:limit])
     assert changed.system is not None, [str(one) for one in changed.diagnostics]
-    return [one.message for one in findings(changed.system, EFFORT) if one.is_error]
+    return [one.message for one in findings(changed.system, TO_THE_END) if one.is_error]
 
 
 def test_a_crossing_that_forgets_a_condition_is_refused_with_the_way_to_it() -> None:
