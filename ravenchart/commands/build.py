@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from ravenchart.building import unchanged, variants
 from ravenchart.failures import OK
-from ravenchart.terminal import progress, stages
+from ravenchart.terminal import stages
 
 from . import common
 from .answer import say
@@ -63,12 +63,10 @@ def _build(options: argparse.Namespace) -> None:
     """All of it."""
     checked = common.checked(options)
     board = common.board(options, checked)
-    from ravenchart.building import generation, programs, stacks, targets
+    from ravenchart.building import programs, stacks, targets
 
-    with progress("generate"):
-        written = generation.write_program(checked)
+    written, generated = common.write(checked, options.answer)
     unchanged.keep(checked, written)
-    generated = common.tell_written(written, options.answer)
     options.answer.result = BuildResult(generated, [])
     found = programs.programs_of(checked)
     done = []

@@ -134,6 +134,15 @@ def verdict(found: Checked) -> str:
     return f"{system.name}: {instances} on {processors}, {messages}; every deadline is met"
 
 
+def write(checked: Checked, answer: Answer) -> tuple[Written, GenerateResult]:
+    """Write the program of a model, and tell of it."""
+    from ravenchart.building import generation  # only here: it imports all that writes Ada
+
+    with progress("generate"):
+        written = generation.write_program(checked)
+    return written, tell_written(written, answer)
+
+
 def tell_written(written: Written, answer: Answer) -> GenerateResult:
     """What a generation did, and what is still to write: printed, and for the answer."""
     from ravenchart.building.written import EDITED

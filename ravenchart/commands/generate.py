@@ -6,7 +6,6 @@ import argparse
 
 from ravenchart.building import unchanged
 from ravenchart.failures import OK
-from ravenchart.terminal import progress
 
 from . import common
 
@@ -20,10 +19,6 @@ def execute(options: argparse.Namespace) -> int:
         options.answer.result = common.generated_before(before, options.answer)
         return OK
     checked = common.checked(options)
-    from ravenchart.building import generation  # only here: it imports all that writes Ada
-
-    with progress("generate"):
-        written = generation.write_program(checked)
+    written, options.answer.result = common.write(checked, options.answer)
     unchanged.keep(checked, written)
-    options.answer.result = common.tell_written(written, options.answer)
     return OK

@@ -6,11 +6,11 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from ravenchart.building import generation, programs, variants
+from ravenchart.building import programs, variants
 from ravenchart.failures import OK, WRONG
 from ravenchart.proof import outside_spark, proving, unproved, verdicts
 from ravenchart.proof.spark_results import Outside
-from ravenchart.terminal import progress, stages
+from ravenchart.terminal import stages
 
 from . import common
 from .answer import say
@@ -52,9 +52,7 @@ def _memcached(address: str) -> verdicts.Memcached:
 def execute(options: argparse.Namespace) -> int:
     """Prove every program of the model; the exit status."""
     checked = common.checked(options)
-    with progress("generate"):
-        written = generation.write_program(checked)
-    generated = common.tell_written(written, options.answer)
+    _, generated = common.write(checked, options.answer)
     answer = options.answer.result = ProveResult(generated, [])
     driver = options.driver or programs.default_driver(checked)
     programs.check_driver(checked, driver)

@@ -6,7 +6,7 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from ravenchart.building import gateways, generation, programs, targets, variants
+from ravenchart.building import gateways, programs, targets, variants
 from ravenchart.building.checking import Checked
 from ravenchart.building.programs import TRACE_MAP
 from ravenchart.failures import Unusable
@@ -19,7 +19,7 @@ from ravenchart.running.runs import (
     controller,
     run_on_this_machine,
 )
-from ravenchart.terminal import progress, stages
+from ravenchart.terminal import stages
 
 from . import common
 from .answer import Answer, say
@@ -82,9 +82,7 @@ def controllers(
     mode: str = "checks",
 ) -> tuple[Controller, ...]:
     """The program of each node, generated and built."""
-    with progress("generate"):
-        written = generation.write_program(checked)
-    common.tell_written(written, answer)
+    common.write(checked, answer)
     warn = partial(say, answer, severity="warning")
     made: list[Controller] = []
     for one in programs.programs_of(checked):
