@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.model.safety import SafeRegion
 
-EFFORT = 5_000_000
-"""What the check of a model may take, in units of z3: about ten seconds of a common machine."""
+EFFORT = 10_000
+"""What the check of a model may take, in situations looked at and questions asked of the solver:
+about ten seconds of a common machine."""
 
 TO_THE_END = 30 * EFFORT
 """The same where the check shall come to its end: for evidence, and before a proof."""

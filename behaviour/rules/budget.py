@@ -1,13 +1,14 @@
-"""How much work the check of a model may take: counted, so that it is the same on every machine."""
+"""How much work the check of a model may take: counted, so that it is the same each time.
+
+The solver's own count of its work is not taken: what one question takes there depends on the
+questions that the process asked before.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import z3
-
-PER_SITUATION = 200
-"""Units for each situation, beside those of the solver: what is done outside of it."""
 
 
 class Exhausted(Exception):  # noqa: N818
@@ -16,32 +17,27 @@ class Exhausted(Exception):  # noqa: N818
 
 @dataclass
 class Budget:
-    """How much work the whole check may take, in units of z3, and how far it has got."""
+    """How much work the whole check may take, in situations and questions, and how far it got."""
 
     effort: int
     situations: int = 0
-    _solver: z3.Solver = field(default_factory=z3.Solver)
-    _before: int = field(init=False)
-
-    def __post_init__(self) -> None:
-        self._before = self._counted()
+    questions: int = 0
 
     def count(self) -> None:
         """One situation more; `Exhausted` when no work is left for it."""
-        self.check()
+        self._check()
         self.situations += 1
 
-    def check(self) -> None:
-        """`Exhausted` when no work is left."""
-        if self.spent() > self.effort:
-            raise Exhausted
+    def ask(self, solver: z3.Solver) -> z3.CheckSatResult:
+        """What a solver answers; `Exhausted` when no work is left for the question."""
+        self._check()
+        self.questions += 1
+        return solver.check()
 
     def spent(self) -> int:
-        """The units until now."""
-        return self._counted() - self._before + PER_SITUATION * self.situations
+        """The work until now."""
+        return self.situations + self.questions
 
-    def _counted(self) -> int:
-        """What all questions in this process have taken, as z3 counts it."""
-        self._solver.check()
-        counted: int = self._solver.statistics().get_key_value("rlimit count")
-        return counted
+    def _check(self) -> None:
+        if self.spent() > self.effort:
+            raise Exhausted

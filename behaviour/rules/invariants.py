@@ -68,7 +68,7 @@ def _is_excluded(reach: Reachable, bad: Term) -> bool:
     solver.add(*reach.constants_over(reach.symbol), bad)
     solver.add(*(_somewhere(reach, thread) for thread in reach.threads))
     solver.add(*_written_by_users(reach))
-    return bool(solver.check() == z3.unsat)
+    return bool(reach.budget.ask(solver) == z3.unsat)
 
 
 def _somewhere(reach: Reachable, thread: Thread) -> Term:
@@ -160,7 +160,7 @@ def _possible(reach: Reachable, terms: Sequence[Term]) -> Term | None:
     """A model of some terms; None when there is none."""
     solver = logic.solver()
     solver.add(*reach.constants_over(reach.symbol), *terms)
-    answer = solver.check()
+    answer = reach.budget.ask(solver)
     if answer == z3.unsat:
         return None
     return solver.model() if answer == z3.sat else z3.Model(z3.main_ctx())

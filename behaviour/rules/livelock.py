@@ -63,7 +63,7 @@ def _endless(
             terms = _goes_on(reach, thread, cycle)
             solver = logic.solver()
             solver.add(*reach.constants_over(reach.symbol), *reach.of_others(thread), *terms)
-            if solver.check() == z3.sat:
+            if reach.budget.ask(solver) == z3.sat:
                 yield cycle, valuation(reach, solver.model(), [terms[-1]])
                 break
 

@@ -128,6 +128,9 @@ def said(value: Term, type_: ScalarType) -> str:
 Read = Callable[[Variable], Term]
 """What a variable stands for."""
 
+Ask = Callable[[z3.Solver], z3.CheckSatResult]
+"""How a solver is asked."""
+
 
 def term(expression: Expression, read: Read) -> Term:
     """The term of an expression."""
@@ -277,8 +280,9 @@ def solver() -> Term:
 class Questions:
     """What a step reads in expressions, and whether they can hold together: each asked once."""
 
-    def __init__(self, read: Read, context: Sequence[Term]) -> None:
-        """Questions about what ``context`` allows."""
+    def __init__(self, read: Read, context: Sequence[Term], ask: Ask = z3.Solver.check) -> None:
+        """Questions about what ``context`` allows; ``ask`` may count them."""
+        self._ask = ask
         self.read = read
         self._solver = solver()
         self._solver.add(*context)
@@ -299,6 +303,6 @@ class Questions:
         if key not in self._answers:
             self._solver.push()
             self._solver.add(*conditions)
-            self._answers[key] = conditions, bool(self._solver.check() != z3.unsat)
+            self._answers[key] = conditions, bool(self._ask(self._solver) != z3.unsat)
             self._solver.pop()
         return self._answers[key][1]

@@ -71,7 +71,7 @@ class Reachable:
         for name in logic.tested((*expressions(component), *values)):
             self.symbol(name)
         self._user_bodies()
-        self.plain = logic.Questions(self.symbol, self.constants_over(self.symbol))
+        self.plain = logic.Questions(self.symbol, self.constants_over(self.symbol), self.budget.ask)
         self._run()
 
     # --- set-up
@@ -330,7 +330,7 @@ class Reachable:
             return
         solver.push()
         solver.add(*self.of_node(thread, cells), outcome.condition)
-        while (answer := solver.check()) != z3.unsat:
+        while (answer := self.budget.ask(solver)) != z3.unsat:
             thread.questions += 1
             if thread.questions > MOST_QUESTIONS and thread.tells_more:
                 raise _TooMany
@@ -357,7 +357,7 @@ class Reachable:
                 raise _TooMany
             solver.push()
             solver.add(*self.of_node(thread, cells), condition)
-            thread.answers[key] = condition, bool(solver.check() != z3.unsat)
+            thread.answers[key] = condition, bool(self.budget.ask(solver) != z3.unsat)
             solver.pop()
         return thread.answers[key][1]
 

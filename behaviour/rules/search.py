@@ -127,7 +127,7 @@ class WaySearch:
                 way = point.way.extended(point, move)
                 solver.push()
                 solver.add(*way.added, *way.ending())
-                if solver.check() == z3.sat:
+                if self.reach.budget.ask(solver) == z3.sat:
                     seen.add(key)
                     waiting.append(replace(move.point, way=way))
                 solver.pop()
@@ -193,7 +193,7 @@ class WaySearch:
         solver.add(*asked)
         for (name, _), term in self.outside_in(asked).items():
             solver.add(*self.typed(name, term))
-        return bool(solver.check() == z3.sat)
+        return bool(self.reach.budget.ask(solver) == z3.sat)
 
     def typed(self, name: Variable, term: Term) -> list[Term]:
         """That what is read from outside lies in its type."""

@@ -73,7 +73,7 @@ def check(
 ) -> Checked:
     """Load, check and analyse a model; Refused with every diagnostic when it is wrong.
 
-    ``effort`` is how much work the rules of behaviour may take, in units of z3. What they
+    ``effort`` is how many situations and questions the rules of behaviour may take. What they
     found in the same content before is taken again; with ``finish``, unless it was not
     finished. ``read`` is how files are read.
     """

@@ -57,7 +57,7 @@ SWITCHES = (
     "-c", "-gnatc", "-gnat2012", "-gnatwa", "-gnatwe", "-gnaty3abcdefhiIklM79nprSux",
     f"-gnatec={ROOT / 'spark_runtime' / 'ravenscar.adc'}",
 )  # fmt: skip
-EFFORT = 500_000
+EFFORT = 1_000
 """Work of the rules of behaviour, which decide nothing that the compiler sees."""
 
 NUMBERS = (
