@@ -14,6 +14,7 @@ from bisect import bisect
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
+from ravenchart.behaviour.interpreter.branching import branched
 from ravenchart.behaviour.interpreter.machine import InstanceRun, Machine
 from ravenchart.behaviour.interpreter.region import Stuck
 from ravenchart.behaviour.interpreter.stimuli import Arrived, Raised, Stimuli
@@ -26,7 +27,7 @@ from ravenchart.gen.model.system import Slot, System
 
 from .goals import Goal, GoalCoverage, GoalElement, GoalKind, goals
 from .stimulation import Choice, choices
-from .watched import branched, watched
+from .watched import watched
 
 EFFORT = 400_000
 """Instants that are executed at the most, unless another number is given."""

@@ -1,12 +1,8 @@
-"""A system under way of which one sees what its charts show, and that can be branched."""
+"""A system under way of which one sees what its charts show."""
 
 from __future__ import annotations
 
-import copy
-from collections import deque
-from dataclasses import replace
-
-from ravenchart.behaviour.interpreter.machine import InstanceRun, Machine, Mailbox
+from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.region import Happened, Nothing, Occurrence, RegionRun
 from ravenchart.gen.model.statechart import Transition, When
 from ravenchart.gen.model.system import System
@@ -53,33 +49,3 @@ def watched(system: System, coverage: GoalCoverage) -> Machine:
             assert isinstance(run, WatchedRegion)
             run.component, run.coverage = instance.component.name, coverage
     return machine
-
-
-def branched(machine: Machine) -> Machine:
-    """The same as it is now, to go on by itself; both note to the same coverage."""
-    new = copy.copy(machine)
-    new.instances = {name: _instance(one) for name, one in machine.instances.items()}
-    return new
-
-
-def _instance(run: InstanceRun) -> InstanceRun:
-    new = copy.copy(run)
-    new.data, new.ports = dict(run.data), dict(run.ports)
-    new.mailboxes = {name: _mailbox(one) for name, one in run.mailboxes.items()}
-    new.regions = {name: _region(one) for name, one in run.regions.items()}
-    return new
-
-
-def _mailbox(box: Mailbox) -> Mailbox:
-    new = copy.copy(box)
-    new.waiting = deque(box.waiting)
-    return new
-
-
-def _region(run: RegionRun) -> RegionRun:
-    new = copy.copy(run)
-    new.active, new.history, new.timers = dict(run.active), dict(run.history), dict(run.timers)
-    new.completed, new.done = set(run.completed), set(run.done)
-    new.deferred = [replace(kept) for kept in run.deferred]
-    new.queue = deque(run.queue)
-    return new

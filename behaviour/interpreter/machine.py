@@ -8,7 +8,6 @@ Activities that the user writes do nothing.
 
 from __future__ import annotations
 
-import heapq
 from collections import deque
 from collections.abc import Iterable, Iterator
 
@@ -140,6 +139,7 @@ class Machine:
         """Before the epoch; ``region_run`` runs the regions."""
         self.system = system
         self.instances = {one.name: InstanceRun(one, region_run) for one in system.instances}
+        self._periodic = [one for one in system.processors if one.released_by is None]
 
     def run(self, stimuli: Stimuli) -> Iterator[StepRecord]:
         """Everything up to the last instant: the steps that executed a behaviour."""
@@ -161,18 +161,28 @@ class Machine:
 
     def instants(self, until: Ns) -> Iterator[tuple[Ns, list[Slot]]]:
         """Each release instant with the rows that run then, in order."""
-        processors = [p for p in self.system.processors if p.released_by is None]
-        releases = [(p.offset, -p.priority, index, 0) for index, p in enumerate(processors)]
-        heapq.heapify(releases)
-        while releases and releases[0][0] <= until:
-            now = releases[0][0]
-            slots: list[Slot] = []
-            while releases[0][0] == now:
-                _, rank, index, count = releases[0]
-                own = processors[index]
-                slots += [s for s in own.slots if count % s.divisor == s.phase]
-                heapq.heapreplace(releases, (Ns(now + own.period), rank, index, count + 1))
-            yield now, slots
+        found = self.following(-1)
+        while found is not None and found[0] <= until:
+            yield found
+            found = self.following(found[0])
+
+    def following(self, after: int) -> tuple[Ns, list[Slot]] | None:
+        """The first release instant after that time, with its rows; None: there is no release."""
+        releases: list[tuple[Ns, int, int, int]] = []
+        for index, own in enumerate(self._periodic):
+            count = max(0, (after - own.offset) // own.period + 1)
+            releases.append((Ns(own.offset + count * own.period), -own.priority, index, count))
+        if not releases:
+            return None
+        now = min(releases)[0]
+        slots = [
+            slot
+            for at, _, index, count in sorted(releases)
+            if at == now
+            for slot in self._periodic[index].slots
+            if count % slot.divisor == slot.phase
+        ]
+        return now, slots
 
     def _take(self, entry: Raised | Arrived) -> None:
         match entry:

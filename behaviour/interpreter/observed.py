@@ -1,0 +1,260 @@
+"""A region whose steps say of each transition from an active state why it fired or did not.
+
+Everything is read where the step itself has read it: after its occurrence was taken, before
+anything fires. So the values are those that the guards had.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+
+from ravenchart.gen.language.terms import (
+    Expression,
+    InState,
+    Name,
+    Operation,
+    PortTest,
+    Value,
+)
+from ravenchart.gen.model.statechart import (
+    After,
+    Completion,
+    Every,
+    OnEvent,
+    PseudoKind,
+    Transition,
+    When,
+)
+
+from .expressions import View, value_of
+from .region import ExecutedTransition, Happened, Nothing, Occurrence, RegionRun, Step
+
+Reads = tuple[tuple[Name | PortTest | InState, Value], ...]
+"""What an expression reads, with the values that it had."""
+
+
+class Reason(Enum):
+    """Why a transition from an active state fired or did not."""
+
+    FIRED = auto()
+    OTHER_TRIGGER = auto()
+    """The step was for another occurrence."""
+    NOT_DUE = auto()
+    """Its time-out is to come."""
+    LATER = auto()
+    """Its own occurrence waits for a later step."""
+    NOT_COMPLETE = auto()
+    """Its source has not completed."""
+    COMPLETION_OVER = auto()
+    """The completion of its source has had its step."""
+    TIME_OUT_OVER = auto()
+    """Its time-out has had its step."""
+    CONDITION_FALSE = auto()
+    """The condition of its `when`."""
+    GUARD_FALSE = auto()
+    NO_WAY_ON = auto()
+    """The junction or join behind it lets nothing through."""
+    INSIDE = auto()
+    """A transition inside its source was selected."""
+    EARLIER = auto()
+    """An earlier transition of its source was selected."""
+    DEFERRED = auto()
+    """An active state defers the event."""
+    CONFLICT = auto()
+    """A transition that was taken before has left its source."""
+
+
+@dataclass(frozen=True, slots=True)
+class FalseGuard:
+    """A guard or condition that did not hold."""
+
+    expression: Expression
+    reads: Reads
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """A transition, and why it fired or did not."""
+
+    transition: Transition
+    reason: Reason
+    because: tuple[str, ...] = ()
+    """The transitions that went before it, or the states that defer or have not completed."""
+    failed: tuple[FalseGuard, ...] = ()
+    """Of it, or of the segments behind it."""
+    executions: int = 0
+    """To go until it is due."""
+
+
+@dataclass(frozen=True, slots=True)
+class ObservedStep:
+    """One step; ``occurrence`` is None of the first, and of a region that has terminated."""
+
+    occurrence: Occurrence | None
+    started: bool
+    """It was the first step of the region."""
+    deferring: tuple[str, ...]
+    """The active states that defer its event, where it was deferred."""
+    verdicts: tuple[Verdict, ...]
+    behaviours: tuple[str, ...]
+    sent: tuple[tuple[str, Value], ...]
+    raised: tuple[tuple[str, Value | None], ...]
+    lost: int
+
+
+class ObservedRegion(RegionRun):
+    """A region that keeps the steps of its last execution."""
+
+    steps: tuple[ObservedStep, ...] = ()
+    _occurrence: Occurrence | None = None
+    _verdicts: tuple[Verdict, ...] = ()
+    _deferring: tuple[str, ...] = ()
+
+    def begin(self) -> None:
+        """Another execution begins."""
+        super().begin()
+        self.steps = ()
+
+    def step(self, view: View) -> Step:
+        """One step, observed."""
+        started = not self.active and not self.stopped
+        self._occurrence, self._verdicts, self._deferring = None, (), ()
+        found = super().step(view)
+        observed = ObservedStep(
+            self._occurrence,
+            started,
+            self._deferring,
+            self._verdicts,
+            tuple(found.behaviours),
+            tuple(found.out.sent.items()),
+            tuple(found.out.raised),
+            found.lost,
+        )
+        self.steps = (*self.steps, observed)
+        return found
+
+    def _next(self) -> Occurrence:
+        self._occurrence = super()._next()
+        return self._occurrence
+
+    def _defer(self, event: Happened) -> None:
+        self._deferring = tuple(s for s in self._active() if event.event in self._defers(s))
+        self._verdicts = tuple(self._judged(()))
+        super()._defer(event)
+
+    def _fire_all(self, selected: Sequence[ExecutedTransition]) -> None:
+        judged = tuple(self._judged(selected))
+        self._fired: list[ExecutedTransition] = []
+        super()._fire_all(selected)
+        self._verdicts = tuple(self._settled(one, selected) for one in judged)
+
+    def _fire(self, firing: ExecutedTransition) -> None:
+        self._fired.append(firing)
+        super()._fire(firing)
+
+    # --- verdicts
+
+    def _active(self) -> list[str]:
+        """The active states, in model order."""
+        active = self.configuration()
+        return [state for state in self.tree.states if state in active]
+
+    def _judged(self, selected: Sequence[ExecutedTransition]) -> Iterator[Verdict]:
+        """What is to be said before anything fires: FIRED is of all that were selected."""
+        active = self._active()
+        for transition in self.region.transitions:
+            if transition.source in active:
+                yield self._verdict(transition, selected)
+
+    def _settled(self, verdict: Verdict, selected: Sequence[ExecutedTransition]) -> Verdict:
+        """Of one that was selected: whether it was taken, and else what was taken before it."""
+        if verdict.reason is not Reason.FIRED:
+            return verdict
+        mine = next(one for one in selected if verdict.transition in one.effects)
+        if any(one is mine for one in self._fired):
+            return verdict
+        before = [one.effects[0].name for one in self._fired if one in selected]
+        return replace(verdict, reason=Reason.CONFLICT, because=tuple(before))
+
+    def _verdict(self, transition: Transition, selected: Sequence[ExecutedTransition]) -> Verdict:
+        if any(transition in one.effects for one in selected):
+            return Verdict(transition, Reason.FIRED)
+        assert self._occurrence is not None
+        if not self._triggers(transition, self._occurrence):
+            return self._not_triggered(transition, self._occurrence)
+        inside = [
+            one.effects[0].name
+            for one in selected
+            if transition.source in self.tree.around(one.source)
+        ]
+        if inside:
+            return Verdict(transition, Reason.INSIDE, tuple(inside))
+        if not self._lets_through(transition):
+            assert transition.guard is not None
+            return Verdict(transition, Reason.GUARD_FALSE, (), (self._failed(transition.guard),))
+        if self._enabled(transition) is None:
+            failed = tuple(self._failures(transition.target, (transition.target,)))
+            waiting = tuple(self._incomplete(transition.target))
+            return Verdict(transition, Reason.NO_WAY_ON, waiting, failed)
+        earlier = [one.effects[0].name for one in selected if one.source == transition.source]
+        if earlier:
+            return Verdict(transition, Reason.EARLIER, tuple(earlier))
+        return Verdict(transition, Reason.DEFERRED, self._deferring)
+
+    def _not_triggered(self, transition: Transition, occurrence: Occurrence) -> Verdict:
+        """Why the occurrence of this step does not trigger a transition."""
+        name = transition.name
+        match transition.trigger:
+            case OnEvent(event):
+                waits = any(one.event == event for one in self.queue)
+                waits = waits or any(one.happened.event == event for one in self.deferred)
+                return Verdict(transition, Reason.LATER if waits else Reason.OTHER_TRIGGER)
+            case After() | Every() if name in self.timers:
+                left = self.timers[name] - self.executions
+                reason = Reason.NOT_DUE if left > 0 else Reason.LATER
+                return Verdict(transition, reason, executions=max(0, left))
+            case After() | Every():
+                return Verdict(transition, Reason.TIME_OUT_OVER)
+            case Completion() if transition.source in self.completed:
+                return Verdict(transition, Reason.LATER)
+            case Completion() if self._is_complete(transition.source):
+                return Verdict(transition, Reason.COMPLETION_OVER)
+            case Completion():
+                return Verdict(transition, Reason.NOT_COMPLETE, (transition.source,))
+            case When(condition) if isinstance(occurrence, Nothing):
+                failed = self._failed(condition)
+                return Verdict(transition, Reason.CONDITION_FALSE, failed=(failed,))
+        return Verdict(transition, Reason.OTHER_TRIGGER)
+
+    def _failures(self, vertex: str, seen: tuple[str, ...]) -> Iterator[FalseGuard]:
+        """The guards behind a junction that do not hold."""
+        if self.tree.kind(vertex) is not PseudoKind.JUNCTION:
+            return
+        for segment in self.tree.leaving[vertex]:
+            if segment.guard is not None and not self._lets_through(segment):
+                yield self._failed(segment.guard)
+            elif segment.target not in seen:
+                yield from self._failures(segment.target, (*seen, segment.target))
+
+    def _incomplete(self, vertex: str) -> Iterator[str]:
+        """The sources of a join that have not completed."""
+        if self.tree.kind(vertex) is PseudoKind.JOIN:
+            for segment in self.tree.into(vertex):
+                if not self._ready(segment):
+                    yield segment.source
+
+    def _failed(self, expression: Expression) -> FalseGuard:
+        reads = dict.fromkeys(_reads(expression))
+        return FalseGuard(expression, tuple((one, value_of(one, self._view)) for one in reads))
+
+
+def _reads(expression: Expression) -> Iterator[Name | PortTest | InState]:
+    """What an expression reads, in its order."""
+    match expression:
+        case Operation(operands=operands):
+            for operand in operands:
+                yield from _reads(operand)
+        case Name() | PortTest() | InState():
+            yield expression
