@@ -93,6 +93,25 @@ def add_log(sub: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def add_port(sub: argparse.ArgumentParser) -> None:
+    """Where a local page is served."""
+    sub.add_argument(
+        "--port", type=_port, default=0, metavar="PORT",
+        help="TCP port of the page, on this machine alone (default: a free one)",
+    )  # fmt: skip
+
+
+def _port(text: str) -> int:
+    if not (text.isascii() and text.isdigit() and int(text[:6]) <= 65_535):
+        raise argparse.ArgumentTypeError(f"{text!r} is not 0 .. 65535")
+    return int(text)
+
+
+def say_at_once(text: str) -> None:
+    """Print a line that a command says while it goes on."""
+    print(text, flush=True)
+
+
 def checked(
     options: argparse.Namespace, *, deadlines: bool = True, finish: bool = False
 ) -> Checked:

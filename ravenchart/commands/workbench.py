@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from ravenchart.failures import OK
+from ravenchart.terminal import progress
 
 from . import common
 from .results import WorkbenchResult
@@ -13,28 +14,29 @@ from .results import WorkbenchResult
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
-    sub.add_argument(
-        "--port", type=_port, default=0, metavar="PORT",
-        help="TCP port of the page, on this machine alone (default: a free one)",
-    )  # fmt: skip
+    common.add_port(sub)
     sub.add_argument("--no-open", action="store_true", help="print the address, open no browser")
-
-
-def _port(text: str) -> int:
-    if not (text.isascii() and text.isdigit() and int(text[:6]) <= 65_535):
-        raise argparse.ArgumentTypeError(f"{text!r} is not 0 .. 65535")
-    return int(text)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Serve until it is stopped; the exit status."""
     from ravenchart.workbench import serving
+    from ravenchart.workbench.hub import Hub
+    from ravenchart.workbench.server import WorkbenchPages
+    from ravenchart.workbench.session import Session
+
+    def made() -> WorkbenchPages:
+        with progress(f"read and analyse {options.model}"):
+            return WorkbenchPages(Hub(Session(options.model)))
+
+    def serves(address: str) -> None:
+        options.answer.serves(WorkbenchResult(address))
+        common.say_at_once(f"{options.model}: the workbench is at {address}")
+        common.say_at_once(
+            "Ctrl-C ends the workbench. Whoever has the address can change the model."
+        )
 
     serving.serve(
-        options.model,
-        options.port,
-        browser=not options.no_open,
-        say=lambda text: print(text, flush=True),
-        serves=lambda address: options.answer.serves(WorkbenchResult(address)),
+        made, options.port, browser=not options.no_open, say=common.say_at_once, serves=serves
     )
     return OK

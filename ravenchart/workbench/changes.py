@@ -11,10 +11,11 @@ from ravenchart.editing.places import ModelPlaces, NamedEntry
 from ravenchart.gen.files.schema_deployment import PRIORITIES
 from ravenchart.gen.language.quantities import LONGEST, duration
 
+from .publishing import RefusedRequestError
 from .requests import Move, SetProcessor, SetTime
 
 
-class ChangeRefusedError(Exception):
+class ChangeRefusedError(RefusedRequestError):
     """A change cannot be made; the text says why, and what to do."""
 
 

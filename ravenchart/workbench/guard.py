@@ -1,4 +1,4 @@
-"""Who may talk to the workbench: the page that its own address opened, and no other.
+"""Who may talk to a local page: what its own address opened, and no other.
 
 The address holds a random token. A page of another origin does not know it, and a name that
 another server resolves to this machine (DNS rebinding) is not among the hosts. So both are
@@ -73,14 +73,14 @@ class Guard:
         """Why a request is refused: the status, and a text for people."""
         headers = Headers(scope=scope)
         if headers.getlist("host") not in [[host] for host in self.hosts]:
-            return 421, "this host is not the workbench's: open the address that it has printed"
+            return 421, "this host is not that of the page: open the address that was printed"
         if any(origin not in self.origins for origin in headers.getlist("origin")):
-            return 403, "the workbench answers to no page of another origin"
+            return 403, "pages of other origins get no answer"
         if headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
-            return 403, "the workbench answers to no page of another site"
+            return 403, "pages of other sites get no answer"
         first = scope["path"].split("/", 2)[1] if scope["path"].startswith("/") else ""
         if not secrets.compare_digest(first.encode("utf-8", "replace"), self.token):
-            return 403, "the token is wrong: open the address that `ravenchart workbench` printed"
+            return 403, "the token is wrong: open the address that was printed"
         length = headers.get("content-length", "0")
         if not length.isascii() or not length.isdigit() or int(length[:12]) > LARGEST:
             return 413, f"a message has at most {LARGEST} bytes"

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+R = TypeVar("R")
 
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 Duration = Annotated[str, Field(min_length=1, max_length=40)]
@@ -76,8 +78,13 @@ class MalformedError(Exception):
 
 def read(body: bytes) -> Move | SetTime | SetProcessor | Rewind | Save | Settle:
     """The message of a request, or `MalformedError`."""
+    return validated(_READER, body)
+
+
+def validated(reader: TypeAdapter[R], body: bytes) -> R:
+    """What a reader makes of a message, or `MalformedError`."""
     try:
-        return _READER.validate_json(body)
+        return reader.validate_json(body)
     except ValidationError as problem:
         first = problem.errors(include_url=False, include_context=False, include_input=False)[0]
         where = ".".join(str(step) for step in first["loc"])

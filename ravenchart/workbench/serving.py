@@ -1,4 +1,4 @@
-"""The workbench from its start to a request to stop: port, address, browser and signals."""
+"""A page from its start to a request to stop: port, address, browser and signals."""
 
 from __future__ import annotations
 
@@ -11,17 +11,14 @@ import threading
 import webbrowser
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 import uvicorn
 
-from ravenchart import terminal
 from ravenchart.failures import Unusable
 
 from .guard import LARGEST, token
-from .hub import Hub
-from .server import application
-from .session import Session
+from .pages import Pages
+from .publishing import Publisher
 
 ADDRESS = "127.0.0.1"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -30,39 +27,36 @@ PATIENCE = 5
 
 
 def serve(
-    model: Path,
+    made: Callable[[], Pages],
     port: int,
     *,
     browser: bool,
     say: Callable[[str], None],
     serves: Callable[[str], None],
 ) -> None:
-    """Show the model until a signal asks the process to end; the signal is then raised again.
+    """Show a page until a signal asks the process to end; the signal is then raised again.
 
-    ``port`` 0: a free one. ``serves`` gets the address. Refused where the model has errors,
-    Unusable where the port is taken.
+    ``port`` 0: a free one. ``made`` reads the model. ``serves`` gets the address. Refused where
+    the model has errors, Unusable where the port is taken.
     """
     with _bound(port) as listening:
-        with terminal.progress(f"read and analyse {model}"):
-            session = Session(model)
-        hub = Hub(session)
+        pages = made()
+        publisher = pages.publisher
         secret, number = token(), listening.getsockname()[1]
         address = f"http://{ADDRESS}:{number}/{secret}/"
         serves(address)
-        say(f"{model}: the workbench is at {address}")
-        say("Ctrl-C ends the workbench. Whoever has the address can change the model.")
         if browser:
             _open(address, say)
         config = uvicorn.Config(
-            application(hub, secret, number),
+            pages.guarded(secret, number),
             http="h11", ws="none", lifespan="off", log_config=None, log_level="error",
             access_log=False, server_header=False, limit_concurrency=100,
             h11_max_incomplete_event_size=LARGEST, timeout_keep_alive=5,
             timeout_graceful_shutdown=PATIENCE,
         )  # fmt: skip
         with _heeding() as asked:
-            asyncio.run(_served(_Server(config), hub, listening, asked))
-        hub.shut()
+            asyncio.run(_served(_Server(config), publisher, listening, asked))
+        publisher.shut()
     if asked:
         signal.raise_signal(asked[0])
 
@@ -77,7 +71,7 @@ class _Server(uvicorn.Server):
 
 
 async def _served(
-    server: _Server, hub: Hub, listening: socket.socket, asked: list[signal.Signals]
+    server: _Server, publisher: Publisher, listening: socket.socket, asked: list[signal.Signals]
 ) -> None:
     """Serve until a signal comes."""
     loop = asyncio.get_running_loop()
@@ -87,12 +81,12 @@ async def _served(
         server.force_exit = bool(asked)
         asked.append(number)
         server.should_exit = True
-        ends.add(asyncio.ensure_future(hub.close()))
+        ends.add(asyncio.ensure_future(publisher.close()))
 
     for number in SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             loop.add_signal_handler(number, stop, number)
-    hub.start()
+    publisher.start()
     await server.serve(sockets=[listening])
     await asyncio.gather(*ends)
 

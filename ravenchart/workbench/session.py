@@ -10,14 +10,16 @@ import difflib
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
 
 from ravenchart.building import checking
 from ravenchart.editing.evaluation import Evaluation, Texts, evaluate, over
 from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.files.load import LARGEST, read_file
+from ravenchart.reported import found_of
 
 from . import changes
 from .changes import ChangeRefusedError
@@ -38,6 +40,10 @@ class InvalidError(ChangeRefusedError):
         self.found = tuple(found)
         self.late = late
         """Only deadlines or limits are not kept: people may save that."""
+
+    def more(self) -> dict[str, Any]:
+        """The findings, and whether people may save all the same."""
+        return {"findings": [asdict(found_of(one)) for one in self.found], "late": self.late}
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,10 +55,10 @@ def test_the_first_step_enters_and_has_no_verdicts() -> None:
 NESTED = """
 initial: Whole
 states:
-  Whole: {initial: Part, states: {Part: {}, Next: {}}}
+  Whole: {initial: First, states: {First: {}, Next: {}}}
   Away: {}
 transitions:
-  inner: {from: Part, to: Next, on: Go}
+  inner: {from: First, to: Next, on: Go}
   outer: {from: Whole, to: Away, on: Go}
 """
 
