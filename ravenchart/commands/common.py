@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from ravenchart.building.written import Written
     from ravenchart.gen.model.system import System
     from ravenchart.hw_can.bench.interfaces import Interface
+    from ravenchart.workbench.pages import Pages
 
 
 def add_model(sub: argparse.ArgumentParser) -> None:
@@ -105,6 +107,22 @@ def _port(text: str) -> int:
     if not (text.isascii() and text.isdigit() and int(text[:6]) <= 65_535):
         raise argparse.ArgumentTypeError(f"{text!r} is not 0 .. 65535")
     return int(text)
+
+
+def serve(
+    options: argparse.Namespace, made: Callable[[], Pages], *, browser: bool, what: str, remark: str
+) -> None:
+    """Serve a local page until it is stopped: at once the answer, or two lines for people."""
+    from ravenchart.workbench import serving
+
+    from .results import PageResult
+
+    def serves(address: str) -> None:
+        options.answer.serves(PageResult(address))
+        say_at_once(f"{options.model}: {what} {address}")
+        say_at_once(remark)
+
+    serving.serve(made, options.port, browser=browser, say=say_at_once, serves=serves)
 
 
 def say_at_once(text: str) -> None:

@@ -197,11 +197,11 @@ class BusResult(Result):
 
 
 @dataclass(slots=True)
-class WorkbenchResult(Result):
-    """A workbench that can be opened from now on."""
+class PageResult(Result):
+    """A local page that can be opened from now on."""
 
     address: str
-    """The URL of its page, with the token; whoever has it can change the model."""
+    """Its URL, with the token: whoever has it can do all that the page does."""
 
 
 @dataclass(slots=True)
@@ -414,7 +414,8 @@ RESULTS: dict[str, type[Result]] = {
     "evidence": EvidenceResult,
     "tests": TestsResult,
     "bus": BusResult,
-    "workbench": WorkbenchResult,
+    "workbench": PageResult,
+    "simulate": PageResult,
     "completion": CompletionResult,
 }
-"""Of each command with such an object; `analyse` and `simulate` have forms of their own."""
+"""Of each command with such an object, `simulate` with a page; `analyse` has its own form."""

@@ -21,7 +21,7 @@ from ravenchart.behaviour.rules.outside import external_events
 from ravenchart.building.checking import Checked
 from ravenchart.building.generation import replace_file, without_clashes, write_first_versions
 from ravenchart.building.programs import build_home
-from ravenchart.failures import OK, Refused, ToolFailed
+from ravenchart.failures import OK, Refused, ToolFailed, Unusable
 from ravenchart.gen.derive.distribution import as_one
 from ravenchart.gen.diagnostics import Diagnostic, error, render, render_all, warning
 from ravenchart.gen.emit.commands.lifecycle import RUNTIME_FOLDER, has_lifecycle
@@ -210,19 +210,37 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--events",
         type=Path,
         metavar="FILE",
-        required=True,
-        help="the event file: stimuli with their times",
+        help="the event file: stimuli with their times; only with --open it may be left out",
     )
     sub.add_argument(
         "--interpreter",
         action="store_true",
         help="execute the model by the interpreter, instead of the generated program",
     )
+    sub.add_argument(
+        "--open",
+        action="store_const",
+        const=True,
+        dest="page",
+        help="execute the charts step by step in a local web page, by the interpreter",
+    )
+    sub.add_argument(
+        "--no-open",
+        action="store_const",
+        const=False,
+        dest="page",
+        help="the same, but print the address of the page and open no browser",
+    )
+    common.add_port(sub)
     sub.add_argument("--json", action="store_true", help="one JSON object for each step")
 
 
 def execute(options: argparse.Namespace) -> int:
     """Run it in virtual time; the exit status."""
+    if options.page is not None:
+        return _played(options)
+    if options.events is None:
+        raise Unusable("`simulate` needs an event file by --events, or --open for a page")
     checked = common.checked(options, deadlines=False)
     trace = simulated(
         checked, options.events, interpreter=options.interpreter, as_json=options.json
@@ -233,4 +251,34 @@ def execute(options: argparse.Namespace) -> int:
     options.answer.lines = trace
     if not options.json:
         print(trace, end="")
+    return OK
+
+
+def _played(options: argparse.Namespace) -> int:
+    """Execute it in a page, until that is stopped; the exit status."""
+    from ravenchart.workbench.play.server import PlayHub, PlayPages
+    from ravenchart.workbench.play.session import Play
+
+    def made() -> PlayPages:
+        checked = common.checked(options, deadlines=False)
+        system = checked.system
+        hint = "simulate it without --open: the program in virtual time has them"
+        interpreted_alone(system, hint)
+        stimuli = None if options.events is None else stimuli_of(system, options.events)
+        missing = left_out(system)
+        try:
+            play = Play(options.model, system, stimuli, missing.message if missing else "")
+        except Stuck as stuck:
+            raise refused_as(stuck) from stuck
+        if not play.charts:
+            raise Unusable(f"{options.model} has no charts: a page has nothing to show")
+        return PlayPages(PlayHub(play))
+
+    common.serve(
+        options,
+        made,
+        browser=options.page,
+        what="the charts are at",
+        remark="Ctrl-C ends the page. The model is the one that was read at the start.",
+    )
     return OK

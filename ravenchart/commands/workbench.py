@@ -8,7 +8,6 @@ from ravenchart.failures import OK
 from ravenchart.terminal import progress
 
 from . import common
-from .results import WorkbenchResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
@@ -20,7 +19,6 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Serve until it is stopped; the exit status."""
-    from ravenchart.workbench import serving
     from ravenchart.workbench.hub import Hub
     from ravenchart.workbench.server import WorkbenchPages
     from ravenchart.workbench.session import Session
@@ -29,14 +27,11 @@ def execute(options: argparse.Namespace) -> int:
         with progress(f"read and analyse {options.model}"):
             return WorkbenchPages(Hub(Session(options.model)))
 
-    def serves(address: str) -> None:
-        options.answer.serves(WorkbenchResult(address))
-        common.say_at_once(f"{options.model}: the workbench is at {address}")
-        common.say_at_once(
-            "Ctrl-C ends the workbench. Whoever has the address can change the model."
-        )
-
-    serving.serve(
-        made, options.port, browser=not options.no_open, say=common.say_at_once, serves=serves
+    common.serve(
+        options,
+        made,
+        browser=not options.no_open,
+        what="the workbench is at",
+        remark="Ctrl-C ends the workbench. Whoever has the address can change the model.",
     )
     return OK

@@ -12,7 +12,7 @@ from ravenchart.building import drawings
 from ravenchart.gen.draw.picture import label
 from ravenchart.gen.draw.wrapping import wrapped
 from ravenchart.gen.model.component import Component
-from ravenchart.gen.model.statechart import Region, TransitionKind
+from ravenchart.gen.model.statechart import Region, Transition, TransitionKind
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
@@ -58,13 +58,22 @@ def _of_chart(component: Component, region: Region) -> Iterator[Located]:
         for nested in state.regions:
             yield f"cluster {state.name} {nested.name}", "", nested.origin
     for transition in region.transitions:
-        if transition.kind is TransitionKind.INTERNAL:
-            for line in wrapped(label(transition)):
-                yield transition.source, line, transition.origin
-                yield f"header {transition.source}", line, transition.origin
-            continue
-        inside = f"{transition.source} to {transition.target}"
-        for title in (inside, f"{inside} inside"):
-            yield title, "", transition.origin
-            for line in wrapped(label(transition)):
-                yield title, line, transition.origin
+        for title, line in arrow(transition):
+            yield title, line, transition.origin
+
+
+def arrow(transition: Transition) -> Iterator[tuple[str, str]]:
+    """The titles of the groups that draw a transition, with each line of its label.
+
+    An internal transition is text inside its state; the others have groups of their own ("").
+    """
+    lines = wrapped(label(transition))
+    if transition.kind is TransitionKind.INTERNAL:
+        for line in lines:
+            yield transition.source, line
+            yield f"header {transition.source}", line
+        return
+    inside = f"{transition.source} to {transition.target}"
+    for title in (inside, f"{inside} inside"):
+        yield title, ""
+        yield from ((title, line) for line in lines)

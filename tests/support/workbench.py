@@ -1,4 +1,4 @@
-"""A workbench that runs as a process, spoken to as a browser does and as an attacker would."""
+"""A local page that runs as a process, spoken to as a browser does and as an attacker would."""
 
 from __future__ import annotations
 
@@ -113,9 +113,9 @@ class Running:
         return self.process.wait(PATIENCE)
 
 
-def command(*words: str) -> list[str]:
+def command(*words: str, name: str = "workbench") -> list[str]:
     """The words of a call."""
-    return [sys.executable, "-P", "-m", "ravenchart.start", "workbench", *words]
+    return [sys.executable, "-P", "-m", "ravenchart.start", name, *words]
 
 
 def environment() -> dict[str, str]:
@@ -124,10 +124,10 @@ def environment() -> dict[str, str]:
 
 
 @contextmanager
-def running(model: Path, *words: str) -> Iterator[Running]:
-    """A workbench of a model for the time of a block, without a browser."""
+def running(model: Path, *words: str, name: str = "workbench") -> Iterator[Running]:
+    """A page of a model for the time of a block, without a browser; that of the workbench."""
     process = subprocess.Popen(
-        command(str(model), "--no-open", *words), env=environment(), cwd=model.parent,
+        command(str(model), "--no-open", *words, name=name), env=environment(), cwd=model.parent,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
     assert process.stdout is not None

@@ -5,7 +5,7 @@ import { Components } from "./components.js";
 import { Drawing } from "./drawing.js";
 import { Finding, Outcomes } from "./outcomes.js";
 import { Processors } from "./processors.js";
-import { Bench } from "./parts.js";
+import { Bench, rewind } from "./parts.js";
 import { Link, get } from "./link.js";
 
 function App() {
@@ -50,18 +50,13 @@ function App() {
   }
   useEffect(() => {
     function key(event) {
-      if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
-      const name = event.key.toLowerCase();
-      const typing = event.target instanceof HTMLInputElement;
-      if (name === "s") {
+      const way = rewind(event);
+      if (way) {
+        event.preventDefault();
+        quietly({ kind: way });
+      } else if ((event.ctrlKey || event.metaKey) && !event.altKey && event.key.toLowerCase() === "s") {
         event.preventDefault();
         setSaving(true);
-      } else if (!typing && (name === "y" || (name === "z" && event.shiftKey))) {
-        event.preventDefault();
-        quietly({ kind: "redo" });
-      } else if (!typing && name === "z") {
-        event.preventDefault();
-        quietly({ kind: "undo" });
       }
     }
     const elsewhere = () => { moved.current = null; };

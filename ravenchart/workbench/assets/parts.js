@@ -68,3 +68,12 @@ export function Bar({ of }) {
 export function Word({ met, text }) {
   return html`<span class="word ${met ? "ok" : "bad"}">${text ?? (met ? "ok" : "MISS")}</span>`;
 }
+
+/** Which way a key goes through the states: "undo", "redo", or null; not while somebody types. */
+export function rewind(event) {
+  if (!(event.ctrlKey || event.metaKey) || event.altKey) return null;
+  if (event.target instanceof HTMLInputElement) return null;
+  const name = event.key.toLowerCase();
+  if (name === "y" || (name === "z" && event.shiftKey)) return "redo";
+  return name === "z" ? "undo" : null;
+}

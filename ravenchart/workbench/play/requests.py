@@ -1,0 +1,55 @@
+"""What the page of the charts asks for: each message in one form, and nothing else is accepted."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, StrictBool, StrictInt, StrictStr, TypeAdapter
+
+from ..requests import Duration, Name, PageRequest, Rewind, validated
+
+Text = Annotated[StrictStr, Field(max_length=200)]
+Given = StrictBool | StrictInt | Text | dict[Name, StrictBool | StrictInt | Text]
+"""A value as an event file has it."""
+
+
+class Raise(PageRequest):
+    """Raise an event of an instance; without ``value`` where it carries none."""
+
+    kind: Literal["raise"]
+    instance: Name
+    event: Name
+    value: Given | None = None
+
+
+class Put(PageRequest):
+    """Give a value to an input port."""
+
+    kind: Literal["put"]
+    instance: Name
+    port: Name
+    value: Given
+
+
+class Advance(PageRequest):
+    """Let time go on: by one execution of a chart, until it fires, or until a time-out of it."""
+
+    kind: Literal["execution", "firing", "time_out"]
+    chart: Name
+
+
+class Wait(PageRequest):
+    """Let time go on for a duration."""
+
+    kind: Literal["wait"]
+    duration: Duration
+
+
+PLAY_REQUESTS = (Raise, Put, Advance, Wait, Rewind)
+PlayRequest = Raise | Put | Advance | Wait | Rewind
+_READER: TypeAdapter[PlayRequest] = TypeAdapter(Annotated[PlayRequest, Field(discriminator="kind")])
+
+
+def read(body: bytes) -> PlayRequest:
+    """The message of a request, or `MalformedError`."""
+    return validated(_READER, body)
