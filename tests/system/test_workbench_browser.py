@@ -2,45 +2,28 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 import statistics
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
+from playwright.sync_api import Browser, Locator, expect
 
 from ravenchart.paths import ROOT
+from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
 from tests.support.workbench import Running, running
 from tests.support.workbench_models import hundred_activities
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(
-        CHROMIUM is None, reason="Chromium is missing: `scripts/setup.sh browser` installs it"
-    ),
-]
-
-PATIENCE = 20_000
-"""Milliseconds for what a page does on a busy machine."""
-
-SERIOUS = ("serious", "critical")
+pytestmark = IN_BROWSER
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    """Chromium without a screen."""
-    arguments = ["--no-sandbox"] if os.getuid() == 0 else []
-    with sync_playwright() as started:
-        found = started.chromium.launch(executable_path=CHROMIUM, args=arguments)
+    """One for all tests of this file."""
+    with launched() as found:
         yield found
-        found.close()
 
 
 @pytest.fixture
@@ -63,25 +46,8 @@ def bench(folder: Path) -> Iterator[Running]:
         yield found
 
 
-class Pane:
-    """A page that shows the workbench, and what went wrong in it."""
-
-    def __init__(self, browser: Browser, address: str, **look: Any) -> None:
-        self.context = browser.new_context(**({"viewport": {"width": 1400, "height": 900}} | look))
-        self.page: Page = self.context.new_page()
-        self.page.set_default_timeout(PATIENCE)
-        expect.set_options(timeout=PATIENCE)
-        self.wrong: list[str] = []
-        self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
-        self.page.on("console", lambda one: self._heard(one.type, one.text))
-        self.asked: list[str] = []
-        self.page.on("request", lambda request: self.asked.append(request.url))
-        self.page.goto(address)
-        expect(self.page.locator(".paper svg")).to_be_visible()
-
-    def _heard(self, kind: str, text: str) -> None:
-        if kind == "error" and "status of 4" not in text:
-            self.wrong.append(text)
+class Pane(BrowserPage):
+    """A page that shows the workbench."""
 
     def row(self, name: str) -> Locator:
         """The row of a table."""
@@ -102,9 +68,7 @@ def pane(browser: Browser, bench: Running) -> Iterator[Pane]:
     """One page; nothing may go wrong in it, and nothing may be asked of elsewhere."""
     found = Pane(browser, bench.address)
     yield found
-    found.context.close()
-    assert found.wrong == []
-    assert [url for url in found.asked if not url.startswith((bench.address, "data:"))] == []
+    found.closed(bench.address)
 
 
 def test_a_row_is_dragged_to_another_processor_saved_and_its_comment_kept(
@@ -306,17 +270,6 @@ def test_axe_finds_nothing_serious(
     found += serious(page)
     pane.context.close()
     assert found == []
-
-
-def serious(page: Page) -> list[str]:
-    """What axe finds of weight: the rule and the element."""
-    answer = Axe().run(page).response
-    return [
-        f"{one['id']}: {node['html'][:200]} {node['failureSummary'][:200]}"
-        for one in answer["violations"]
-        if one["impact"] in SERIOUS
-        for node in one["nodes"]
-    ]
 
 
 def test_nothing_is_wider_than_the_window(browser: Browser, bench: Running) -> None:

@@ -69,7 +69,7 @@ export function Situation() {
     <${Values} title="Data" of=${instance.data} />
     <${Values} title="Parameters" of=${instance.parameters} />
     ${instance.ports.length > 0 && html`<h3>Input ports</h3><dl>${instance.ports.map((one) => html`<dt key=${one.name}>${one.name}</dt>
-      <dd>${one.state}${one.state === "never received" ? "" : `: ${one.value}, age ${one.age} executions`}${
+      <dd>${one.state}${one.state === "never received" ? "" : `: ${one.value}, age ${one.age} ${one.age === 1 ? "execution" : "executions"}`}${
         one.waiting.length ? `; arrived: ${one.waiting.join(", ")}` : ""}</dd>`)}</dl>`}
   </section>`;
 }

@@ -193,9 +193,7 @@ class Play:
             raise RefusedRequestError(f"the model has no chart {wish.chart}")
         region = self.now.machine.instances[chart[0]].regions[chart[1]]
         if wish.kind == "time_out" and not region.timers:
-            raise RefusedRequestError(
-                f"no time-out runs in the active states of {wish.chart}"
-            )
+            raise RefusedRequestError(f"no time-out runs in the active states of {wish.chart}")
         words = {"execution": "one execution", "firing": "until it fires", "time_out": "time-out"}
         run = _Executing(self.now)
         for _ in range(MOST_RELEASES):

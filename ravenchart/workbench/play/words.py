@@ -35,7 +35,7 @@ def occurrence(step: ObservedStep) -> str:
             return f"the time-out of {transition.name} ({trigger(transition.trigger)})"
         case Happened(event, value):
             return f"the event {with_value(event, value)}"
-    return "nothing waits: `when` conditions are read"
+    return "no occurrence: `when` conditions are read"
 
 
 def reason(verdict: Verdict, period: Ns) -> str:
