@@ -392,6 +392,22 @@ class MeasureResult(Result):
     """The times, and what they leave out."""
 
 
+@dataclass(slots=True)
+class TraceResult(Result):
+    """A trace, written in another format."""
+
+    file: str
+    """Where it is."""
+    records: int
+    """How many records the trace has."""
+    slices: int
+    """How many stays in states it has."""
+    lost: dict[str, int]
+    """What was lost in the run, by the name of its count."""
+    complete: bool
+    """Whether the run ended by itself; else the counts of its end are missing."""
+
+
 RESULTS: dict[str, type[Result]] = {
     "check": CheckResult,
     "generate": GenerateResult,
@@ -400,6 +416,7 @@ RESULTS: dict[str, type[Result]] = {
     "allocate": AllocateResult,
     "run": RunResult,
     "shell": ShellResult,
+    "trace": TraceResult,
     "measure": MeasureResult,
     "draw": DrawResult,
     "doctor": DoctorResult,

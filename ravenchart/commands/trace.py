@@ -1,0 +1,98 @@
+"""`ravenchart trace`: the trace of a run or a simulation, as CSV or for Perfetto."""
+
+from __future__ import annotations
+
+import argparse
+from itertools import chain
+from pathlib import Path
+
+from ravenchart.analysis.system.observed import (
+    Observation,
+    TraceError,
+    of_model,
+    read_map,
+    read_trace,
+)
+from ravenchart.building.checking import Checked
+from ravenchart.building.programs import TRACE_MAP, programs_of
+from ravenchart.failures import OK, Refused, Unusable
+from ravenchart.running.traces.formats import FORMATS
+from ravenchart.running.traces.simulated import is_simulated, of_simulation
+from ravenchart.running.traces.timeline import Timeline, of_run
+
+from . import common
+from .answer import say
+from .results import TraceResult
+
+SUFFIXES = ", ".join(FORMATS)
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what the command is told."""
+    common.add_model(sub)
+    sub.add_argument(
+        "trace", type=Path, metavar="FILE", nargs="+",
+        help="trace.txt of a run, trace-NODE.txt of each of several nodes, or what `simulate` "
+        "printed",
+    )  # fmt: skip
+    sub.add_argument(
+        "--out", type=_out, metavar="FILE", required=True,
+        help="the file to write; its suffix chooses the format: .csv, or .json for Perfetto",
+    )  # fmt: skip
+
+
+def _out(text: str) -> Path:
+    if Path(text).suffix not in FORMATS:
+        raise argparse.ArgumentTypeError(f"{text!r} has no suffix of {SUFFIXES}")
+    return Path(text)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Write it in the other format; the exit status."""
+    checked = common.checked(options, deadlines=False)
+    try:
+        timeline = _timeline(checked, options.trace)
+    except TraceError as fault:
+        raise Refused(str(fault)) from None
+    options.out.write_text(FORMATS[options.out.suffix](timeline), encoding="utf-8")
+    if not timeline.complete:
+        say(options.answer, "warning: the trace was cut off: the counts of its end are missing")
+    if timeline.gaps:
+        what = common.several(timeline.gaps, "trace record")
+        say(options.answer, f"warning: {what} lost: the trace has gaps")
+    for what, number in timeline.lost.items():
+        print(f"lost: {what}, {common.several(number, 'time')}")
+    events = sum(row.at is not None for row in timeline.rows)
+    print(f"{options.out}: {common.several(events, 'record')}")
+    options.answer.result = TraceResult(
+        str(options.out), events, len(timeline.slices), timeline.lost, timeline.complete
+    )
+    return OK
+
+
+def _timeline(checked: Checked, paths: list[Path]) -> Timeline:
+    """What the files hold; TraceError where they do not fit the model."""
+    with paths[0].open(encoding="utf-8", errors="replace") as lines:
+        first = next((line.strip() for line in lines if line.strip()), "")
+        if is_simulated(first):
+            if len(paths) > 1:
+                raise Unusable("a simulation has one trace for all nodes: give one file")
+            return of_simulation(checked.system, chain([first], lines), str(paths[0]))
+    return of_run(checked.system, _observed(checked, paths))
+
+
+def _observed(checked: Checked, paths: list[Path]) -> dict[str, Observation]:
+    """The traces of the nodes, by node."""
+    programs = {one.node: one for one in programs_of(checked)}
+    found: dict[str, Observation] = {}
+    for path in paths:
+        node = path.stem.removeprefix("trace-") if len(programs) > 1 else next(iter(programs))
+        if node not in programs:
+            names = ", ".join(f"trace-{one}.txt" for one in programs)
+            raise Unusable(f"{path} does not name its node: {checked.system.name} has {names}")
+        names_of = programs[node].generated / TRACE_MAP
+        trace_map = read_map(names_of.read_text(encoding="utf-8"), str(names_of))
+        with path.open(encoding="ascii", errors="replace") as lines:
+            found[node] = read_trace(lines, trace_map, str(path))
+        of_model(found[node], checked.system.digest, str(path))
+    return found

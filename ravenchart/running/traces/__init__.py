@@ -1,0 +1,1 @@
+"""The traces of runs and simulations, in the formats of other tools."""

@@ -1,0 +1,90 @@
+"""A timeline as CSV, and as JSON in the trace event format that Perfetto and Chrome open.
+
+The format: "Trace Event Format" (Google). Times (``ts``, ``dur``) are in microseconds. A slice is a
+complete event (``X``), a mark an instant event (``i``), and names are metadata events (``M``).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from ravenchart.gen.language.terms import Ns
+
+from .timeline import Timeline, Track
+
+COLUMNS = ("time_ns", "node", "kind", "element", "detail")
+
+
+def as_csv(timeline: Timeline) -> str:
+    """The records in order of time, then the counts of the end, which have no time."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for row in timeline.rows:
+        at = "" if row.at is None else row.at
+        writer.writerow((at, row.process, row.kind, row.element, row.detail))
+    return text.getvalue()
+
+
+def as_events(timeline: Timeline) -> str:
+    """One JSON object, with one event a line."""
+    head = {"displayTimeUnit": "ns", "otherData": _about(timeline)}
+    lines = ",\n".join(json.dumps(one) for one in _events(timeline))
+    return f'{json.dumps(head)[:-1]}, "traceEvents": [\n{lines}\n]}}\n'
+
+
+FORMATS: Mapping[str, Callable[[Timeline], str]] = {".csv": as_csv, ".json": as_events}
+"""By the suffix of the file."""
+
+
+def _about(timeline: Timeline) -> dict[str, str]:
+    """What the whole trace is; all that was lost is named."""
+    lost = {f"lost {what}": str(number) for what, number in timeline.lost.items()}
+    complete = "yes" if timeline.complete else "no: the run did not end by itself"
+    return {"system": timeline.system, "complete": complete, **lost}
+
+
+def _events(timeline: Timeline) -> Iterator[dict[str, Any]]:
+    processes: dict[str, int] = {}
+    places: dict[Track, dict[str, int]] = {}
+    for number, track in enumerate(timeline.tracks, 1):
+        if track.process not in processes:
+            processes[track.process] = len(processes) + 1
+            yield _named("process", processes[track.process], 0, track.process)
+        place = {"pid": processes[track.process], "tid": number}
+        places[track] = place
+        yield _named("thread", **place, name=track.name)
+        yield {
+            "name": "thread_sort_index", "ph": "M", **place, "args": {"sort_index": number},
+        }  # fmt: skip
+    timed: list[tuple[Ns, dict[str, Any]]] = []
+    for one in timeline.slices:
+        event: dict[str, Any] = {
+            "name": one.name, "cat": "state", "ph": "X", "ts": _us(one.start),
+            "dur": _us(Ns(one.end - one.start)), **places[one.track],
+        }  # fmt: skip
+        if one.open:
+            event["args"] = {"open": "it was active at the end of the trace"}
+        timed.append((one.start, event))
+    for mark in timeline.marks:
+        event = {
+            "name": mark.name, "cat": mark.kind, "ph": "i", "ts": _us(mark.at), "s": "t",
+            **places[mark.track],
+        }  # fmt: skip
+        if mark.more:
+            event["args"] = mark.more
+        timed.append((mark.at, event))
+    yield from (event for _, event in sorted(timed, key=lambda found: found[0]))
+
+
+def _named(what: str, pid: int, tid: int, name: str) -> dict[str, Any]:
+    return {"name": f"{what}_name", "ph": "M", "pid": pid, "tid": tid, "args": {"name": name}}
+
+
+def _us(time: Ns) -> float | int:
+    """A time in us, exact."""
+    return time // 1000 if time % 1000 == 0 else time / 1000

@@ -1,0 +1,102 @@
+"""The trace that `ravenchart simulate` prints, as text or as JSON lines, read again."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Iterator
+
+from ravenchart.analysis.system.observed import TraceError
+from ravenchart.behaviour.interpreter.traces import StepRecord, parsed
+from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
+from ravenchart.gen.language.terms import NO_TIME, Ns
+from ravenchart.gen.model.system import System
+
+from .timeline import Mark, Slice, Timeline, TraceRow, Track
+
+STEP = re.compile(r"\d{1,12}\.\d{3,9} \w+\.\w+: \S.*")
+
+
+def is_simulated(first: str) -> bool:
+    """Whether a trace that begins with this line is of a simulation."""
+    return first.startswith("{") or STEP.fullmatch(first) is not None
+
+
+def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
+    """The steps as states and transitions; TraceError for a line that does not fit the model."""
+    found = Timeline(system.name)
+    charts = {
+        (instance.name, region.name): ChartTree(region)
+        for instance in system.instances
+        for region in instance.component.regions
+    }
+    active: dict[tuple[str, str, RegionKey], tuple[str, Ns]] = {}
+    now = NO_TIME
+    for number, record in _records(lines, file):
+        tree = charts.get((record.instance, record.region))
+        chart = f"{record.instance}.{record.region}"
+        if tree is None:
+            raise TraceError(f"{file}:{number}: error: the model has no chart {chart}")
+        if record.at < now:
+            raise TraceError(f"{file}:{number}: error: the time is before that of the line above")
+        now = record.at
+        for behaviour in record.behaviours:
+            found.rows.append(TraceRow(now, system.name, "behaviour", chart, behaviour))
+            name, _, what = behaviour.rpartition(".")
+            if what == "effect":
+                _track(found, chart, TOP)
+                mark = Mark(Track(system.name, chart), name, "transition", now)
+                found.marks.append(mark)
+                continue
+            if what not in ("entry", "exit") or name not in tree.states:
+                raise TraceError(f"{file}:{number}: error: {chart} has no behaviour {behaviour}")
+            key = (record.instance, record.region, tree.place(name))
+            before = active.pop(key, None)
+            if what == "entry":
+                active[key] = (name, now)
+            elif before is None or before[0] != name:
+                raise TraceError(f"{file}:{number}: error: {name} is left, but was not active")
+            else:
+                found.slices.append(Slice(_track(found, chart, key[2]), name, before[1], now))
+    for (instance, region, place), (name, start) in active.items():
+        track = _track(found, f"{instance}.{region}", place)
+        found.slices.append(Slice(track, name, start, now, open=True))
+    return found
+
+
+def _records(lines: Iterable[str], file: str) -> Iterator[tuple[int, StepRecord]]:
+    """Each step with the number of its line."""
+    for number, line in enumerate(lines, 1):
+        text = line.strip()
+        if not text:
+            continue
+        try:
+            yield number, _json(text) if text.startswith("{") else _text(text)
+        except (KeyError, TypeError, ValueError):
+            problem = f"not a line of `ravenchart simulate`: {text[:60]!r}"
+            raise TraceError(f"{file}:{number}: error: {problem}") from None
+
+
+def _text(line: str) -> StepRecord:
+    if STEP.fullmatch(line) is None:
+        raise ValueError(line)
+    return parsed(line)
+
+
+def _json(line: str) -> StepRecord:
+    raw = json.loads(line)
+    at, behaviours = raw["at_ns"], raw["behaviours"]
+    if not isinstance(at, int) or not isinstance(behaviours, list) or at < 0:
+        raise ValueError(line)
+    names = tuple(str(one) for one in behaviours)
+    return StepRecord(Ns(at), str(raw["instance"]), str(raw["region"]), names)
+
+
+def _track(found: Timeline, chart: str, place: RegionKey) -> Track:
+    """The track of a place in a chart: one state at most is active in it."""
+    owner, nested = place
+    inside = "" if owner is None else f" in {owner}{'.' if nested else ''}{nested}"
+    track = Track(found.system, chart + inside)
+    if track not in found.tracks:
+        found.tracks.append(track)
+    return track

@@ -1,0 +1,216 @@
+"""A trace as tracks of slices and marks, and as rows: what the formats are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+from ravenchart.analysis.system.observed import NumberedElement, Observation, Visit
+from ravenchart.gen.language.terms import NO_TIME, Ns
+from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.system import Processor, System
+
+Arguments = dict[str, int | float | str | bool]
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """A line of the picture; ``process`` is a node, or the model of a simulation."""
+
+    process: str
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Slice:
+    """A time for which something was so; ``open``: it still was at the end of the trace."""
+
+    track: Track
+    name: str
+    start: Ns
+    end: Ns
+    open: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """Something that happened at one time."""
+
+    track: Track
+    name: str
+    kind: str
+    at: Ns
+    more: Arguments = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class TraceRow:
+    """A record as a row; of a count at the end of a run, ``detail`` is the number."""
+
+    at: Ns | None
+    process: str
+    kind: str
+    element: str
+    detail: str
+
+
+@dataclass(slots=True)
+class Timeline:
+    """A whole trace; ``lost`` counts what the trace says was lost, ``gaps`` its own records."""
+
+    system: str
+    rows: list[TraceRow] = field(default_factory=list)
+    tracks: list[Track] = field(default_factory=list)
+    slices: list[Slice] = field(default_factory=list)
+    marks: list[Mark] = field(default_factory=list)
+    lost: dict[str, int] = field(default_factory=dict)
+    gaps: int = 0
+    complete: bool = True
+    """Of a run: it ended by itself, and the counts of its end are there."""
+
+
+def of_run(system: System, parts: dict[str, Observation]) -> Timeline:
+    """What runs of the nodes of a system showed; times count from the first start of all."""
+    found = Timeline(system.name)
+    first = min(part.start for part in parts.values())
+    several = len(parts) > 1
+    for node, part in parts.items():
+        late = Ns(part.start - first)
+        _Run(system, node, part, late, found).add()
+        lost = {f"{node}.{what}" if several else what: n for what, n in part.losses.items()}
+        found.lost |= {what: n for what, n in lost.items() if n}
+        found.gaps += part.trace_lost
+        found.complete = found.complete and part.complete
+    found.rows.sort(key=lambda row: (row.at is None, row.at or NO_TIME))
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """The trace of one node, put into a timeline."""
+
+    system: System
+    node: str
+    seen: Observation
+    late: Ns
+    found: Timeline
+
+    def add(self) -> None:
+        """All of it: processors first, then charts and controllers, then what is left."""
+        rows = {
+            slot.element: processor.name
+            for processor in self.system.processors
+            for slot in processor.slots
+        }
+        for processor in self.system.processors:
+            if processor.node == self.node:
+                self._processor(processor)
+        for element in (*self.seen.map.of_kind("region"), *self.seen.map.of_kind("bus")):
+            self._states(element)
+        for record in self.seen.records:
+            name = record.element.name
+            at = self._time(record.time)
+            self.found.rows.append(TraceRow(at, self.node, record.kind, name, record.text))
+            match record.kind:
+                case "activity":
+                    self._mark(rows.get(name, name), name, "row", at)
+                case "state":
+                    pass
+                case "transition":
+                    self._mark(name, record.text, "transition", at)
+                case kind:
+                    owner = name.partition(".")[0]
+                    where = owner if record.element.kind in ("port", "event") else name
+                    self._mark(where, f"{kind} {name}", kind, at, value=record.value)
+        self._counts()
+
+    def _time(self, time: Ns) -> Ns:
+        return Ns(time + self.late)
+
+    def _track(self, name: str) -> Track:
+        track = Track(self.node, name)
+        if track not in self.found.tracks:
+            self.found.tracks.append(track)
+        return track
+
+    def _mark(self, track: str, name: str, kind: str, at: Ns, **more: int | str) -> None:
+        self.found.marks.append(Mark(self._track(track), name, kind, at, dict(more)))
+
+    def _processor(self, processor: Processor) -> None:
+        """The releases that it has counted, when the model says that they were due."""
+        counts = self.seen.processors.get(processor.name)
+        self._track(processor.name)
+        if counts is None or processor.released_by is not None:
+            return
+        for number in range(counts.releases):
+            at = self._time(Ns(processor.offset + number * processor.period))
+            self._mark(processor.name, "due", "release", at, number=number)
+
+    def _states(self, element: NumberedElement) -> None:
+        """The stays of a chart, a region of an orthogonal state, or a controller of a bus."""
+        visits = self._stays(element.name)
+        if not visits:
+            return
+        track = self._track(element.name)
+        for visit in visits:
+            end = self.seen.end if visit.end is None else visit.end
+            times = self._time(visit.start), self._time(end)
+            self.found.slices.append(Slice(track, visit.state, *times, visit.end is None))
+
+    def _stays(self, name: str) -> Sequence[Visit]:
+        """Those in a region of an orthogonal state are cut to the times of that state."""
+        visits, around = self.seen.visits(name), _around(self.system.instances, name)
+        if around is None:
+            return visits
+        outer, state = around
+        return tuple(_common(visits, [v for v in self._stays(outer) if v.state == state]))
+
+    def _counts(self) -> None:
+        """The counts of the end."""
+        now = self.seen.end if self.seen.now is None else self.seen.now
+        at = self._time(now)
+        for name, one in self.seen.processors.items():
+            worst = one.worst_response
+            for kind, number in (
+                ("releases", one.releases), ("misses", one.misses), ("worst_response_ns", worst),
+            ):  # fmt: skip
+                self._count(kind, name, number)
+            times = {"worst_response_us": worst / 1000}
+            counts: Arguments = {"releases": one.releases, "misses": one.misses, **times}
+            self.found.marks.append(Mark(self._track(name), "counts", "counts", at, counts))
+        for name, longest in self.seen.executions.items():
+            self._count("longest_execution_ns", name, longest)
+        for name, number in self.seen.faults.items():
+            self._count("faults", name, number)
+        for name, number in self.seen.losses.items():
+            self._count("lost", name, number)
+            if number:
+                self._mark("losses", f"lost: {name}", "lost", at, number=number)
+
+    def _count(self, kind: str, element: str, number: int) -> None:
+        self.found.rows.append(TraceRow(None, self.node, kind, element, str(number)))
+
+
+def _around(instances: Sequence[Instance], name: str) -> tuple[str, str] | None:
+    """Of a traced region ``instance.Region.Nested``: the region around it, and the state there."""
+    owner, _, rest = name.partition(".")
+    top, _, nested = rest.partition(".")
+    if not nested:
+        return None
+    instance = next(one for one in instances if one.name == owner)
+    region = next(one for one in instance.component.regions if one.name == top)
+    state = next(lane.owner for lane in region.lanes() if lane.owner and lane.name == nested)
+    around = region.lane(state)
+    inside = "" if around.owner is None else f".{around.name}"
+    return f"{owner}.{top}{inside}", state
+
+
+def _common(visits: Sequence[Visit], outside: Sequence[Visit]) -> Iterator[Visit]:
+    """The stays, cut to the times of others."""
+    for visit in visits:
+        for other in outside:
+            start = Ns(max(visit.start, other.start))
+            ends = [one.end for one in (visit, other) if one.end is not None]
+            end = min(ends) if ends else None
+            if end is None or start < end:
+                yield Visit(visit.state, start, end)
