@@ -87,6 +87,7 @@ def well_formed(whole: Json) -> None:
     last = 0.0
     for one in whole["traceEvents"]:
         assert isinstance(one["pid"], int) and isinstance(one["tid"], int), one
+        assert one["pid"] != one["tid"], "that thread would be called the main one"
         match one["ph"]:
             case "M":
                 known = {"process_name": "name", "thread_name": "name",
@@ -219,6 +220,9 @@ def test_a_simulation_has_a_track_for_each_place(
     assert ("bed.Infusion in Running", "Filling") in shown and ("bed.Infusion", "Alarm") in shown
     assert printed.count(".entry") == len([one for one in events if one["ph"] == "X"])
     assert printed.count(".effect") == len([one for one in events if one["ph"] == "i"])
+    assert list(tracks.values())[:3] == [
+        "bed.Infusion", "bed.Infusion in Self_Test.Motor", "bed.Infusion in Self_Test.Sensor",
+    ]  # fmt: skip
     rows = tmp_path / "simulated.csv"
     assert main(["trace", model, str(path), "--out", str(rows)]) == 0
     assert rows.read_text().splitlines()[1] == (

@@ -16,6 +16,9 @@ from ravenchart.gen.language.terms import Ns
 
 from .timeline import Timeline, Track
 
+FIRST_TID = 100
+"""Before the numbers of threads: one that is equal to its process's is called the main thread."""
+
 COLUMNS = ("time_ns", "node", "kind", "element", "detail")
 
 
@@ -55,7 +58,7 @@ def _events(timeline: Timeline) -> Iterator[dict[str, Any]]:
         if track.process not in processes:
             processes[track.process] = len(processes) + 1
             yield _named("process", processes[track.process], 0, track.process)
-        place = {"pid": processes[track.process], "tid": number}
+        place = {"pid": processes[track.process], "tid": FIRST_TID + number}
         places[track] = place
         yield _named("thread", **place, name=track.name)
         yield {

@@ -14,6 +14,9 @@ from ravenchart.gen.model.system import System
 
 from .timeline import Mark, Slice, Timeline, TraceRow, Track
 
+Charts = dict[tuple[str, str], ChartTree]
+"""By instance and region."""
+
 STEP = re.compile(r"\d{1,12}\.\d{3,9} \w+\.\w+: \S.*")
 
 
@@ -25,7 +28,7 @@ def is_simulated(first: str) -> bool:
 def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
     """The steps as states and transitions; TraceError for a line that does not fit the model."""
     found = Timeline(system.name)
-    charts = {
+    charts: Charts = {
         (instance.name, region.name): ChartTree(region)
         for instance in system.instances
         for region in instance.component.regions
@@ -44,9 +47,7 @@ def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
             found.rows.append(TraceRow(now, system.name, "behaviour", chart, behaviour))
             name, _, what = behaviour.rpartition(".")
             if what == "effect":
-                _track(found, chart, TOP)
-                mark = Mark(Track(system.name, chart), name, "transition", now)
-                found.marks.append(mark)
+                found.marks.append(Mark(_track(found, chart, TOP), name, "transition", now))
                 continue
             if what not in ("entry", "exit") or name not in tree.states:
                 raise TraceError(f"{file}:{number}: error: {chart} has no behaviour {behaviour}")
@@ -61,7 +62,18 @@ def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
     for (instance, region, place), (name, start) in active.items():
         track = _track(found, f"{instance}.{region}", place)
         found.slices.append(Slice(track, name, start, now, open=True))
+    in_order = {track: index for index, track in enumerate(_places(system.name, charts))}
+    found.tracks.sort(key=in_order.__getitem__)
     return found
+
+
+def _places(system: str, charts: Charts) -> Iterator[Track]:
+    """The tracks of all places: chart by chart, from the outside in."""
+    for (instance, region), tree in charts.items():
+        chart = f"{instance}.{region}"
+        yield _named(system, chart, TOP)
+        for state in tree.states:
+            yield from (_named(system, chart, place) for place in tree.nested(state))
 
 
 def _records(lines: Iterable[str], file: str) -> Iterator[tuple[int, StepRecord]]:
@@ -93,10 +105,15 @@ def _json(line: str) -> StepRecord:
 
 
 def _track(found: Timeline, chart: str, place: RegionKey) -> Track:
-    """The track of a place in a chart: one state at most is active in it."""
-    owner, nested = place
-    inside = "" if owner is None else f" in {owner}{'.' if nested else ''}{nested}"
-    track = Track(found.system, chart + inside)
+    """The track of a place in a chart, which is now in the timeline."""
+    track = _named(found.system, chart, place)
     if track not in found.tracks:
         found.tracks.append(track)
     return track
+
+
+def _named(system: str, chart: str, place: RegionKey) -> Track:
+    """The track of a place in a chart: one state at most is active in it."""
+    owner, nested = place
+    inside = "" if owner is None else f" in {owner}{'.' if nested else ''}{nested}"
+    return Track(system, chart + inside)
