@@ -14,6 +14,7 @@ function App() {
   const [problem, setProblem] = useState("");
   const [name, setName] = useState(null);
   const [tab, setTab] = useState("reasons");
+  const [busy, setBusy] = useState(0); // acts under way
   const link = useRef(null);
   const chart = state?.charts.find((one) => one.name === name) ?? state?.charts[0];
   const shown = useRef(null); // the chart, for keys
@@ -28,11 +29,14 @@ function App() {
 
   async function act(message) {
     setProblem("");
+    setBusy((count) => count + 1);
     try {
       return await link.current.act(message);
     } catch (error) {
       setProblem(error.message);
       return null;
+    } finally {
+      setBusy((count) => count - 1);
     }
   }
   useEffect(() => {
@@ -57,6 +61,7 @@ function App() {
       <h1>${state.system}</h1><span class="remark model">${state.model}</span>
       <span class="clock number" role="status">${state.now === null ? "not started" : `executed up to ${state.now}`}</span>
       <span class="remark number">next release ${state.next}</span>
+      ${busy > 0 && html`<span class="busy remark">executing …</span>`}
       <span class="gap"></span>
       <button disabled=${state.undo === null} title=${state.undo ?? "nothing to undo"}
         onClick=${() => act({ kind: "undo" })}>Undo</button>

@@ -30,8 +30,8 @@ from .requests import Advance, PlayRequest, Put, Raise, Wait
 MOST_STATES = 1_000
 """Acts that can be undone."""
 
-MOST_RELEASES = 20_000
-"""That one act executes: some seconds."""
+MOST_RELEASES = 5_000
+"""That one act executes: seconds of a large model."""
 
 Chart = tuple[str, str]
 """Instance and top-level region."""
