@@ -266,8 +266,9 @@ def _played(options: argparse.Namespace) -> int:
         interpreted_alone(system, hint)
         stimuli = None if options.events is None else stimuli_of(system, options.events)
         missing = left_out(system)
+        text = "" if missing is None else f"{missing.message[:1].upper()}{missing.message[1:]}"
         try:
-            play = Play(options.model, system, stimuli, missing.message if missing else "")
+            play = Play(options.model, system, stimuli, text)
         except Stuck as stuck:
             raise refused_as(stuck) from stuck
         if not play.charts:

@@ -73,7 +73,8 @@ function App() {
       ${problem && html`<p class="banner bad" role="alert">${problem}
         <button onClick=${() => setProblem("")}>Close</button></p>`}
       ${state.remark && html`<p class="banner warn" role="status">${state.remark}</p>`}
-      ${state.warning && html`<p class="banner warn">${state.warning}. Raise their events and give their values by hand.</p>`}
+      ${state.warning && html`<p class="banner warn">${state.warning}. Raise their events by hand; data that they write
+        keep their values.</p>`}
     </div>
     <main class="panes play">
       <${Inputs} key=${chart.instance} />

@@ -22,10 +22,10 @@ function Step({ step, number, of }) {
     <h3>Step${of > 1 ? ` ${number}` : ""} for ${step.occurrence}</h3>
     <p>${step.behaviours.length ? html`<code>${step.behaviours.join(", ")}</code>` : "Nothing fired."}</p>
     ${notes.map((text) => html`<p key=${text} class="remark">${text}</p>`)}
-    ${step.verdicts.length > 0 && html`<table><thead><tr><th>transition</th><th>from, to</th><th>label</th><th>why</th></tr></thead>
+    ${step.verdicts.length > 0 && html`<table><thead><tr><th>transition</th><th>why</th><th>from, to</th><th>label</th></tr></thead>
       <tbody>${step.verdicts.map((one) => html`<tr key=${one.transition} class=${one.fired ? "fired" : ""}>
-        <td>${one.transition}</td><td>${one.source === one.target ? one.source : `${one.source} → ${one.target}`}</td>
-        <td>${one.label}</td><td>${one.fired ? html`<b class="word ok">fired</b>` : one.reason}</td></tr>`)}</tbody></table>`}
+        <td>${one.transition}</td><td>${one.fired ? html`<b class="word ok">fired</b>` : one.reason}</td>
+        <td>${one.source === one.target ? one.source : `${one.source} → ${one.target}`}</td><td>${one.label}</td></tr>`)}</tbody></table>`}
   </section>`;
 }
 
