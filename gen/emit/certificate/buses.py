@@ -66,7 +66,8 @@ def bus_terms(system: System, bus: Bus) -> list[Decl]:
         "for the longest frame that goes behind it and has begun, and for those that go before "
         f"it. Of a message, {explained(bus)}"
     )
-    items: list[Decl] = [Comment(words), *rate_terms(bus)]
+    messages = _of(system, bus)
+    items: list[Decl] = [Comment(words), *rate_terms(bus, messages)]
     if bus.errors is not None:
         hit = f"[{bus.name}] errors: so many at once, one more every T, bits lost to each"
         items += [
@@ -75,7 +76,6 @@ def bus_terms(system: System, bus: Bus) -> list[Decl]:
             stated(f"{own}_Error_T", bus.errors.period),
             stated(f"{own}_Error_Bits", ERROR_BITS),
         ]
-    messages = _of(system, bus)
     for message in messages:
         items += _terms(message, bus)
     return items
