@@ -81,7 +81,7 @@ class FoundCase:
 
 
 @dataclass(slots=True)
-class Found:
+class SearchResult:
     """The cases, and the goals that none of them shows."""
 
     cases: list[FoundCase]
@@ -121,14 +121,14 @@ class CaseSearch:
         self.causes = {i.name: _causes(i.component) for i in system.instances}
         self.cuts = sorted({number for choice in self.choices for number in choice.numbers})
 
-    def found(self) -> Found:
+    def found(self) -> SearchResult:
         """Search, and choose the cases."""
         while self.open and self.executed < self.effort:
             self._go_on(self._best())
         cases = list(self._chosen())
         met = {goal for case in cases for goal in case.shows}
         left = [goal for goal in self.goals if goal not in met]
-        return Found(cases, self.goals, left, self.executed, self.stuck)
+        return SearchResult(cases, self.goals, left, self.executed, self.stuck)
 
     # --- one try
 

@@ -12,7 +12,7 @@ from collections import Counter
 from pathlib import Path
 
 from ravenchart.behaviour.cases.goals import GoalKind
-from ravenchart.behaviour.cases.search import EFFORT, CaseSearch, Found, FoundCase
+from ravenchart.behaviour.cases.search import EFFORT, CaseSearch, FoundCase, SearchResult
 from ravenchart.behaviour.interpreter.stimuli import written
 from ravenchart.building.checking import Checked
 from ravenchart.building.generation import replace_file
@@ -102,7 +102,7 @@ def _write(cases: list[FoundCase], folder: Path) -> list[Path]:
     return files
 
 
-def _rows(found: Found) -> list[TestGoals]:
+def _rows(found: SearchResult) -> list[TestGoals]:
     """How many goals of each kind there are, and how many are shown."""
     every = Counter(goal.kind for goal in found.goals)
     left = Counter(goal.kind for goal in found.open)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.behaviour.cases.goals import GoalCoverage, GoalKind, goals
-from ravenchart.behaviour.cases.search import CaseSearch, Found
+from ravenchart.behaviour.cases.search import CaseSearch, SearchResult
 from ravenchart.behaviour.cases.watched import watched
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.stimuli import read, written
@@ -58,7 +58,7 @@ def system() -> System:
 
 
 @pytest.fixture(scope="module")
-def found(system: System) -> Found:
+def found(system: System) -> SearchResult:
     """What a search finds for it."""
     return CaseSearch(system, 60_000).found()
 
@@ -98,13 +98,13 @@ def test_a_condition_decides_only_where_nothing_else_differs(system: System) -> 
     }
 
 
-def test_a_search_shows_every_goal(found: Found) -> None:
+def test_a_search_shows_every_goal(found: SearchResult) -> None:
     assert [goal.text() for goal in found.open] == []
     assert not found.stuck
     assert len(found.cases) < len(found.goals)
 
 
-def test_each_case_shows_what_it_says(system: System, found: Found) -> None:
+def test_each_case_shows_what_it_says(system: System, found: SearchResult) -> None:
     coverage = GoalCoverage()
     for case in found.cases:
         before = {goal for goal in found.goals if coverage.shows(goal)}
@@ -114,13 +114,13 @@ def test_each_case_shows_what_it_says(system: System, found: Found) -> None:
         assert set(case.shows) == now - before
 
 
-def test_to_be_watched_changes_nothing(system: System, found: Found) -> None:
+def test_to_be_watched_changes_nothing(system: System, found: SearchResult) -> None:
     for case in found.cases:
         seen = list(watched(system, GoalCoverage()).run(case.stimuli))
         assert seen == list(Machine(system).run(case.stimuli))
 
 
-def test_the_same_effort_finds_the_same_cases(system: System, found: Found) -> None:
+def test_the_same_effort_finds_the_same_cases(system: System, found: SearchResult) -> None:
     assert CaseSearch(system, 60_000).found() == found
 
 
@@ -177,7 +177,7 @@ def test_an_effort_is_a_whole_number_from_1(capsys: pytest.CaptureFixture[str]) 
     assert "'0' is not a whole number from 1" in capsys.readouterr().err
 
 
-def test_a_written_file_is_read_back(system: System, found: Found) -> None:
+def test_a_written_file_is_read_back(system: System, found: SearchResult) -> None:
     for case in found.cases:
         text = written(case.stimuli, ["one comment"])
         assert text.startswith("# one comment\n")
