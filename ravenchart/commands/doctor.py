@@ -30,6 +30,7 @@ TOOLS = (
     NeededTool("gcc", "compiles Ada", "sudo apt-get install gnat", needed=True),
     NeededTool("gprbuild", "builds programs", "sudo apt-get install gprbuild", needed=True),
     NeededTool("gnatprove", "`prove`", "alr get gnatprove, and its bin on PATH"),
+    NeededTool("gcov", "`tests --coverage`", "sudo apt-get install gcc"),
     NeededTool("dot", "`draw`", "sudo apt-get install graphviz"),
 )
 
