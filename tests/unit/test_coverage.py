@@ -23,7 +23,9 @@ def _said(*files: tuple[Path, list[dict[str, object]]]) -> str:
 
 
 def test_lines_and_branches_are_counted_by_body() -> None:
-    said = _said((GENERATED / "a.adb", [_line(3, 2, 2, 0), _line(4, 0), _line(9, 1, 1, throw=True)]))
+    said = _said(
+        (GENERATED / "a.adb", [_line(3, 2, 2, 0), _line(4, 0), _line(9, 1, 1, throw=True)])
+    )
     (body,) = read(said, PLACES)
     assert (body.path, body.origin) == (GENERATED / "a.adb", Origin.GENERATED)
     assert (len(body.lines), body.executed(), body.left()) == (3, 2, [4])
