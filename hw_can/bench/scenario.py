@@ -290,7 +290,8 @@ class _Counted(_Form):
     @property
     def name(self) -> str:
         """What is counted."""
-        return str(getattr(self, type(self).__name__.lower()))
+        key = next(key for key, kind in EXPECTED.items() if isinstance(self, kind))
+        return str(getattr(self, key))
 
     def allows(self, count: int) -> bool:
         """Whether it may be counted so often."""
