@@ -114,6 +114,7 @@ class Moves:
         start = (Assign("Self.Started", TRUE), *joined(self._steps(self.shape.start)))
         rows = [(f.literal, self._row(f)) for f in self.shape.firings]
         rows = rows or [("None", (NULL,))]
+        procedures = self.moving.procedures()
         agreed: Expr = self.nodes.agreed()
         batches: tuple[Decl, ...] = ()
         if len(rows) > MANY:
@@ -133,7 +134,7 @@ class Moves:
                 *self.nodes.variables(),
                 *self._past(),
                 *self.nodes.moved(),
-                *self.moving.procedures(),
+                *procedures,
                 *batches,
             ),
             body=(
