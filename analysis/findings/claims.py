@@ -25,7 +25,7 @@ from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.derive.instants import instants, phased
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.claims import ChainClaim, Claim, Claims
+from ravenchart.gen.model.claims import ChainClaim, Claims, ResponseClaim
 from ravenchart.gen.model.system import UNREADY
 
 from .deadlines import findings
@@ -131,12 +131,12 @@ def _since(
     return tuple(found)
 
 
-def _of_task(response: Response) -> Claim:
+def _of_task(response: Response) -> ResponseClaim:
     """Every job of the busy period; the table begins with all its rows."""
     assert response.bound is not None
     alone = response.jobs == 1 and response.window + response.jitter <= response.task.period
     windows = [response.window] if alone else _jobs(response)
-    return Claim(Ns(response.bound), tuple(map(Ns, windows)))
+    return ResponseClaim(Ns(response.bound), tuple(map(Ns, windows)))
 
 
 def _jobs(response: Response) -> list[int]:
@@ -175,7 +175,7 @@ def _settled(window: Window, fixed: list[int], effort: Effort, name: str) -> lis
     return found
 
 
-def _of(response: FrameResponse) -> Claim:
+def _of(response: FrameResponse) -> ResponseClaim:
     """Every instance of the busy period, and the busy period."""
     frame, level = response.frame, response.level
     assert response.bound is not None
@@ -201,7 +201,7 @@ def _of(response: FrameResponse) -> Claim:
         raise Unclaimed(f"{frame.name} has {instances} instances in one busy period")
     fixed = [blocked + instance * frame.cost for instance in range(instances)]
     windows = _settled(waiting, fixed, effort, frame.name)
-    return Claim(Ns(response.bound), tuple(map(Ns, windows)), Ns(length))
+    return ResponseClaim(Ns(response.bound), tuple(map(Ns, windows)), Ns(length))
 
 
 def _capped(analysis: Analysis) -> tuple[dict[str, Ns], dict[str, Ns]]:
@@ -219,9 +219,9 @@ def _capped(analysis: Analysis) -> tuple[dict[str, Ns], dict[str, Ns]]:
     return waits, busiest
 
 
-def _turns(analysis: Analysis, handed: set[str]) -> dict[str, Claim]:
+def _turns(analysis: Analysis, handed: set[str]) -> dict[str, ResponseClaim]:
     """When the reception turns to each of these messages."""
-    found: dict[str, Claim] = {}
+    found: dict[str, ResponseClaim] = {}
     system = analysis.system
     for processor in system.processors:
         waiting = reception_frames(processor, system, analysis.found)
@@ -229,7 +229,7 @@ def _turns(analysis: Analysis, handed: set[str]) -> dict[str, Claim]:
             if response.frame.name in handed:
                 claim = _of(response)
                 turn = Ns(claim.response - processor.period)
-                found[response.frame.name] = Claim(turn, claim.windows, claim.busy)
+                found[response.frame.name] = ResponseClaim(turn, claim.windows, claim.busy)
     return found
 
 

@@ -12,7 +12,7 @@ from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.tasks import Task
 
-from .phases import Phase, Scenario
+from .phases import Phase, PhaseScenario
 from .processor import Job, SimulatedProcessor, segments_of
 from .wire import QueuedFrame, Wire
 
@@ -32,7 +32,7 @@ class Stretch:
 
 
 @dataclass(slots=True)
-class Observed:
+class ObservedTimes:
     """What happened, in ticks; names are those of tasks and messages.
 
     ``longest``    longest time from the event of the chain to a completion
@@ -59,7 +59,9 @@ class _Release:
     arrival: int
 
 
-def simulate(network: Network, scenario: Scenario, until: int, *, record: bool = False) -> Observed:
+def simulate(
+    network: Network, scenario: PhaseScenario, until: int, *, record: bool = False
+) -> ObservedTimes:
     """What is observed up to the time ``until``, every job executing its full cost.
 
     ValueError for cores with overheads, which are not simulated, and as `ceilings`; and
@@ -73,14 +75,14 @@ def simulate(network: Network, scenario: Scenario, until: int, *, record: bool =
 
 
 class _Engine:
-    def __init__(self, network: Network, scenario: Scenario, until: int, record: bool) -> None:
+    def __init__(self, network: Network, scenario: PhaseScenario, until: int, record: bool) -> None:
         self.scenario = scenario
         self.until = until
         self.record = record
         self.items = network.items()
         self.ceilings = ceilings(network.tasks, network.sections, network.ceilings)
         self.releases: list[_Release] = []
-        self.seen = Observed()
+        self.seen = ObservedTimes()
         self.pieces: dict[tuple[str, str, int, int], int] = {}
         self.order = 0
         self.cores = {task.core: SimulatedProcessor() for task in network.tasks}
@@ -97,7 +99,7 @@ class _Engine:
             if name not in self.followers:
                 self._arrive(name, 0, self._phase(name).first)
 
-    def run(self) -> Observed:
+    def run(self) -> ObservedTimes:
         """Event after event, at one time first what ends, then what begins."""
         for _ in range(EVENTS):
             due = [c.due for c in self.cores.values()] + [w.due for w in self.wires.values()]

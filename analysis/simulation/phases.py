@@ -48,7 +48,7 @@ class Phase:
 
 
 @dataclass(frozen=True, slots=True)
-class Scenario:
+class PhaseScenario:
     """The phases of a network's items by name (all others arrive at 0, or at their offsets) and
     faults of buses.
 
@@ -59,13 +59,13 @@ class Scenario:
     faults: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
 
-def chance_scenario(network: Network, chance: random.Random, until: int) -> Scenario:
+def chance_scenario(network: Network, chance: random.Random, until: int) -> PhaseScenario:
     """Phases, delays, frames, places of sections and allowed faults at random."""
     phases = {
         name: _chance_phase(item, network.sections, chance)
         for name, item in network.items().items()
     }
-    return Scenario(
+    return PhaseScenario(
         phases, {name: _chance_faults(network, name, chance, until) for name in network.buses}
     )
 

@@ -11,7 +11,7 @@ from .phases import Inside
 
 
 @dataclass(slots=True)
-class Stretch:
+class JobStretch:
     """A stretch of a job: ticks left, priority inside, and the row that ends with it."""
 
     left: int
@@ -29,7 +29,7 @@ class Job:
     event: int
     arrival: int
     order: int
-    segments: list[Stretch] = field(default_factory=list)
+    segments: list[JobStretch] = field(default_factory=list)
 
     def urgency(self) -> tuple[int, bool, int]:
         """Its priority now, whether it is inside an object, and who came first."""
@@ -41,7 +41,7 @@ class Job:
 
 def segments_of(
     task: Task, frame: int, inside: tuple[Inside, ...], ceilings: Mapping[str, int]
-) -> list[Stretch]:
+) -> list[JobStretch]:
     """The stretches of a job that executes ``frame``: cut where a row or a section ends."""
     rows = list(_rows(task, frame))
     cuts = {end for end, _ in rows}
@@ -59,7 +59,7 @@ def segments_of(
             ),
             default=task.priority,
         )
-        found.append(Stretch(cut - before, max(level, task.priority), names.get(cut, "")))
+        found.append(JobStretch(cut - before, max(level, task.priority), names.get(cut, "")))
         before = cut
     return found
 
@@ -86,7 +86,7 @@ class SimulatedProcessor:
         """When the running job's segment ends, if nothing happens before."""
         return None if self.running is None else self.now + self.running.segments[0].left
 
-    def advance(self, now: int) -> tuple[Job, Stretch] | None:
+    def advance(self, now: int) -> tuple[Job, JobStretch] | None:
         """Execute until ``now``, at most until `due`; the segment that has ended."""
         job = self.running
         spent, self.now = now - self.now, now

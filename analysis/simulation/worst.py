@@ -16,14 +16,14 @@ from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.responses import Alignment, Response
 from ravenchart.analysis.core.tasks import Task
 
-from .phases import Choice, Inside, Phase, Scenario
+from .phases import Choice, Inside, Phase, PhaseScenario
 
 
 @dataclass(frozen=True, slots=True)
 class WorstCase:
     """A scenario and how long it must run for the worst completion to be seen."""
 
-    scenario: Scenario
+    scenario: PhaseScenario
     until: int
 
 
@@ -48,7 +48,7 @@ def of_task(response: Response) -> WorstCase:
     blocking = response.blocking
     if blocking is not None and blocking.user in phases:
         phases[blocking.user] = Phase(lead - 1, inside=(Inside(0, blocking),))
-    return WorstCase(Scenario(phases), _never(lead, response))
+    return WorstCase(PhaseScenario(phases), _never(lead, response))
 
 
 def _of_aligned(response: Response, alignment: Alignment) -> WorstCase:
@@ -67,7 +67,7 @@ def _of_aligned(response: Response, alignment: Alignment) -> WorstCase:
     until = start + response.window + 1
     for other in level.order[level.reach :]:
         phases[other.name] = Phase(until)
-    return WorstCase(Scenario(phases), until)
+    return WorstCase(PhaseScenario(phases), until)
 
 
 def _until(start: int, task: Task) -> Choice:
@@ -100,7 +100,7 @@ def of_frame(response: FrameResponse) -> WorstCase:
     for other in level.order[level.reach :]:
         blocker = other.name == response.blocker
         phases[other.name] = Phase(lead - level.bus.bit_time if blocker else until + 1)
-    return WorstCase(Scenario(phases), until)
+    return WorstCase(PhaseScenario(phases), until)
 
 
 def _together(

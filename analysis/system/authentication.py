@@ -8,7 +8,7 @@ from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.buses import Message
 
-from .protection import Silence, silences
+from .protection import PortSilence, silences
 from .timing import Analysis
 
 
@@ -20,7 +20,7 @@ class Authenticated:
     authentication: Authentication
     tolerated: Ns | None
     """Time over which frames may be lost, and the next one is used; None: any time."""
-    silences: tuple[Silence, ...]
+    silences: tuple[PortSilence, ...]
 
 
 def authenticated(analysis: Analysis) -> tuple[Authenticated, ...]:

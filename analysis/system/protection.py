@@ -25,7 +25,7 @@ HOUR = 3_600_000_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Silence:
+class PortSilence:
     """A port that receives the message, and how long after the last good frame it is stale.
 
     From when that frame was due to be sent; None: no `max_age`, or no bound.
@@ -38,7 +38,7 @@ class Silence:
 
 
 @dataclass(frozen=True, slots=True)
-class Protected:
+class ProtectedMessage:
     """A protected message."""
 
     message: Message
@@ -51,7 +51,7 @@ class Protected:
     """Corrupted frames that are not found, in an hour."""
     tolerated: Ns
     """Time over which frames may be lost, and the next one is used."""
-    silences: tuple[Silence, ...]
+    silences: tuple[PortSilence, ...]
 
 
 def residual_probability(
@@ -67,9 +67,9 @@ def residual_probability(
     return (1 - few) / (1 << check_bits)
 
 
-def protected(analysis: Analysis) -> tuple[Protected, ...]:
+def protected(analysis: Analysis) -> tuple[ProtectedMessage, ...]:
     """Each protected message."""
-    found: list[Protected] = []
+    found: list[ProtectedMessage] = []
     for message in analysis.system.messages:
         own = message.protection
         if own is None:
@@ -80,7 +80,7 @@ def protected(analysis: Analysis) -> tuple[Protected, ...]:
             profile.crc_bits, profile.found_bits, bits, BIT_ERROR_PROBABILITY
         )
         found.append(
-            Protected(
+            ProtectedMessage(
                 message,
                 own,
                 own.residual,
@@ -93,23 +93,23 @@ def protected(analysis: Analysis) -> tuple[Protected, ...]:
     return tuple(found)
 
 
-def silences(analysis: Analysis, message: Message) -> tuple[Silence, ...]:
+def silences(analysis: Analysis, message: Message) -> tuple[PortSilence, ...]:
     """When each port that receives a message is known to be stale."""
     return tuple(_silence(analysis, message, end) for end in message.targets)
 
 
-def _silence(analysis: Analysis, message: Message, end: End) -> Silence:
+def _silence(analysis: Analysis, message: Message, end: End) -> PortSilence:
     """Delivery, then executions of the port region until the age passes, one more, and R of it."""
     system: System = analysis.system
     component = system.instance(end.instance).component
     home, limit = system.home(end), component.port(end.port).max_age
     element = next(one.element for one in system.receptions(message) if one.node == home)
     if component.port_region is None or limit is None:
-        return Silence(end, element, None)
+        return PortSilence(end, element, None)
     delivery = analysis.deliveries.get(element)
     delivered = delivery.bound if delivery else None
     response = analysis.found.from_event(system.processor_of(f"{end.instance}.ports").name)
     if delivered is None or response is None:
-        return Silence(end, element, None)
+        return PortSilence(end, element, None)
     period = component.port_region.period
-    return Silence(end, element, Ns(delivered + (limit // period + 2) * period + response))
+    return PortSilence(end, element, Ns(delivered + (limit // period + 2) * period + response))

@@ -7,7 +7,8 @@ last one two evaluations are compared that differ in that condition and in the o
 other conditions they are equal, or one of the two did not come to that condition, as ``and`` and
 ``or`` stop early: masking MC/DC of Chilenski, An Investigation of Three Forms of the Modified
 Condition Decision Coverage (MCDC) Criterion, DOT/FAA/AR-01/18, 2001.
-Each event that a state defers is deferred there, too.
+Each event that a state defers is deferred there, too, and each state is left by each transition of
+a state around it: the code that leaves a composite state has a part for each of its leaves.
 """
 
 from __future__ import annotations
@@ -18,9 +19,17 @@ from enum import Enum
 from itertools import combinations
 
 from ravenchart.behaviour.interpreter.expressions import View, holds
+from ravenchart.behaviour.tree import ChartTree
 from ravenchart.gen.language.terms import BOOLEAN, Expression, Operation
 from ravenchart.gen.model.component import Component
-from ravenchart.gen.model.statechart import Transition, When
+from ravenchart.gen.model.statechart import (
+    Completion,
+    OnEvent,
+    Transition,
+    TransitionKind,
+    Trigger,
+    When,
+)
 from ravenchart.gen.origins import Origin
 
 GoalElement = tuple[str, str, str]
@@ -39,11 +48,12 @@ class GoalKind(Enum):
     FALSE = "guards and triggers false"
     CONDITION = "conditions that decide by themselves"
     DEFERRED = "events deferred"
+    LEFT = "states left by transitions around them"
 
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """One thing to be shown. ``detail``: number of the condition, or the event."""
+    """One thing to be shown. ``detail``: number of the condition, the event, or the state."""
 
     kind: GoalKind
     element: GoalElement
@@ -67,14 +77,18 @@ class Goal:
             case GoalKind.CONDITION:
                 assert isinstance(self.detail, int)
                 return f"condition {self.detail + 1} of the {decision} of {place} decides it"
+            case GoalKind.LEFT:
+                return f"{place} leaves {self.detail}"
         return f"{self.detail} is deferred in {place}"
 
 
 def goals(component: Component) -> Iterator[Goal]:
     """The goals of its charts, in model order."""
     for region in component.regions:
+        tree = ChartTree(region)
         for transition in region.transitions:
             yield from _of_transition(component.name, region.name, transition)
+            yield from _of_leaves(component.name, tree, transition)
         for state in region.states:
             for event in state.defers:
                 element = component.name, region.name, state.name
@@ -97,6 +111,30 @@ def _of_transition(component: str, region: str, transition: Transition) -> Itera
         count = _conditions(expression)
         if count > 1:
             yield from (Goal(GoalKind.CONDITION, decided, *here, n) for n in range(count))
+
+
+def _of_leaves(component: str, tree: ChartTree, transition: Transition) -> Iterator[Goal]:
+    """That a transition of a composite state leaves each leaf inside it."""
+    is_internal = transition.kind is TransitionKind.INTERNAL
+    if is_internal or isinstance(transition.trigger, Completion):
+        return
+    element = component, tree.region.name, transition.name
+    for leaf in tree.region.states:
+        around = tree.around(leaf.name)
+        if not leaf.is_leaf or leaf.final or transition.source not in around:
+            continue
+        inner = [leaf.name, *around[: around.index(transition.source)]]
+        if not any(_always_takes(tree, state, transition.trigger) for state in inner):
+            yield Goal(GoalKind.LEFT, element, transition.origin, leaf.name, leaf.name)
+
+
+def _always_takes(tree: ChartTree, state: str, trigger: Trigger) -> bool:
+    """Whether a state has an unguarded transition for an event, or defers it."""
+    if not isinstance(trigger, OnEvent):
+        return False
+    return trigger.event in tree.states[state].defers or any(
+        one.trigger == trigger and one.guard is None for one in tree.leaving[state]
+    )
 
 
 def _parts(expression: Expression) -> tuple[Expression, ...]:
@@ -149,6 +187,7 @@ class GoalCoverage:
     taken: set[GoalElement] = field(default_factory=set)
     evaluations: dict[GoalElement, set[GuardValues]] = field(default_factory=dict)
     deferred: set[tuple[GoalElement, str]] = field(default_factory=set)
+    left: set[tuple[GoalElement, str]] = field(default_factory=set)
     size: int = 0
 
     def take(self, element: GoalElement) -> None:
@@ -167,6 +206,11 @@ class GoalCoverage:
         self.size += (element, event) not in self.deferred
         self.deferred.add((element, event))
 
+    def leave(self, element: GoalElement, state: str) -> None:
+        """A transition left a state inside its source."""
+        self.size += (element, state) not in self.left
+        self.left.add((element, state))
+
     def join(self, other: GoalCoverage) -> None:
         """What others have shown, too."""
         for element in other.taken:
@@ -176,6 +220,8 @@ class GoalCoverage:
                 self.decide(element, evaluation)
         for element, event in other.deferred:
             self.defer(element, event)
+        for element, state in other.left:
+            self.leave(element, state)
 
     def shows(self, goal: Goal) -> bool:
         """Whether a goal is met."""
@@ -183,6 +229,8 @@ class GoalCoverage:
             return goal.element in self.taken
         if goal.kind is GoalKind.DEFERRED:
             return (goal.element, goal.detail) in self.deferred
+        if goal.kind is GoalKind.LEFT:
+            return (goal.element, goal.detail) in self.left
         known = self.evaluations.get(goal.element, set())
         if goal.kind is GoalKind.CONDITION:
             assert isinstance(goal.detail, int)

@@ -41,6 +41,8 @@ ANY = 0.5
 """How often a branch is chosen without regard to what is open, from each condition alike."""
 COMPARED = 6
 """Branches of which the one is taken that was tried least."""
+MORE = 3
+"""Once each thing is shown, the leaves that are left are looked for so many times as long."""
 ALIKE = 6
 """Branches kept of one condition of the system."""
 
@@ -82,7 +84,7 @@ class FoundCase:
 
 
 @dataclass(slots=True)
-class Found:
+class SearchResult:
     """The cases, and the goals that none of them shows."""
 
     cases: list[FoundCase]
@@ -122,20 +124,27 @@ class CaseSearch:
         self.causes = {i.name: _causes(i.component) for i in system.instances}
         self.cuts = sorted({number for choice in self.choices for number in choice.numbers})
 
-    def found(self) -> Found:
+    def found(self) -> SearchResult:
         """Search, and choose the cases."""
+        first = 0
         while self.open and self.executed < self.effort:
+            if any(goal.kind is not GoalKind.LEFT for goal in self.open):
+                first = self.executed
+            elif self.executed > max(MORE * first, self.effort // 10):
+                break
             self._go_on(self._best())
         cases = list(self._chosen())
         met = {goal for case in cases for goal in case.shows}
         left = [goal for goal in self.goals if goal not in met]
-        return Found(cases, self.goals, left, self.executed, self.stuck)
+        return SearchResult(cases, self.goals, left, self.executed, self.stuck)
 
     # --- one try
 
     def _best(self) -> Branch:
         """One that is near to an open goal, each goal as often as others; sometimes any."""
-        near = [goal for goal in self.open if self.near.get((*goal.element[:2], goal.state))]
+        near = [
+            goal for goal in self._wanted_first() if self.near.get((*goal.element[:2], goal.state))
+        ]
         if near and self.chance.random() > ANY:
             goal = self.chance.choice(near)
             pool = self.near[*goal.element[:2], goal.state]
@@ -144,6 +153,11 @@ class CaseSearch:
             pool = min(alike, key=lambda some: sum(one.tries for one in some))
         some = [self.chance.choice(pool) for _ in range(COMPARED)]
         return min(some, key=lambda one: one.tries)
+
+    def _wanted_first(self) -> list[Goal]:
+        """The open goals; at first not those that ask for more than each thing once."""
+        first = [goal for goal in self.open if goal.kind is not GoalKind.LEFT]
+        return first if first and 2 * self.executed < self.effort else self.open
 
     def _keep(self, machine: Machine, at: int, entries: tuple[Stimulus, ...]) -> None:
         """A branch, unless there are enough that are like it."""
@@ -172,7 +186,7 @@ class CaseSearch:
     def _near(self, branch: Branch) -> list[tuple[str, Goal]]:
         """The open goals whose state is active, each with an instance where it is."""
         active = self._active(branch)
-        places = ((goal, (*goal.element[:2], goal.state)) for goal in self.open)
+        places = ((goal, (*goal.element[:2], goal.state)) for goal in self._wanted_first())
         return [(active[place], goal) for goal, place in places if place in active]
 
     def _go_on(self, branch: Branch) -> None:

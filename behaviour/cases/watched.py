@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 from ravenchart.behaviour.interpreter.machine import Machine
-from ravenchart.behaviour.interpreter.region import Happened, Nothing, Occurrence, RegionRun
+from ravenchart.behaviour.interpreter.region import (
+    ExecutedTransition,
+    Happened,
+    Nothing,
+    Occurrence,
+    RegionRun,
+)
 from ravenchart.gen.model.statechart import Transition, When
 from ravenchart.gen.model.system import System
 
@@ -33,6 +39,15 @@ class WatchedRegion(RegionRun):
     def _effect(self, transition: Transition) -> None:
         self.coverage.take((self.component, self.region.name, transition.name))
         super()._effect(transition)
+
+    def _fire(self, firing: ExecutedTransition) -> None:
+        inside = [state for state in self.configuration() if self.tree.states[state].is_leaf]
+        for transition in firing.effects:
+            element = self.component, self.region.name, transition.name
+            for leaf in inside:
+                if transition.source in self.tree.around(leaf):
+                    self.coverage.leave(element, leaf)
+        super()._fire(firing)
 
     def _defer(self, event: Happened) -> None:
         for state in self.configuration():

@@ -15,6 +15,10 @@ class Exhausted(Exception):  # noqa: N818
     """The check has taken the work that it may take."""
 
 
+class TooManyQuestions(Exception):  # noqa: N818
+    """One region would take more questions than it may."""
+
+
 @dataclass
 class Budget:
     """How much work the whole check may take, in situations and questions, and how far it got."""

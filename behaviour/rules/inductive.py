@@ -29,6 +29,7 @@ from ravenchart.gen.model.statechart import OnEvent, Region, Segment, Transition
 from ravenchart.gen.model.system import System
 
 from . import logic
+from .budget import TooManyQuestions
 from .cells import partition
 from .logic import Term, Variable
 from .moves import ChartMove, Position, TooManyMoves, guard_of, moves_of
@@ -138,7 +139,7 @@ def _of_region(
         kept = tuple(one.name for one in invariants if one.name in search.bad)
         facts = tuple(search.facts())
         return SafeRegion(component.name, region.name, kept, facts, tuple(sorted(search.alone)))
-    except (TooManyMoves, _TooMany):
+    except (TooManyMoves, TooManyQuestions):
         return None
 
 
@@ -149,10 +150,6 @@ def _guarded(region: Region) -> Iterator[str]:
             continue
         if one.guard is not None or isinstance(one.trigger, When):
             yield one.name
-
-
-class _TooMany(Exception):  # noqa: N818
-    """More questions than one region may ask."""
 
 
 @dataclass
@@ -272,7 +269,7 @@ class _Search:
         """A solver that was asked about some terms, with the tracked ones as assumptions."""
         self.questions += 1
         if self.questions > MOST_QUESTIONS:
-            raise _TooMany
+            raise TooManyQuestions
         solver = logic.solver()
         solver.add(*terms)
         marks = [z3.Bool(f"known {i}") for i in range(len(tracked))]
@@ -318,7 +315,7 @@ class _Search:
         if self.answer == z3.unsat:
             return False
         if self.answer != z3.sat:
-            raise _TooMany
+            raise TooManyQuestions
         model, pairs = solver.model(), dict(_by_id(self.written(move)))
         before = self.weight()
         for vertex in filter(self.is_marked, move.after.vertices):
@@ -330,7 +327,7 @@ class _Search:
             if isinstance(claim, str) and z3.is_false(model.eval(kept, model_completion=True)):
                 del self.bad[claim]
         if self.weight() == before:
-            raise _TooMany
+            raise TooManyQuestions
         return True
 
     def weight(self) -> int:

@@ -18,7 +18,7 @@ from ravenchart.gen.model.safety import knows_guards
 from ravenchart.gen.model.statechart import PseudoKind, Segment, Transition, When
 
 from .logic import Questions, Read, Term, Variable, term
-from .stepping import Configuration, OpenStep, Path
+from .stepping import Configuration, OpenStep, TransitionPath
 from .tree import START, TOP, RegionTree, Slot
 
 MOST_PLACES = 300
@@ -49,7 +49,7 @@ class ChartMove:
     condition: Term
     updates: dict[Variable, Term]
     after: Position
-    path: Path
+    path: TransitionPath
     """The transition or segment, with its way; empty at the start and for what a history enters."""
 
 
@@ -104,7 +104,7 @@ class _Mover(OpenStep):
             elif isinstance(action, If):
                 self.merge(action)
 
-    def move(self, before: Position | None, condition: Term, path: Path) -> ChartMove:
+    def move(self, before: Position | None, condition: Term, path: TransitionPath) -> ChartMove:
         """What has been done so far."""
         place = Position(self.tree.ordered(self.active), tuple(sorted(self.arrivals)))
         return ChartMove(before, condition, self.store, place, path)
@@ -177,7 +177,7 @@ def _leaves(tree: RegionTree, slot: Slot) -> list[str]:
     ]
 
 
-def _ways(tree: RegionTree, place: Position, transition: Transition) -> Iterator[Path]:
+def _ways(tree: RegionTree, place: Position, transition: Transition) -> Iterator[TransitionPath]:
     """A transition with each way through junctions; a join only where all its sources are."""
     kind = tree.kinds.get(transition.target)
     if kind is PseudoKind.JUNCTION:
@@ -193,20 +193,20 @@ def _ways(tree: RegionTree, place: Position, transition: Transition) -> Iterator
 
 
 def _fired(
-    tree: RegionTree, place: Position, questions: Questions, path: Path, *, known: bool
+    tree: RegionTree, place: Position, questions: Questions, path: TransitionPath, *, known: bool
 ) -> ChartMove:
     mover = _mover(tree, place, questions)
     mover.fire(path)
     return mover.move(place, guard_of(path, questions.read) if known else z3.BoolVal(True), path)
 
 
-def guard_of(path: Path, symbols: Read) -> Term:
+def guard_of(path: TransitionPath, symbols: Read) -> Term:
     """The condition under which a path is enabled, its source and trigger aside."""
     asked = [term(guard, symbols) for guard in _guards(path)]
     return z3.And(asked) if asked else z3.BoolVal(True)
 
 
-def _guards(path: Path) -> Iterator[Expression]:
+def _guards(path: TransitionPath) -> Iterator[Expression]:
     for transition in path:
         if isinstance(transition.trigger, When):
             yield transition.trigger.condition

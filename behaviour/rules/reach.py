@@ -26,7 +26,7 @@ from ravenchart.gen.model.statechart import DONE, After, Every, When
 from ravenchart.gen.model.system import System
 
 from . import logic
-from .budget import Budget
+from .budget import Budget, TooManyQuestions
 from .cells import actions, expressions, partition
 from .logic import Term, Variable
 from .outcomes import Outcome, outcomes
@@ -179,7 +179,7 @@ class Reachable:
             recalls = thread.recalls()
             try:
                 self._explore(thread)
-            except _TooMany:
+            except TooManyQuestions:
                 thread.look_coarser()
                 continue
             if thread.recalls() == recalls:
@@ -225,7 +225,7 @@ class Reachable:
         if after in thread.nodes:
             return
         if len(thread.nodes) == thread.most:
-            raise _TooMany
+            raise TooManyQuestions
         thread.nodes[after] = edge
         yield after, after.configuration, None
         if thread.parts is not None and not after.configuration.stopped:
@@ -333,7 +333,7 @@ class Reachable:
         while (answer := self.budget.ask(solver)) != z3.unsat:
             thread.questions += 1
             if thread.questions > MOST_QUESTIONS and thread.tells_more:
-                raise _TooMany
+                raise TooManyQuestions
             if answer == z3.unknown:
                 yield from self._all(fixed, open_)
                 break
@@ -354,7 +354,7 @@ class Reachable:
         if key not in thread.answers:
             thread.questions += 1
             if thread.questions > MOST_QUESTIONS and thread.tells_more:
-                raise _TooMany
+                raise TooManyQuestions
             solver.push()
             solver.add(*self.of_node(thread, cells), condition)
             thread.answers[key] = condition, bool(self.budget.ask(solver) != z3.unsat)
@@ -394,10 +394,6 @@ class Reachable:
             way.append(edge)
             edge = thread.nodes[edge.before]
         return way[::-1]
-
-
-class _TooMany(Exception):  # noqa: N818
-    """More questions than a region may ask about its data."""
 
 
 def _is_value(value: Term) -> bool:

@@ -52,7 +52,7 @@ class DeferredStep:
     state: str
 
 
-Path = tuple[Transition, ...]
+TransitionPath = tuple[Transition, ...]
 """A compound transition: through junctions, to a vertex that is none."""
 
 
@@ -171,9 +171,9 @@ class OpenStep:
 
     # --- selection
 
-    def select(self) -> list[Path]:
+    def select(self) -> list[TransitionPath]:
         """What each lane selects, in lane order; nothing when the event is deferred."""
-        chosen: list[Path] = []
+        chosen: list[TransitionPath] = []
         deferring: list[str] = []
         busy: set[str] = set()
         chains: dict[Lane, list[str]] = {}
@@ -196,7 +196,7 @@ class OpenStep:
         ]
         return [] if self.deferred else chosen
 
-    def select_in(self, chain: Sequence[str]) -> Path | DeferredStep | None:
+    def select_in(self, chain: Sequence[str]) -> TransitionPath | DeferredStep | None:
         """The first enabled transition of the states of a lane, innermost first."""
         for name in chain:
             path = self.first_of(self.tree.triggered(name, self.occurrence))
@@ -208,7 +208,7 @@ class OpenStep:
                 return DeferredStep(name)
         return None
 
-    def through(self, transition: Transition) -> Path | None:
+    def through(self, transition: Transition) -> TransitionPath | None:
         """The compound transition that begins with this one; None when it is disabled."""
         if isinstance(transition.trigger, When) and not self.holds(transition.trigger.condition):
             return None
@@ -222,11 +222,11 @@ class OpenStep:
             return self.joined(transition.target)
         return (transition,)
 
-    def way_out(self, vertex: str) -> Path | None:
+    def way_out(self, vertex: str) -> TransitionPath | None:
         """The first enabled path out of a pseudostate."""
         return self.first_of(self.tree.outgoing[vertex])
 
-    def first_of(self, transitions: Sequence[Transition]) -> Path | None:
+    def first_of(self, transitions: Sequence[Transition]) -> TransitionPath | None:
         """The first enabled path that begins with one of these."""
         for index, transition in enumerate(transitions):
             path = self.through(transition)
@@ -239,7 +239,7 @@ class OpenStep:
                 return path
         return None
 
-    def joined(self, join: str) -> Path | None:
+    def joined(self, join: str) -> TransitionPath | None:
         """The segments of a join, when every source has completed."""
         incoming = self.tree.incoming[join]
         if not all(self.has_completed(t.source) for t in incoming):
@@ -256,11 +256,11 @@ class OpenStep:
 
     # --- firing
 
-    def fire_all(self, paths: Sequence[Path]) -> None:
+    def fire_all(self, paths: Sequence[TransitionPath]) -> None:
         """Fire what was selected; what an earlier firing conflicts with is dropped."""
         self.firing = True
-        made: list[Path] = []
-        leaving: dict[str, Path] = {}
+        made: list[TransitionPath] = []
+        leaving: dict[str, TransitionPath] = {}
         for index, path in enumerate(paths):
             clash = [o for o in made if self.conflict(path, o) or self.conflict(o, path)]
             if not clash and self.source(path) not in self.active:
@@ -278,7 +278,7 @@ class OpenStep:
                 self.beaten += [Beaten(p[0].name, path[0].name, Defeat.END) for p in rest]
                 return
 
-    def conflict(self, one: Path, other: Path) -> bool:
+    def conflict(self, one: TransitionPath, other: TransitionPath) -> bool:
         """Whether the first leaves a state that the source of the other is inside."""
         if one[0].kind is TransitionKind.INTERNAL:
             return False
@@ -286,14 +286,14 @@ class OpenStep:
         chain = self.tree.chains[self.source(other)]
         return any(self.tree.slots[name] == boundary for name in chain)
 
-    def source(self, path: Path) -> str:
+    def source(self, path: TransitionPath) -> str:
         """Where a compound transition starts: for a join, the state around its sources."""
         if self.tree.kinds.get(path[0].target) is PseudoKind.JOIN:
             sources = tuple(t.source for t in self.tree.incoming[path[0].target])
             return self.tree.around_all(sources)
         return path[0].source
 
-    def goal(self, path: Path) -> str:
+    def goal(self, path: TransitionPath) -> str:
         """Where it leads: for a fork, the orthogonal state."""
         target = path[-1].target
         if self.tree.kinds.get(target) is PseudoKind.FORK:
@@ -301,7 +301,7 @@ class OpenStep:
             return self.tree.around_all(targets)
         return target
 
-    def boundary(self, path: Path) -> Slot:
+    def boundary(self, path: TransitionPath) -> Slot:
         """The region whose active child a transition leaves."""
         source, goal = self.source(path), self.goal(path)
         if path[0].kind is TransitionKind.LOCAL and source in self.tree.chains[goal][1:]:
@@ -309,7 +309,7 @@ class OpenStep:
             return self.tree.slots[chain[chain.index(source) - 1]]
         return self.tree.common(source, goal)
 
-    def fire(self, path: Path) -> None:
+    def fire(self, path: TransitionPath) -> None:
         """Fire a compound transition: exits, effects, entries."""
         if path[0].kind is TransitionKind.INTERNAL:
             self.effect(path[0])

@@ -21,7 +21,7 @@ from .located import Map, Seq, scalar
 from .schema import ModelFile
 from .schema_base import REQUIREMENTS
 
-Path = tuple[str | int, ...]
+FormPath = tuple[str | int, ...]
 
 ELSEWHERE: dict[str, str] = (
     {
@@ -64,7 +64,7 @@ def check(tree: Map) -> tuple[ModelFile | None, list[Diagnostic]]:
         read = _read(tree)
         if isinstance(read, ModelFile):
             return read, found
-        paths: set[Path] = set()
+        paths: set[FormPath] = set()
         for item in read:
             place = ErrorPlace(tree, item["loc"])
             if not place.follows_from(removed, item["type"]):
@@ -106,7 +106,7 @@ class ErrorPlace:
                 path.append(step)
             elif isinstance(step, str) and not step.startswith("<"):
                 self.missing = step
-        self.path: Path = tuple(path)
+        self.path: FormPath = tuple(path)
 
     def follows_from(self, removed: set[int], kind: str) -> bool:
         """Whether the error is there only because something inside was taken out."""
@@ -310,7 +310,7 @@ def _tagged(kind: Any, tag: str) -> Any:
     return None
 
 
-def _remove(tree: Map, paths: set[Path], removed: set[int]) -> bool:
+def _remove(tree: Map, paths: set[FormPath], removed: set[int]) -> bool:
     """Take the values at these paths out, later items first; whether any was there."""
     outermost = [p for p in paths if not any(p[:n] in paths for n in range(len(p)))]
     any_gone = False

@@ -11,7 +11,7 @@ NOTHING = Ns(0)
 
 
 @dataclass(frozen=True, slots=True)
-class Claim:
+class ResponseClaim:
     """A response from the event that leads to it, and the windows that show it.
 
     ``windows`` holds, for each job or instance of the busy period, the time from its
@@ -42,7 +42,7 @@ class Claims:
     What they are about is not theirs to say: numbers only.
     """
 
-    items: Mapping[str, Claim] = field(default_factory=dict)
+    items: Mapping[str, ResponseClaim] = field(default_factory=dict)
     """Tasks and messages."""
     rows: Mapping[str, Ns] = field(default_factory=dict)
     """Responses of rows inside their jobs: those that chains need."""
@@ -51,7 +51,7 @@ class Claims:
     own responses would let them wait longer."""
     busiest: Mapping[str, Ns] = field(default_factory=dict)
     """How long a bus is busy at most, by its name: where messages wait by that."""
-    turns: Mapping[str, Claim] = field(default_factory=dict)
+    turns: Mapping[str, ResponseClaim] = field(default_factory=dict)
     """Received messages: when the reception turns to them."""
     chains: Mapping[str, ChainClaim] = field(default_factory=dict)
     """The model's chains by name."""
@@ -63,6 +63,6 @@ class Claims:
     transfers: Mapping[str, tuple[Ns, Ns]] = field(default_factory=dict)
     """Messages in several frames: the round trip of flow control, and the whole transfer."""
 
-    def of(self, element: str) -> Claim:
+    def of(self, element: str) -> ResponseClaim:
         """The claim about a task or message."""
-        return self.items.get(element, Claim())
+        return self.items.get(element, ResponseClaim())

@@ -42,7 +42,7 @@ from .values import constant
 
 
 @dataclass(frozen=True, slots=True)
-class Site:
+class DeploymentNames:
     """What the elements of a deployment may refer to."""
 
     nodes: NameScope[Node]
@@ -124,7 +124,7 @@ def bus_of(name: str, form: BusForm, findings: Findings) -> Bus:
     )
 
 
-def with_events(bus: Bus, form: BusForm, site: Site) -> tuple[Bus, bool]:
+def with_events(bus: Bus, form: BusForm, site: DeploymentNames) -> tuple[Bus, bool]:
     """The bus with the events that it raises and is asked by, and whether all of them are sound."""
     lists: list[tuple[str, BusForm | RequestedForm, str, list[str] | None]] = [
         ("on_error_passive", form, "on_error_passive", form.on_error_passive),
@@ -155,7 +155,7 @@ def with_events(bus: Bus, form: BusForm, site: Site) -> tuple[Bus, bool]:
     )
 
 
-def instance_of(name: str, form: InstanceForm, site: Site) -> Instance | None:
+def instance_of(name: str, form: InstanceForm, site: DeploymentNames) -> Instance | None:
     """An instance with all its parameters; None when its component or node is not sound."""
     findings = site.findings
     parts = site.parts.look_up(form.component, form.at("component"), findings)
@@ -197,7 +197,7 @@ def _split(text: str, shape: str, origin: Origin, findings: Findings) -> tuple[s
 
 
 def _member(
-    text: str, shape: str, origin: Origin, site: Site
+    text: str, shape: str, origin: Origin, site: DeploymentNames
 ) -> tuple[Instance, Parts, str] | None:
     """The instance of ``instance.name``, what its component has, and the name."""
     pair = _split(text, shape, origin, site.findings)
@@ -208,7 +208,7 @@ def _member(
     return None if instance is None or parts is None else (instance, parts, pair[1])
 
 
-def port_at(text: str, origin: Origin, site: Site) -> tuple[End, Port] | None:
+def port_at(text: str, origin: Origin, site: DeploymentNames) -> tuple[End, Port] | None:
     """The port that ``instance.port`` names."""
     found = _member(text, "instance.port", origin, site)
     if found is None:
@@ -224,7 +224,7 @@ def port_at(text: str, origin: Origin, site: Site) -> tuple[End, Port] | None:
     return None if port is None else (End(instance.name, port.name), port)
 
 
-def event_at(text: str, origin: Origin, site: Site) -> tuple[str, str] | None:
+def event_at(text: str, origin: Origin, site: DeploymentNames) -> tuple[str, str] | None:
     """The (instance, event) that ``instance.Event`` names."""
     found = _member(text, "instance.Event", origin, site)
     if found is None:
@@ -239,7 +239,9 @@ def event_at(text: str, origin: Origin, site: Site) -> tuple[str, str] | None:
     return None if event is None else (instance.name, event.name)
 
 
-def end_at(text: str, origin: Origin, wanted: Direction, site: Site) -> tuple[End, Port] | None:
+def end_at(
+    text: str, origin: Origin, wanted: Direction, site: DeploymentNames
+) -> tuple[End, Port] | None:
     """A port of the wanted direction."""
     found = port_at(text, origin, site)
     if found is None or found[1].direction is wanted:
@@ -252,7 +254,7 @@ def end_at(text: str, origin: Origin, wanted: Direction, site: Site) -> tuple[En
     return None
 
 
-def connection_of(form: ConnectionForm, site: Site) -> Connection | None:
+def connection_of(form: ConnectionForm, site: DeploymentNames) -> Connection | None:
     """A connection between two ports that exist, of the right directions."""
     source = end_at(form.from_, form.at("from"), Direction.OUT, site)
     target = end_at(form.to, form.at("to"), Direction.IN, site)
@@ -261,7 +263,7 @@ def connection_of(form: ConnectionForm, site: Site) -> Connection | None:
     return Connection(form.origin, source[0], target[0])
 
 
-def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None:
+def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Processor | None:
     """A processor with its table; divisors and priority are left to `derive`."""
     findings = site.findings
     node = None
@@ -326,7 +328,7 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
     )
 
 
-def _slot(text: str, origin: Origin, form: ProcessorForm, site: Site) -> Slot | None:
+def _slot(text: str, origin: Origin, form: ProcessorForm, site: DeploymentNames) -> Slot | None:
     """One row of a table."""
     pair = _split(text, "instance.name or bus.receive", origin, site.findings)
     if pair is None:
@@ -357,7 +359,7 @@ def _slot(text: str, origin: Origin, form: ProcessorForm, site: Site) -> Slot | 
 
 
 def _bus_slot(
-    text: str, name: str, owner: str, origin: Origin, form: ProcessorForm, site: Site
+    text: str, name: str, owner: str, origin: Origin, form: ProcessorForm, site: DeploymentNames
 ) -> Slot | None:
     """The row ``bus.receive``, the driver's time for one frame, or ``bus.watch``."""
     site.buses.used(owner, origin, site.findings)
@@ -380,7 +382,9 @@ def _bus_slot(
     return Slot(origin, bus.name, Work.BUS_RECEIVE, "receive", timing, 1, 0)
 
 
-def chain_of(name: str, form: ChainForm, messages: NameScope[Message], site: Site) -> Chain | None:
+def chain_of(
+    name: str, form: ChainForm, messages: NameScope[Message], site: DeploymentNames
+) -> Chain | None:
     """A chain whose messages and rows exist."""
     places: list[str | None] = []
     for index, text in enumerate(form.path):
@@ -401,7 +405,7 @@ def chain_of(name: str, form: ChainForm, messages: NameScope[Message], site: Sit
     return Chain(name, form.origin, tuple(p for p in places if p), reaction, age)
 
 
-def _row_at(text: str, origin: Origin, site: Site) -> str | None:
+def _row_at(text: str, origin: Origin, site: DeploymentNames) -> str | None:
     """The id of the row ``instance.name``."""
     found = _member(text, "a message or instance.row", origin, site)
     if found is None:
@@ -411,7 +415,7 @@ def _row_at(text: str, origin: Origin, site: Site) -> str | None:
     return None if row is None else f"{instance.name}.{row}"
 
 
-def shutdown_of(form: ShutdownForm | None, site: Site) -> Shutdown:
+def shutdown_of(form: ShutdownForm | None, site: DeploymentNames) -> Shutdown:
     """What a request to stop does."""
     if form is None:
         return Shutdown((), Ns(0))

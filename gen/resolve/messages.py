@@ -22,7 +22,7 @@ from ravenchart.gen.model.transport import Transport
 from ravenchart.gen.origins import Origin
 
 from .authentication import authentication_of
-from .deployment import Site, end_at, event_at
+from .deployment import DeploymentNames, end_at, event_at
 from .layouts import layout_of, size_of
 from .protection import protection_of
 from .transmission import transmission_of
@@ -32,7 +32,7 @@ MEANINGLESS = ("signals", "multiplexor", "protection", "authentication", "transp
 """Keys of a message whose value nobody here knows."""
 
 
-def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
+def message_of(name: str, form: MessageForm, site: DeploymentNames) -> Message | None:
     """A message, its signals laid out; its type is that of its ports."""
     findings = site.findings
     bus = site.buses.look_up(form.bus, form.at("bus"), findings)
@@ -122,7 +122,7 @@ def _travels(
     signals: tuple[Signal, ...],
     ports: tuple[Port, ...],
     period: Ns,
-    site: Site,
+    site: DeploymentNames,
 ) -> _Travels | None:
     """How frames of a message with these signals go; None where they cannot as it is given."""
     findings = site.findings
@@ -151,7 +151,9 @@ def _travels(
     return _Travels(length, least, protection, authentication, transmission)
 
 
-def _message_protection(name: str, form: MessageForm, length: int, site: Site) -> Protection | None:
+def _message_protection(
+    name: str, form: MessageForm, length: int, site: DeploymentNames
+) -> Protection | None:
     """The protection of a message of so many bytes; None where it has none, or no sound one."""
     if form.protection is None:
         return None
@@ -161,7 +163,7 @@ def _message_protection(name: str, form: MessageForm, length: int, site: Site) -
 
 
 def _message_authentication(
-    name: str, form: MessageForm, signals: tuple[Signal, ...], site: Site
+    name: str, form: MessageForm, signals: tuple[Signal, ...], site: DeploymentNames
 ) -> Authentication | None:
     """The authentication of a message; None where it has none, or no sound one."""
     if form.authentication is None:
@@ -172,7 +174,7 @@ def _message_authentication(
 
 
 def _refusals(
-    given: ProtectionForm | AuthenticationForm, site: Site
+    given: ProtectionForm | AuthenticationForm, site: DeploymentNames
 ) -> tuple[tuple[str, str], ...] | None:
     """The events that a frame raises which is not used; None where not all are sound."""
     if given.lost("on_error") or given.list_damaged("on_error"):
@@ -186,7 +188,7 @@ def _refusals(
 
 
 def _message_period(
-    name: str, form: MessageForm, source: tuple[End, Port] | None, site: Site
+    name: str, form: MessageForm, source: tuple[End, Port] | None, site: DeploymentNames
 ) -> Ns | None:
     """The period given, or the shortest of what sends the message."""
     findings = site.findings

@@ -34,7 +34,7 @@ from ravenchart.gen.origins import Origin
 from .bindings import bindings_of, event_wires, given_bindings, with_bindings
 from .components import parts_of
 from .deployment import (
-    Site,
+    DeploymentNames,
     bus_of,
     chain_of,
     connection_of,
@@ -233,7 +233,7 @@ class _Sections:
         if self.findings.count() == before and not scope.has_lost():
             self.sound.add(section)
 
-    def connections(self, site: Site) -> tuple[Connection, ...]:
+    def connections(self, site: DeploymentNames) -> tuple[Connection, ...]:
         """The connections, which have no names."""
         before, lost = self.findings.count(), False
         made: list[Connection | None] = []
@@ -278,7 +278,7 @@ class _Sections:
             self.sound.discard("connections")
         return made, wires, polls
 
-    def buses(self, site: Site) -> tuple[Bus, ...]:
+    def buses(self, site: DeploymentNames) -> tuple[Bus, ...]:
         """The buses, with the events that they raise and are asked by."""
         forms = dict(self.model.entries("buses"))
         found = [with_events(bus, forms[bus.name], site) for bus in site.buses.sound()]
@@ -286,7 +286,7 @@ class _Sections:
             self.sound.discard("processors")
         return tuple(bus for bus, _ in found)
 
-    def shutdown(self, site: Site) -> Shutdown:
+    def shutdown(self, site: DeploymentNames) -> Shutdown:
         """What a request to stop does."""
         given = [file.shutdown for file in self.model.files if file.shutdown is not None]
         lost = any(file.lost("shutdown") for file in self.model.files)
@@ -319,7 +319,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     nodes = sections.named("nodes", "node", lambda key, form: node_of(key, form, findings))
     buses = sections.named("buses", "bus", lambda name, form: bus_of(name, form, findings))
     instances = sections.scope("instances", "instance")
-    site = Site(nodes, buses, parts, instances, findings)
+    site = DeploymentNames(nodes, buses, parts, instances, findings)
     sections.fill("instances", instances, lambda key, form: instance_of(key, form, site))
     connections = sections.connections(site)
     kinds = sections.named(

@@ -26,7 +26,7 @@ from ravenchart.gen.language.terms import (
 )
 from ravenchart.gen.origins import Origin
 
-from .vocabulary import EVENT, Checked, Vocabulary, described, literal_use, range_of
+from .vocabulary import EVENT, CheckedExpression, Vocabulary, described, literal_use, range_of
 
 FUNCTIONS: Mapping[str, int] = {
     "abs": 1,
@@ -59,7 +59,9 @@ class Checker:
         """Report an error at a term."""
         self.findings.error(code, self.at(term), message, hint=hint)
 
-    def check(self, term: Term, expected: EnumerationType | None = None) -> Checked | None:
+    def check(
+        self, term: Term, expected: EnumerationType | None = None
+    ) -> CheckedExpression | None:
         """The typed expression; None when an error was reported."""
         match term.kind:
             case "number":
@@ -67,7 +69,7 @@ class Checker:
                 if value > intervals.WORD:
                     self.refuse("RV-0408", term, "a number is at most 2^63 - 1")
                     return None
-                return Checked(Literal(value, None), None, (value, value), None, True)
+                return CheckedExpression(Literal(value, None), None, (value, value), None, True)
             case "name" | "member":
                 return self.name(term, expected)
             case "inside":
@@ -86,7 +88,7 @@ class Checker:
             return free and term.word.lower() not in ("true", "false")
         return term.word == "if" and all(self.is_free(t) for t in term.operands[1:])
 
-    def name(self, term: Term, expected: EnumerationType | None) -> Checked | None:
+    def name(self, term: Term, expected: EnumerationType | None) -> CheckedExpression | None:
         """A name: data, a parameter, an input port, a field of one, or a literal."""
         readable = self.vocabulary.readable
         if not readable.knows(term.word):
@@ -113,17 +115,17 @@ class Checker:
         self.refuse("RV-0403", term, message, hint)
         return None
 
-    def reading(self, name: Name, type_: Type) -> Checked:
+    def reading(self, name: Name, type_: Type) -> CheckedExpression:
         """What reading a name yields."""
         if isinstance(type_, IntegerType):
             bounds = self.known.get((name.kind, name.name, name.field), (type_.first, type_.last))
-            return Checked(name, None, bounds, type_.unit)
-        return Checked(name, type_)
+            return CheckedExpression(name, None, bounds, type_.unit)
+        return CheckedExpression(name, type_)
 
-    def literal(self, term: Term, expected: EnumerationType | None) -> Checked | None:
+    def literal(self, term: Term, expected: EnumerationType | None) -> CheckedExpression | None:
         """A name that is not one of the component's: an enumeration literal, then."""
         if term.kind == "name" and term.word.lower() in ("true", "false"):
-            return Checked(Literal(term.word.capitalize(), BOOLEAN), BOOLEAN)
+            return CheckedExpression(Literal(term.word.capitalize(), BOOLEAN), BOOLEAN)
         known = self.vocabulary.readable.names()
         fitting = () if expected is None else expected.literals
         if term.word.lower() not in map(str.lower, fitting):
@@ -146,14 +148,14 @@ class Checker:
             for literal in expected.literals:
                 if literal.lower() == term.word.lower():
                     self.findings.uses.append(literal_use(literal, expected, self.at(term)))
-                    return Checked(Literal(literal, expected), expected)
+                    return CheckedExpression(Literal(literal, expected), expected)
             near = meant(term.word, (*expected.literals, *known))
             hint = near if near and near.startswith("did") else meant(term.word, expected.literals)
             message = f"`{term.word}` is no literal of {expected.name}"
             self.refuse("RV-0410", term, message, hint)
         return None
 
-    def inside(self, term: Term) -> Checked | None:
+    def inside(self, term: Term) -> CheckedExpression | None:
         """``in(Region.State)``."""
         states = self.vocabulary.regions.look_up(term.word, self.at(term), self.findings)
         if states is None:
@@ -169,11 +171,11 @@ class Checker:
         if state is None:
             return None
         region = self.vocabulary.regions.items[term.word.lower()][0]
-        return Checked(InState(region, state), BOOLEAN)
+        return CheckedExpression(InState(region, state), BOOLEAN)
 
     # --- Functions and operators ---
 
-    def call(self, term: Term) -> Checked | None:
+    def call(self, term: Term) -> CheckedExpression | None:
         """A function applied."""
         function = term.word.lower()
         if function not in FUNCTIONS:
@@ -191,10 +193,10 @@ class Checker:
                 self.refuse("RV-0404", port, f"`{function}` takes the name of an input port")
                 return None
             found = self.vocabulary.inputs.look_up(port.word, self.at(port), self.findings)
-            return None if found is None else Checked(PortTest(found, function), BOOLEAN)
+            return None if found is None else CheckedExpression(PortTest(found, function), BOOLEAN)
         return self.arithmetic(function, term, self.numbers(term, term.operands))
 
-    def operator(self, term: Term, expected: EnumerationType | None) -> Checked | None:
+    def operator(self, term: Term, expected: EnumerationType | None) -> CheckedExpression | None:
         """An operator applied."""
         if term.word == "if":
             return self.choose(term, expected)
@@ -206,7 +208,7 @@ class Checker:
             return self.sign(term)
         return self.arithmetic(term.word, term, self.numbers(term, term.operands))
 
-    def sign(self, term: Term) -> Checked | None:
+    def sign(self, term: Term) -> CheckedExpression | None:
         """A sign before an operand."""
         operands = self.numbers(term, term.operands)
         if operands is None or term.word == "+":
@@ -214,10 +216,10 @@ class Checker:
         inner = operands[0].expression
         if isinstance(inner, Literal) and isinstance(inner.value, int):
             value = -inner.value
-            return Checked(Literal(value, None), None, (value, value), None, True)
+            return CheckedExpression(Literal(value, None), None, (value, value), None, True)
         return self.arithmetic("neg", term, operands)
 
-    def numbers(self, term: Term, operands: tuple[Term, ...]) -> list[Checked] | None:
+    def numbers(self, term: Term, operands: tuple[Term, ...]) -> list[CheckedExpression] | None:
         """The operands, all integers."""
         checked = [self.check(operand) for operand in operands]
         sound = [item for item in checked if item is not None]
@@ -232,8 +234,8 @@ class Checker:
         return None if wrong else sound
 
     def arithmetic(
-        self, operator: str, term: Term, operands: list[Checked] | None
-    ) -> Checked | None:
+        self, operator: str, term: Term, operands: list[CheckedExpression] | None
+    ) -> CheckedExpression | None:
         """An operation on integers, its unit and its bounds."""
         if operands is None:
             return None
@@ -266,9 +268,9 @@ class Checker:
             return None
         terms = tuple(item.expression for item in operands)
         made = folding.arithmetic(Operation(operator, terms, None, unit, *bounds))
-        return Checked(made, None, bounds, unit, bare)
+        return CheckedExpression(made, None, bounds, unit, bare)
 
-    def same_unit(self, term: Term, operator: str, operands: list[Checked]) -> bool:
+    def same_unit(self, term: Term, operator: str, operands: list[CheckedExpression]) -> bool:
         """Whether all operands count the same, or are bare numbers; reported when not."""
         units = list(dict.fromkeys(item.unit for item in operands if not item.bare))
         if len(units) <= 1:
@@ -277,13 +279,13 @@ class Checker:
         self.refuse("RV-0405", term, f"`{operator}` takes operands of one unit, not {words}")
         return False
 
-    def logic(self, term: Term) -> Checked | None:
+    def logic(self, term: Term) -> CheckedExpression | None:
         """``and``, ``or`` or ``not``; the right operand knows what the left one says."""
         left = self.boolean(term.operands[0], f"`{term.word}`")
         if len(term.operands) == 1:
             if left is None:
                 return None
-            return Checked(folding.negated(left.expression), BOOLEAN)
+            return CheckedExpression(folding.negated(left.expression), BOOLEAN)
         before = self.known
         if left is not None:
             self.known = narrowed(self.known, left.expression, term.word == "and")
@@ -291,9 +293,11 @@ class Checker:
         self.known = before
         if left is None or right is None:
             return None
-        return Checked(folding.joined(term.word, left.expression, right.expression), BOOLEAN)
+        return CheckedExpression(
+            folding.joined(term.word, left.expression, right.expression), BOOLEAN
+        )
 
-    def boolean(self, term: Term, taker: str) -> Checked | None:
+    def boolean(self, term: Term, taker: str) -> CheckedExpression | None:
         """A condition."""
         checked = self.check(term, BOOLEAN)
         if checked is not None and checked.type is not BOOLEAN:
@@ -302,7 +306,9 @@ class Checker:
             return None
         return checked
 
-    def pair(self, left: Term, right: Term) -> tuple[Checked | None, Checked | None]:
+    def pair(
+        self, left: Term, right: Term
+    ) -> tuple[CheckedExpression | None, CheckedExpression | None]:
         """Two operands of one type: the one that has a type tells that of a literal."""
         first, second = (right, left) if self.is_free(left) else (left, right)
         one = self.check(first)
@@ -312,7 +318,7 @@ class Checker:
         two = self.check(second, told)
         return (two, one) if first is right else (one, two)
 
-    def comparison(self, term: Term) -> Checked | None:
+    def comparison(self, term: Term) -> CheckedExpression | None:
         """``=``, ``/=`` on numbers and enumerations, the others on numbers."""
         left, right = self.pair(term.operands[0], term.operands[1])
         if left is None or right is None:
@@ -337,9 +343,9 @@ class Checker:
             self.refuse("RV-0417", term, message, hint)
             return None
         compared = folding.compared(term.word, left.expression, right.expression)
-        return Checked(compared, BOOLEAN)
+        return CheckedExpression(compared, BOOLEAN)
 
-    def choose(self, term: Term, expected: EnumerationType | None) -> Checked | None:
+    def choose(self, term: Term, expected: EnumerationType | None) -> CheckedExpression | None:
         """``if condition then a else b``; each branch knows what the condition says."""
         condition = self.boolean(term.operands[0], "`if`")
         before = self.known
@@ -361,14 +367,16 @@ class Checker:
             return None
         terms = (condition.expression, checked.expression, other.expression)
         if checked.type is not None:
-            return Checked(folding.chosen(Operation("if", terms, checked.type)), checked.type)
+            return CheckedExpression(
+                folding.chosen(Operation("if", terms, checked.type)), checked.type
+            )
         if not self.same_unit(term, "if", [checked, other]):
             return None
         bounds = intervals.apply("if", (checked.bounds, other.bounds))
         unit = other.unit if checked.bare else checked.unit
         operation = Operation("if", terms, None, unit, *bounds)
         chosen = folding.chosen(operation)
-        return Checked(chosen, None, bounds, unit, checked.bare and other.bare)
+        return CheckedExpression(chosen, None, bounds, unit, checked.bare and other.bare)
 
 
 def _is_literal_of(word: str, type_: EnumerationType | None) -> bool:
@@ -385,10 +393,10 @@ def read(
     vocabulary: Vocabulary,
     findings: Findings,
     expected: EnumerationType | None = None,
-) -> Checked | None:
+) -> CheckedExpression | None:
     """The typed expression that a value in a model stands for; None after an error."""
     if isinstance(text, bool):
-        return Checked(Literal(str(text), BOOLEAN), BOOLEAN)
+        return CheckedExpression(Literal(str(text), BOOLEAN), BOOLEAN)
     term = parse(str(text))
     checker = Checker(vocabulary, findings, place)
     if isinstance(term, Malformed):

@@ -49,7 +49,7 @@ class Vocabulary:
 
 
 @dataclass(frozen=True, slots=True)
-class Checked:
+class CheckedExpression:
     """A sound expression; an integer has no ``type`` but bounds and a unit.
 
     ``bare`` marks what holds only numbers: it agrees with every unit.
@@ -70,7 +70,7 @@ def literal_use(literal: str, of_type: EnumerationType, origin: Origin) -> NameU
     )
 
 
-def described(checked: Checked) -> str:
+def described(checked: CheckedExpression) -> str:
     """What an expression yields, in words."""
     if checked.type is not None:
         kind = "a record" if isinstance(checked.type, RecordType) else "a value"

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from .peer import BenchError, FrameValues, Peer
-from .plant import STEP, UM, Drive, Mode, Push
+from .plant import STEP, UM, Drive, DriveMode, Push
 from .replay import Timed
 from .scenario import DriveForm
 
@@ -153,10 +153,10 @@ def press(station: Station, switch: str) -> None:
     station.drive.push = Push(switch)
 
 
-def _set_point(name: str, values: FrameValues) -> tuple[Mode, float]:
+def _set_point(name: str, values: FrameValues) -> tuple[DriveMode, float]:
     """Mode and speed in m/s; BenchError when the mode is none that a drive knows."""
     try:
-        return Mode(values["mode"]), int(values["speed"]) / UM
+        return DriveMode(values["mode"]), int(values["speed"]) / UM
     except ValueError as fault:
         raise BenchError(f"{name}: {fault}") from None
 
@@ -178,7 +178,7 @@ def _record(station: Station, now: float) -> None:
     track.position.append(drive.position_um)
     track.speed.append(drive.speed_um)
     track.encoder.append(drive.count)
-    track.set_speed.append(drive.set_speed * UM if drive.mode is Mode.ENABLED else 0.0)
+    track.set_speed.append(drive.set_speed * UM if drive.mode is DriveMode.ENABLED else 0.0)
     known = station.zero is not None and station.ordered is not None
     track.target.append(((station.zero or 0.0) + (station.ordered or 0.0)) * UM if known else None)
 

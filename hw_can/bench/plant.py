@@ -17,7 +17,7 @@ UM = 1e6
 """um in a metre."""
 
 
-class Mode(Enum):
+class DriveMode(Enum):
     """What the drive is told to do: let go and brake, or follow the speed set point."""
 
     DISABLED = "Disabled"
@@ -97,7 +97,7 @@ class Drive:
         self.position = axis.start
         self.speed = 0.0
         self.force = 0.0
-        self.mode = Mode.DISABLED
+        self.mode = DriveMode.DISABLED
         self.set_speed = 0.0
         self.condition = Condition.READY
         self.push = Push.NONE
@@ -107,7 +107,7 @@ class Drive:
         self._silence = 0.0
         self._heard = False
 
-    def command(self, mode: Mode, speed: float) -> None:
+    def command(self, mode: DriveMode, speed: float) -> None:
         """A set point arrived; ``speed`` in m/s."""
         self.mode, self.set_speed = mode, speed
         self._silence, self._heard = 0.0, True
@@ -116,7 +116,7 @@ class Drive:
     def step(self) -> None:
         """Move on by STEP."""
         self._watch()
-        following = self.mode is Mode.ENABLED and self.condition is Condition.READY
+        following = self.mode is DriveMode.ENABLED and self.condition is Condition.READY
         self.force = self._motor() if following else self._release()
         dry = self.axis.coulomb + (0.0 if following else self.axis.brake)
         self._accelerate(dry)
@@ -160,7 +160,7 @@ class Drive:
     def _watch(self) -> None:
         """Fault when an enabled drive hears no set points any more."""
         self._silence += STEP
-        if self._heard and self.mode is Mode.ENABLED and self._silence > self.axis.watchdog:
+        if self._heard and self.mode is DriveMode.ENABLED and self._silence > self.axis.watchdog:
             self.condition = Condition.FAULTED
 
     def _motor(self) -> float:

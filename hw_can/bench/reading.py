@@ -13,7 +13,7 @@ from ravenchart.gen.files.located import Map, Seq, lines_of
 from ravenchart.gen.language.names import REQUIREMENT
 from ravenchart.gen.origins import Origin
 
-Path = tuple[int | str, ...]
+FormPath = tuple[int | str, ...]
 """Keys and numbers of items, from the root of a file."""
 
 KEYS, VALUES, UNKNOWN, MISFIT = "RV-1302", "RV-1303", "RV-1304", "RV-1306"
@@ -44,7 +44,7 @@ class Source:
     tree: Map
     found: list[Diagnostic] = field(default_factory=list)
 
-    def at(self, path: Path, *, key: bool = False) -> Origin:
+    def at(self, path: FormPath, *, key: bool = False) -> Origin:
         """Where a value stands, or its ``key``; of what is not there, what is around it."""
         node: object = self.tree
         origin = self.tree.origin
@@ -60,12 +60,12 @@ class Source:
         return origin
 
     def wrong(
-        self, code: str, path: Path, message: str, hint: str | None = None, *, key: bool = False
+        self, code: str, path: FormPath, message: str, hint: str | None = None, *, key: bool = False
     ) -> None:
         """Report an error."""
         self.found.append(error(code, self.at(path, key=key), message, hint=hint))
 
-    def read(self, form: type[Form], value: object, path: Path) -> Form | None:
+    def read(self, form: type[Form], value: object, path: FormPath) -> Form | None:
         """A form with the keys of a mapping; None, and diagnostics, where it does not fit."""
         try:
             return form.model_validate(value)
@@ -77,7 +77,7 @@ class Source:
     def _report(
         self,
         form: type[BaseModel],
-        path: Path,
+        path: FormPath,
         place: Sequence[int | str],
         kind: str,
         context: object,
@@ -112,7 +112,7 @@ class Source:
             return f"at least {context['ge']}"
         return SHAPES.get(kind) or str(item["msg"]).lower()
 
-    def _inside(self, path: Path) -> Path:
+    def _inside(self, path: FormPath) -> FormPath:
         """The part of a path that the file has: pydantic adds the members of unions."""
         node: object = self.tree
         for number, part in enumerate(path):

@@ -22,8 +22,7 @@ from ravenchart.gen.origins import Origin
 from .plant import Axis
 from .protection import Wrong
 from .quantities import Length, Scalar, Speed, Time
-from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, rendered
-from .reading import Path as Place
+from .reading import KEYS, MISFIT, UNKNOWN, VALUES, FormPath, Source, rendered
 from .replay import fault_of_log
 
 
@@ -291,7 +290,8 @@ class _Counted(_Form):
     @property
     def name(self) -> str:
         """What is counted."""
-        return str(getattr(self, type(self).__name__.lower()))
+        key = next(key for key, kind in EXPECTED.items() if isinstance(self, kind))
+        return str(getattr(self, key))
 
     def allows(self, count: int) -> bool:
         """Whether it may be counted so often."""
@@ -309,7 +309,7 @@ class Lost(_Counted):
     lost: str
 
 
-class Fault(_Counted):
+class CountedFault(_Counted):
     """A fault that the controller counted."""
 
     fault: Literal[
@@ -335,11 +335,11 @@ class Overran(_Counted):
     overran: ElementName
 
 
-Expected = Lost | Fault | Missed | Overran
+Expected = Lost | CountedFault | Missed | Overran
 
 EXPECTED: Mapping[str, type[Expected]] = {
     "lost": Lost,
-    "fault": Fault,
+    "fault": CountedFault,
     "missed": Missed,
     "overran": Overran,
 }
@@ -435,7 +435,7 @@ Kind = TypeVar("Kind", bound=BaseModel)
 
 
 def _one_of(
-    source: Source, kinds: Mapping[str, type[Kind]], raw: object, path: Place
+    source: Source, kinds: Mapping[str, type[Kind]], raw: object, path: FormPath
 ) -> Kind | None:
     """A form that one of its keys tells from the others."""
     known = ", ".join(f"`{key}`" for key in kinds)
@@ -484,7 +484,7 @@ def _fit_together(scenario: Scenario, source: Source) -> None:
             source.wrong(MISFIT, ("bus", index, "at"), message, hint)
 
 
-def _drives_of(step: ScenarioStep) -> Iterator[tuple[Place, str]]:
+def _drives_of(step: ScenarioStep) -> Iterator[tuple[FormPath, str]]:
     """The drives that a step names, and where."""
     match step:
         case Expect():

@@ -36,7 +36,7 @@ class CaseResult:
 
 
 @dataclass(frozen=True, slots=True)
-class LoopbackResult:
+class SuiteResult:
     """How the suite went. ``latencies`` in ns; ``rate`` in frames per second."""
 
     setup: Setup
@@ -61,7 +61,7 @@ class LoopbackResult:
 
 def run(
     ends: Ends, progress: Progress = lambda name: None, cases: Sequence[ConformanceCase] = CASES
-) -> LoopbackResult:
+) -> SuiteResult:
     """Run ``cases`` in order; once no frame arrives at all, the rest is skipped."""
     results: list[CaseResult] = []
     lost = False
@@ -76,7 +76,7 @@ def run(
             if loss is not None:
                 lost, detail = True, f"{detail}{loss}"
         results.append(CaseResult(case.name, verdict, detail, time.monotonic() - began))
-    return LoopbackResult(ends.setup, tuple(results), tuple(ends.latencies), ends.rate)
+    return SuiteResult(ends.setup, tuple(results), tuple(ends.latencies), ends.rate)
 
 
 def _loss(ends: Ends) -> str | None:

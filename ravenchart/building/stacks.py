@@ -20,7 +20,7 @@ from ravenchart.gen.origins import Origin
 from ravenchart.paths import ROOT
 from ravenchart.proof.proving import digest
 from ravenchart.stacks import graph, longest, machine, memory, symbols
-from ravenchart.stacks.longest import LIBRARY, Bound, Depths, Rules
+from ravenchart.stacks.longest import LIBRARY, Depths, Rules, StackBound
 from ravenchart.stacks.report import Memory, MemoryPart, PathStep, Stack
 from ravenchart.tools import children
 
@@ -205,7 +205,7 @@ def _rules(made: BuiltProgram, linked: frozenset[str]) -> Rules:
     regions = [r for c in made.system.components for r in c.regions]
     timers = max((_timers(r.transitions) for r in regions), default=0)
     bounds = {
-        name: Bound(
+        name: StackBound(
             one.get("bytes", 0) + timers * one.get("timer", 0), one["why"], one.get("depth", 1)
         )
         for name, one in given.items()

@@ -47,7 +47,7 @@ class Generation:
 
 
 @dataclass(frozen=True, slots=True)
-class Built:
+class BuiltNode:
     """The program of a node: how it was compiled, and what was found of it."""
 
     node: str
@@ -60,7 +60,7 @@ class Build:
     """The programs of a model, and ``files``: the SHA-256 of all that was examined."""
 
     generation: Generation
-    programs: tuple[Built, ...]
+    programs: tuple[BuiltNode, ...]
     files: Mapping[str, str]
 
     def holds(self) -> bool:
@@ -103,7 +103,7 @@ def keep_build(
     checked: Checked,
     done: Written,
     switches: Sequence[str],
-    programs: Sequence[Built],
+    programs: Sequence[BuiltNode],
     facts: Iterable[Path],
 ) -> None:
     """Keep what a build made; ``facts`` are the files by which the programs were examined."""
@@ -177,16 +177,16 @@ def _generation(entry: Any) -> Generation | None:
     return Generation(str(entry["warnings"]), found, written)
 
 
-def _listed(one: Built) -> list[object]:
+def _listed(one: BuiltNode) -> list[object]:
     call = one.compilation
     told = [call.arguments, str(call.where), dict(call.scenario), str(call.image)]
     return [one.node, told, asdict(one.memory)]
 
 
-def _built(entry: Any) -> Built:
+def _built(entry: Any) -> BuiltNode:
     node, (arguments, where, scenario, image), memory = entry
     call = Compilation(tuple(arguments), Path(where), dict(scenario), Path(image))
-    return Built(str(node), call, memory_of(memory))
+    return BuiltNode(str(node), call, memory_of(memory))
 
 
 def _are(files: Mapping[Any, str]) -> bool:

@@ -94,7 +94,7 @@ def _build_again(options: argparse.Namespace, before: unchanged.Build) -> None:
         _tell(options, one if before.holds() else _examined(options, one.node))
 
 
-def _examined(options: argparse.Namespace, node: str) -> unchanged.Built:
+def _examined(options: argparse.Namespace, node: str) -> unchanged.BuiltNode:
     """The program of a node whose model has been told of."""
     from ravenchart.building import checking, programs
 
@@ -102,20 +102,20 @@ def _examined(options: argparse.Namespace, node: str) -> unchanged.Built:
     return _built(options, next(one for one in found if one.node == node), None)
 
 
-def _built(options: argparse.Namespace, made: Program, board: Board | None) -> unchanged.Built:
+def _built(options: argparse.Namespace, made: Program, board: Board | None) -> unchanged.BuiltNode:
     from ravenchart.building import stacks
 
     choice = options.mode, options.driver, options.registers
     with stages(f"compile {made.node}") as tell:
         image = made.build(*choice, _warn(options), board, tell=tell)
-    return unchanged.Built(made.node, made.compilation(*choice, board), stacks.kept(image))
+    return unchanged.BuiltNode(made.node, made.compilation(*choice, board), stacks.kept(image))
 
 
 def _warn(options: argparse.Namespace) -> Callable[[str], None]:
     return partial(say, options.answer, severity="warning")
 
 
-def _tell(options: argparse.Namespace, one: unchanged.Built) -> None:
+def _tell(options: argparse.Namespace, one: unchanged.BuiltNode) -> None:
     image = one.compilation.image
     options.answer.result.programs.append(Built(one.node, str(image), one.memory))
     print(f"built {image}\n  {one.memory.shown()}")

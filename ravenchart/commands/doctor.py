@@ -13,12 +13,11 @@ from dataclasses import dataclass
 from ravenchart.failures import OK, UNUSABLE
 from ravenchart.paths import PACKAGE, ROOT, cache, version, work
 
-from .results import DoctorResult
-from .results import Tool as Listed
+from .results import DoctorResult, Tool
 
 
 @dataclass(frozen=True, slots=True)
-class Tool:
+class NeededTool:
     """A program that Ravenchart calls; ``needed`` for a program to be built at all."""
 
     name: str
@@ -28,10 +27,11 @@ class Tool:
 
 
 TOOLS = (
-    Tool("gcc", "compiles Ada", "sudo apt-get install gnat", needed=True),
-    Tool("gprbuild", "builds programs", "sudo apt-get install gprbuild", needed=True),
-    Tool("gnatprove", "`prove`", "alr get gnatprove, and its bin on PATH"),
-    Tool("dot", "`draw`", "sudo apt-get install graphviz"),
+    NeededTool("gcc", "compiles Ada", "sudo apt-get install gnat", needed=True),
+    NeededTool("gprbuild", "builds programs", "sudo apt-get install gprbuild", needed=True),
+    NeededTool("gnatprove", "`prove`", "alr get gnatprove, and its bin on PATH"),
+    NeededTool("gcov", "`tests --coverage`", "sudo apt-get install gcc"),
+    NeededTool("dot", "`draw`", "sudo apt-get install graphviz"),
 )
 
 
@@ -42,7 +42,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Print it; the exit status: 2 where no program can be built."""
     rows = list(_rows())
-    options.answer.result = DoctorResult([Listed(what, state, said) for state, what, said in rows])
+    options.answer.result = DoctorResult([Tool(what, state, said) for state, what, said in rows])
     width = max(len(what) for _, what, _ in rows)
     for state, what, said in rows:
         print(f"{state:<8} {what:<{width}}  {said}")

@@ -13,7 +13,7 @@ from ravenchart import terminal
 from ravenchart.failures import OK, WRONG, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.conformance.ends import Setup, open_ends
-from ravenchart.hw_can.conformance.suite import CaseVerdict, LoopbackResult, histogram, run
+from ravenchart.hw_can.conformance.suite import CaseVerdict, SuiteResult, histogram, run
 
 from . import loopback_files, results
 
@@ -51,7 +51,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--html", type=Path, metavar="FILE", help="write a report there")
 
 
-def show(result: LoopbackResult, console: Console | None = None) -> None:
+def show(result: SuiteResult, console: Console | None = None) -> None:
     """Print a row for each case, the histogram of latencies, and the verdict."""
     out = console or terminal.console()
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
@@ -73,7 +73,7 @@ def show(result: LoopbackResult, console: Console | None = None) -> None:
     out.print(Text(f"\n{verdict_line(result)}", style="green" if result.passed else "bold red"))
 
 
-def verdict_line(result: LoopbackResult) -> str:
+def verdict_line(result: SuiteResult) -> str:
     """PASS or FAIL, and how many cases ended how."""
     passed, failed, skipped = map(result.count, CaseVerdict)
     word = "PASS" if result.passed else "FAIL"

@@ -6,10 +6,10 @@ from xml.etree import ElementTree
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from ravenchart.hw_can.conformance.suite import CaseVerdict, LoopbackResult, histogram
+from ravenchart.hw_can.conformance.suite import CaseVerdict, SuiteResult, histogram
 
 
-def facts(result: LoopbackResult) -> tuple[tuple[str, str], ...]:
+def facts(result: SuiteResult) -> tuple[tuple[str, str], ...]:
     """What was under test, as names and values."""
     setup = result.setup
     other = "the same bus object" if setup.echo else setup.receive_interface
@@ -23,7 +23,7 @@ def facts(result: LoopbackResult) -> tuple[tuple[str, str], ...]:
     )
 
 
-def junit(result: LoopbackResult, suite_name: str = "loopback") -> str:
+def junit(result: SuiteResult, suite_name: str = "loopback") -> str:
     """JUnit XML, one test case for each case; a skipped one is never a passed one."""
     suite = ElementTree.Element(
         "testsuite",
@@ -56,7 +56,7 @@ def junit(result: LoopbackResult, suite_name: str = "loopback") -> str:
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def html(result: LoopbackResult) -> str:
+def html(result: SuiteResult) -> str:
     """The report, in the style of the timing report."""
     environment = Environment(
         loader=ChoiceLoader(

@@ -14,7 +14,7 @@ from ravenchart.failures import OK, WRONG, Refused, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.bench.scenario import ScenarioError
 from ravenchart.running import measured, summary
-from ravenchart.running.result import RunResult
+from ravenchart.running.result import RunOutcome
 
 from . import bounds, common, running
 from .answer import say
@@ -72,7 +72,7 @@ def execute(options: argparse.Namespace) -> int:
     return WRONG if any(one.words for one in found.rows) else OK
 
 
-def _run(options: argparse.Namespace, checked: Checked, board: targets.Board | None) -> RunResult:
+def _run(options: argparse.Namespace, checked: Checked, board: targets.Board | None) -> RunOutcome:
     """The run, in mode release: contracts are not executed in what is measured."""
     request = running.request(options, checked, board, "release", None)
     try:
@@ -84,7 +84,7 @@ def _run(options: argparse.Namespace, checked: Checked, board: targets.Board | N
         raise Refused(str(fault)) from fault
 
 
-def _observation(outcome: RunResult) -> Observation:
+def _observation(outcome: RunOutcome) -> Observation:
     """What the run showed; Refused where it did not come to its end."""
     seen = outcome.observation
     if seen is not None and seen.complete and seen.executions:

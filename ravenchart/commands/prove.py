@@ -62,7 +62,7 @@ def execute(options: argparse.Namespace) -> int:
     outside: dict[Outside, None] = {}
     for one in made:
         task = one.proof(driver, whole=options.whole)
-        open_: tuple[unproved.Finding, ...] = ()
+        open_: tuple[unproved.UnprovedCheck, ...] = ()
         with stages(f"prove {one.node}") as tell:
             try:
                 proof = proving.prove(task, fresh=options.fresh, memcached=options.cache, tell=tell)
@@ -96,7 +96,7 @@ def record_of(path: Path, node: str, *, several: bool) -> Path:
     return path.with_name(f"{path.stem}-{node}{path.suffix}") if several else path
 
 
-def _proved(node: str, proof: proving.Proof, left: Sequence[unproved.Finding]) -> Proved:
+def _proved(node: str, proof: proving.Proof, left: Sequence[unproved.UnprovedCheck]) -> Proved:
     found = proof.results
     return Proved(
         node,

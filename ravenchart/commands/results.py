@@ -371,6 +371,26 @@ class TestGoals(Described):
 
 
 @dataclass(slots=True)
+class BodyCoverage(Described):
+    """What the cases execute of a body."""
+
+    file: str
+    """The source."""
+    origin: str
+    """`generated`, `user` or `runtime`."""
+    lines: int
+    """Lines with code."""
+    executed: int
+    """How many of them were executed."""
+    branches: int
+    """Branches of the compiled conditions."""
+    taken: int
+    """How many of them were taken."""
+    not_executed: list[int]
+    """The lines that were not executed."""
+
+
+@dataclass(slots=True)
 class TestsResult(Result):
     """Test cases, found and written."""
 
@@ -382,6 +402,8 @@ class TestsResult(Result):
     """The goals that no case shows."""
     different: list[str]
     """The files under which program and interpreter executed different behaviours."""
+    coverage: list[BodyCoverage]
+    """What the cases execute of the bodies; empty without `--coverage`."""
 
 
 @dataclass(slots=True)

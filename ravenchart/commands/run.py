@@ -11,9 +11,10 @@ from ravenchart.building import programs
 from ravenchart.building.checking import Checked
 from ravenchart.failures import NOT_JUDGED, OK, WRONG, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
+from ravenchart.hw_can.bench.runner import Progress
 from ravenchart.running.bus_runs import run_on_bus
-from ravenchart.running.result import RunResult
-from ravenchart.running.runs import Progress, RunRequest, joins_a_server, run_model
+from ravenchart.running.result import RunOutcome
+from ravenchart.running.runs import RunRequest, joins_a_server, run_model
 
 from . import common, run_results, running
 
@@ -55,7 +56,7 @@ def execute(options: argparse.Namespace) -> int:
 
 def _started(
     options: argparse.Namespace, checked: Checked
-) -> tuple[Callable[[RunRequest, Progress], RunResult], RunRequest]:
+) -> tuple[Callable[[RunRequest, Progress], RunOutcome], RunRequest]:
     """How the programs are run, once they are built; Unusable where they cannot be."""
     board = common.board(options, checked)
     nodes = len(programs.programs_of(checked))
@@ -67,7 +68,7 @@ def _started(
     return partial(running.execute, board), request
 
 
-def _judged(outcome: RunResult, folder: Path) -> run_results.RunResult:
+def _judged(outcome: RunOutcome, folder: Path) -> run_results.RunResult:
     return run_results.RunResult(
         outcome.title,
         outcome.passed,

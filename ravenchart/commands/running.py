@@ -10,11 +10,11 @@ from ravenchart.building import gateways, programs, targets, variants
 from ravenchart.building.checking import Checked
 from ravenchart.building.programs import TRACE_MAP
 from ravenchart.failures import Unusable
+from ravenchart.hw_can.bench.runner import Progress
 from ravenchart.running import boards, scenarios
-from ravenchart.running.result import RunResult
+from ravenchart.running.result import RunOutcome
 from ravenchart.running.runs import (
     Controller,
-    Progress,
     RunRequest,
     controller,
     run_on_this_machine,
@@ -132,7 +132,7 @@ def _gateway(
     return emulator.gateway
 
 
-def execute(board: targets.Board | None, request: RunRequest, progress: Progress) -> RunResult:
+def execute(board: targets.Board | None, request: RunRequest, progress: Progress) -> RunOutcome:
     """Run it on this machine or on a board. Raises as `run_controller`."""
     if board is None:
         return run_on_this_machine(request, progress)

@@ -23,7 +23,7 @@ from ravenchart.running.process import Ended, StartError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem, connected
 from ravenchart.running.shell import Shell
 from ravenchart.running.started import started
-from ravenchart.running.vocabulary import Vocabulary, WordError
+from ravenchart.running.vocabulary import BusVocabulary, WordError
 
 from . import common, run_results, running
 from .answer import say
@@ -76,7 +76,7 @@ def _started(
     """The controllers on this machine, for the time of the stack, and how they ended then."""
     built = running.controllers(checked, options.answer)
     folder = programs.build_home(checked, programs.default_driver(checked)) / "shell"
-    vocabulary = Vocabulary.of(checked.system)
+    vocabulary = BusVocabulary.of(checked.system)
     try:
         peer, ended = stack.enter_context(
             started(built, checked.analysis, vocabulary, folder, options.log)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -37,6 +37,8 @@ from ravenchart.terminal import progress, stages
 from ravenchart.tools import children, steps, toolchain
 
 from . import common
+
+NOTHING: Mapping[str, str] = {}
 
 
 def stimuli_of(system: System, path: Path) -> Stimuli:
@@ -100,10 +102,17 @@ def _home(checked: Checked) -> Path:
     return build_home(checked, "simulation")
 
 
-def build_simulation(system: System, folder: Path, home: Path) -> Path:
+def build_simulation(
+    system: System,
+    folder: Path,
+    home: Path,
+    switches: Sequence[str] = (),
+    scenario: Mapping[str, str] = NOTHING,
+) -> Path:
     """Write and compile the program in virtual time below ``home``; its path.
 
-    The sources that are not generated are below the ``folder`` of the model.
+    The sources that are not generated are below the ``folder`` of the model. ``switches`` and
+    ``scenario`` are more arguments of gprbuild, and more scenario variables.
     """
     source = home / "source"
     source.mkdir(parents=True, exist_ok=True)
@@ -114,16 +123,21 @@ def build_simulation(system: System, folder: Path, home: Path) -> Path:
     for name, text in files.items():
         replace_file(source / name, text)
     project = next(name for name in files if name.endswith(".gpr"))
-    written = (*source_folders(system), *simulation_folders(system))
-    places = [str((folder / place).resolve()) for place in written]
+    places = [str(place) for place in places_of_user(system, folder)]
     if has_lifecycle(system):
         places.append(str(ROOT / RUNTIME_FOLDER))
-    given = {"RAVENCHART_USER": ",".join(places)} if places else {}
+    given = {**scenario, "RAVENCHART_USER": ",".join(places)} if places else scenario
     with stages("compile the simulation") as tell:
         taken = steps.Announced(steps.COMPILING, tell).takes
-        words = ["-p", "-q", "-j0", steps.OF_GPRBUILD, "-P", project]
+        words = ["-p", "-q", "-j0", steps.OF_GPRBUILD, "-P", project, *switches]
         toolchain.run("gprbuild", words, source, given, taken)
     return home / project.removesuffix(".gpr")
+
+
+def places_of_user(system: System, folder: Path) -> list[Path]:
+    """Where the sources are that are not generated, below the ``folder`` of the model."""
+    written = (*source_folders(system), *simulation_folders(system))
+    return [(folder / place).resolve() for place in written]
 
 
 def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[StepRecord]:

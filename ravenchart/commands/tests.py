@@ -12,22 +12,28 @@ from collections import Counter
 from pathlib import Path
 
 from ravenchart.behaviour.cases.goals import GoalKind
-from ravenchart.behaviour.cases.search import EFFORT, CaseSearch, Found, FoundCase
+from ravenchart.behaviour.cases.search import EFFORT, CaseSearch, FoundCase, SearchResult
 from ravenchart.behaviour.interpreter.stimuli import written
 from ravenchart.building.checking import Checked
 from ravenchart.building.generation import replace_file
+from ravenchart.building.programs import build_home
 from ravenchart.failures import OK, WRONG
 from ravenchart.gen.derive.distribution import as_one
 from ravenchart.gen.diagnostics import render
+from ravenchart.running import coverage
+from ravenchart.running.coverage import SourceCoverage
 from ravenchart.terminal import progress
 
 from . import common
-from .results import TestCase, TestGoals, TestsResult
+from .results import BodyCoverage, TestCase, TestGoals, TestsResult
 from .simulate import (
+    build_simulation,
     interpreted_alone,
     left_out,
+    places_of_user,
     played_by_program,
     refused_as,
+    run_simulation,
     simulated_by_interpreter,
 )
 
@@ -49,6 +55,10 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--no-run", action="store_true", help="do not play the cases with the generated program"
     )
+    sub.add_argument(
+        "--coverage", type=Path, metavar="FILE",
+        help="count what the cases execute of the program, and write it as an LCOV tracefile",
+    )  # fmt: skip
 
 
 def _positive(text: str) -> int:
@@ -74,6 +84,7 @@ def execute(options: argparse.Namespace) -> int:
     for goal in found.open:
         print(f"{goal.origin}: not shown: {goal.text()}")
     different = [] if options.no_run else _different(checked, found.cases, files)
+    counted = _covered(checked, found.cases, options.coverage) if options.coverage else []
     options.answer.result = TestsResult(
         [
             TestCase(str(file), [goal.text() for goal in case.shows])
@@ -82,7 +93,14 @@ def execute(options: argparse.Namespace) -> int:
         rows,
         [goal.text() for goal in found.open],
         [str(file) for file in different],
-    )
+        [
+            BodyCoverage(
+                str(one.path), one.origin.value, len(one.lines), one.executed(),
+                len(one.branches), one.taken(), one.left(),
+            )
+            for one in counted
+        ],
+    )  # fmt: skip
     if found.stuck:
         raise refused_as(found.stuck[0])
     return WRONG if different else OK
@@ -102,7 +120,7 @@ def _write(cases: list[FoundCase], folder: Path) -> list[Path]:
     return files
 
 
-def _rows(found: Found) -> list[TestGoals]:
+def _rows(found: SearchResult) -> list[TestGoals]:
     """How many goals of each kind there are, and how many are shown."""
     every = Counter(goal.kind for goal in found.goals)
     left = Counter(goal.kind for goal in found.open)
@@ -135,3 +153,28 @@ def _different(checked: Checked, cases: list[FoundCase], files: list[Path]) -> l
     else:
         print(f"the program has played {common.several(len(cases), 'case')}")
     return different
+
+
+def _covered(checked: Checked, cases: list[FoundCase], file: Path) -> list[SourceCoverage]:
+    """What the cases execute of the program; it is written, and what it comes to is printed."""
+    home = build_home(checked, "coverage")
+    home.mkdir(parents=True, exist_ok=True)
+    switches, scenario = coverage.switches(home)
+    program = build_simulation(checked.system, checked.folder, home, switches, scenario)
+    coverage.forget(home)
+    for case in cases:
+        run_simulation(checked.system, program, case.stimuli)
+    found = coverage.measured(home, places_of_user(checked.system, checked.folder))
+    file.parent.mkdir(parents=True, exist_ok=True)
+    replace_file(file, coverage.tracefile(found))
+    for origin in coverage.Origin:
+        some = [one for one in found if one.origin is origin]
+        lines, branches = sum(len(one.lines) for one in some), sum(len(o.branches) for o in some)
+        executed, taken = sum(one.executed() for one in some), sum(one.taken() for one in some)
+        for what, reached, all_ in (("lines", executed, lines), ("branches", taken, branches)):
+            if all_:
+                print(f"{f'{what} of {origin.value} bodies':<38} {reached:>4} of {all_}")
+    for one in found:
+        if one.left():
+            print(f"{one.path}: not executed: {coverage.spans(one.left())}")
+    return found

@@ -23,7 +23,8 @@ LIMITS = (
     ("invariants", "`never` is a contract of the generated code only where a claim says so "
      "(code-never-...). Any other is checked on the model."),
     ("effects", "No postcondition states what an effect or a user's body does to the data."),
-    ("coverage", "No structural coverage is measured here."),
+    ("coverage", "Structural coverage is no part of this folder: `ravenchart tests MODEL "
+     "--coverage FILE` counts it."),
     ("mutation", "No mutation score is part of this folder."),
     ("records", "A proof record is a text file: whoever can write it can lie. Who does not trust "
      "it runs `ravenchart prove MODEL --fresh` and compares."),

@@ -27,7 +27,7 @@ UNKNOWN_TOOL = "gnatprove, version not recorded"
 
 
 @dataclass(frozen=True, slots=True)
-class Entity:
+class RecordedEntity:
     """A subprogram or package of a record."""
 
     name: str
@@ -46,12 +46,12 @@ class BelievedRecord:
     outside: tuple[str, ...]
     sources: tuple[tuple[str, str], ...]
     """(name, SHA-256) as recorded; names are relative."""
-    entities: tuple[Entity, ...]
+    entities: tuple[RecordedEntity, ...]
     problems: tuple[str, ...]
     digest: str
     """SHA-256 over all that is recorded."""
 
-    def of_unit(self, unit: str) -> tuple[Entity, ...]:
+    def of_unit(self, unit: str) -> tuple[RecordedEntity, ...]:
         """What is recorded of an Ada unit and all that it encloses."""
         head = unit.lower()
         names = ((e, e.name.lower()) for e in self.entities)
@@ -76,7 +76,7 @@ def read(path: Path, name: str, folder: Path) -> BelievedRecord:
         outside = tuple(map(str, found["outside"]))
         sources = {str(key): str(value) for key, value in found["sources"].items()}
         entities = tuple(
-            Entity(str(key), _count(value, "checks"), tuple(map(str, value["provers"])))
+            RecordedEntity(str(key), _count(value, "checks"), tuple(map(str, value["provers"])))
             for key, value in found["entities"].items()
         )
         tool = str(found.get("tool") or UNKNOWN_TOOL)
@@ -101,7 +101,7 @@ def _count(table: Mapping[str, object], key: str) -> int:
 
 
 def _numbers(
-    checks: int, proved: int, justified: int, assumed: int, entities: Sequence[Entity]
+    checks: int, proved: int, justified: int, assumed: int, entities: Sequence[RecordedEntity]
 ) -> Iterator[str]:
     if not checks:
         yield "the record has no check"

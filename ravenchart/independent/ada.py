@@ -88,6 +88,8 @@ WINDOWS = 2**60
 """Of the runtime's Response_Times: times from 0 on that are below are a Window."""
 LAST = 2**62 - 1
 """The last Time there: a sum or product that exceeds it is this."""
+PARAMETERS = {"w": ("window", WINDOWS), "stuffed": ("positive", 2**31)}
+"""The parameters of functions, with their types and what they are below."""
 
 
 def demand(window: int, late: int, period: int, cost: int, more: int = 0) -> int:
@@ -101,9 +103,10 @@ def demand(window: int, late: int, period: int, cost: int, more: int = 0) -> int
 
 @dataclass(frozen=True, slots=True)
 class Function:
-    """A static function of a window W: what it is called, its body, and all that it counts."""
+    """A static function: its name and that of its parameter, its body, and all that it counts."""
 
     name: str
+    parameter: str
     body: tuple[Token, ...]
     names: frozenset[str]
     before: tuple[Function, ...]
@@ -215,9 +218,10 @@ class Evaluation:
     def _called(self, word: str) -> int:
         """A call of one of the certificate's functions, or of those that it finds defined."""
         if word == "time":
-            self._taken("'")
-            word = self._taken("max", "min")
+            word = self._taken("max", "min") if self._taken("'") else "time"
         values = self._arguments()
+        if word == "time" and len(values) == 1:
+            return values[0]
         if word in ("max", "min") and len(values) == 2:
             return max(values) if word == "max" else min(values)
         if word == "demand" and len(values) in (4, 5):
@@ -237,18 +241,18 @@ class Evaluation:
             raise ValueError("`)` is missing")
         return values
 
-    def _within(self, function: Function, window: int) -> int:
-        """The value for a window; in the order of declaration, so that no call is deep."""
-        if not 0 <= window < WINDOWS:
-            raise ValueError("a Window out of range")
+    def _within(self, function: Function, given: int) -> int:
+        """The value for an argument; in the order of declaration, so that no call is deep."""
+        if given not in range(PARAMETERS[function.parameter][1]):
+            raise ValueError(f"{given} is out of the range of `{function.parameter}`")
         values = dict(self.values)
         for one in (*function.before, function):
-            if (one.name, window) not in values:
-                known = {**self.known, "w": window}
+            if (one.name, given) not in values:
+                known = {**self.known, one.parameter: given}
                 found = Evaluation(one.body, known, self.functions, values)
-                values[one.name, window] = found.value
+                values[one.name, given] = found.value
         self.values = values
-        return values[function.name, window]
+        return values[function.name, given]
 
 
 @dataclass(frozen=True, slots=True)
@@ -321,12 +325,14 @@ def _take(found: Certificate, part: list[Token], known: dict[str, int]) -> None:
 
 
 def _function(found: Certificate, part: list[Token], known: dict[str, int]) -> None:
-    """One function of a window."""
+    """One function: of a window, or of the bits of a frame."""
     low = [token.low for token in part]
-    name, body = low[1], tuple(part[11:-3])
-    if low[2:11] != HEADING or low[-3:] != [")", "with", "static"]:
-        raise ValueError("this is no static function of a Window")
-    if name in found.functions or name in known or name in ("demand", "time", "w"):
+    name, parameter, body = low[1], low[3], tuple(part[11:-3])
+    type_, _ = PARAMETERS.get(parameter, ("", 0))
+    heading = ["(", parameter, ":", type_, ")", "return", "time", "is", "("]
+    if low[2:11] != heading or low[-3:] != [")", "with", "static"]:
+        raise ValueError("this is no static function of a certificate")
+    if name in found.functions or name in known or name in ("demand", "time", *PARAMETERS):
         raise ValueError(f"{part[1].text} is declared twice")
     used = {token.low for token in body}
     names = {word for word in used if word in known}
@@ -334,12 +340,11 @@ def _function(found: Certificate, part: list[Token], known: dict[str, int]) -> N
     whole = {one.name for called in calls for one in (*called.before, called)}
     before = tuple(one for word, one in found.functions.items() if word in whole)
     names |= {word for called in calls for word in called.names}
-    made = Function(name, body, frozenset(names), before)
-    Evaluation(body, {**known, "w": 1}, found.functions, {(one.name, 1): 0 for one in before})
+    made = Function(name, parameter, body, frozenset(names), before)
+    Evaluation(body, {**known, parameter: 1}, found.functions, {(one.name, 1): 0 for one in before})
     found.functions[name] = made
 
 
-HEADING = ["(", "w", ":", "window", ")", "return", "time", "is", "("]
 USED = ["use", "ravenchart.response_times"]
 
 # --- Charts --------------------------------------------------------------------------

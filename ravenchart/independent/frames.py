@@ -65,10 +65,10 @@ class Frame:
 
     def parts(self) -> dict[str, int]:
         """What the certificate states of it."""
-        found = {"Length": self.length, "Stuffed": self.stuffed, "Bits": self.bits}
-        if self.fd:
-            found |= {"Head": self.head, "Early": self.early, "Body": self.body}
-        return found
+        if not self.fd:
+            return {"Length": self.length}
+        parts = ("length", "head", "early", "stuffed", "body", "bits")
+        return {part.capitalize(): getattr(self, part) for part in parts}
 
 
 def up(value: Fraction) -> int:

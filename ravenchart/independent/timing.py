@@ -138,7 +138,8 @@ class Timing:
 
     def _facts(self, task: Task) -> None:
         own, why = ada(task.element), f"of {task.element} by the model"
-        self.same("tasks", f"{own}_Priority", task.priority, f"the priority {why}")
+        level = own if task.after is None else f"{ada(task.element.partition('.')[0])}_Driver"
+        self.same("tasks", f"{level}_Priority", task.priority, f"the priority {why}")
         self.same("tasks", f"{own}_T", task.period, f"the period {why}")
         self.same("tasks", f"{own}_D", task.deadline, f"the deadline {why}")
         periodic = bool(task.rows) and not task.sporadic
@@ -152,8 +153,9 @@ class Timing:
             name, what = ada(row.element), f"of {row.element} by the model"
             self.same("rows", f"{name}_Budget", row.wcet, f"the WCET {what}")
             if not task.sporadic:
-                self.same("rows", f"{name}_Divisor", row.divisor, f"the divisor {what}")
-                self.same("rows", f"{name}_Phase", 0, f"the phase {what}")
+                timed = own if all(one.divisor == 1 for one in task.rows) else name
+                self.same("rows", f"{timed}_Divisor", row.divisor, f"the divisor {what}")
+                self.same("rows", f"{timed}_Phase", 0, f"the phase {what}")
         for divisor, cost in self.costs(task).items():
             letter = "C" if divisor == 1 else f"C_{divisor}"
             self.same("sums", f"{own}_{letter}", cost, f"the sum of WCETs {why}")

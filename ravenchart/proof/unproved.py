@@ -47,7 +47,7 @@ IN_GENERATED = (
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class UnprovedCheck:
     """One check that is not proved."""
 
     file: str
@@ -81,7 +81,7 @@ class Finding:
 
 def findings(
     output: str, unproved: Sequence[Open], system: System, folder: Path, places: Sequence[Path]
-) -> tuple[Finding, ...]:
+) -> tuple[UnprovedCheck, ...]:
     """A finding for each message of gnatprove about a check that is not proved.
 
     ``places`` are the folders with sources. A check without a message has a finding as well.
@@ -97,7 +97,9 @@ def findings(
     )
 
 
-def _finding(one: Open, text: str, system: System, folder: Path, places: Sequence[Path]) -> Finding:
+def _finding(
+    one: Open, text: str, system: System, folder: Path, places: Sequence[Path]
+) -> UnprovedCheck:
     example = _EXAMPLE.search(text)
     check = _NOTE.sub("", _EXAMPLE.sub("", text)) or _words(one.rule)
     path = next((place / one.file for place in places if (place / one.file).is_file()), None)
@@ -105,7 +107,7 @@ def _finding(one: Open, text: str, system: System, folder: Path, places: Sequenc
     element, origin = element_of(system, one.entity)
     generated = shown.startswith("generated")
     help_ = next((text for word, text in HELPS.items() if word in check), OTHERWISE)
-    return Finding(
+    return UnprovedCheck(
         shown,
         one.line,
         one.column,

@@ -8,7 +8,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.interfaces import Interface, joined
 from ravenchart.hw_can.bench.peer import BenchError, OnFrame, Peer
 
-from .vocabulary import Vocabulary
+from .vocabulary import BusVocabulary
 
 
 def bus_of(system: System) -> Bus:
@@ -25,7 +25,7 @@ def interface_of(system: System, name: str, channel: str) -> Interface:
     return Interface(name, channel, bus.bit_rate, data_rate, fd=bus.takes_fd)
 
 
-def attached(interface: Interface, vocabulary: Vocabulary, record: OnFrame) -> Peer:
+def attached(interface: Interface, vocabulary: BusVocabulary, record: OnFrame) -> Peer:
     """A peer there; Unusable where there is no such bus."""
     try:
         return joined(interface, vocabulary.codec, record)

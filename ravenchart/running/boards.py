@@ -16,13 +16,13 @@ from ravenchart.building.targets import Board, Emulator
 from ravenchart.failures import Unusable
 from ravenchart.gen.language.terms import Ns
 from ravenchart.hw_can.bench.peer import BenchError, Codec
-from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
+from ravenchart.hw_can.bench.runner import Progress, ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
 from ravenchart.tools import children
 
 from . import board_bus, bus_log, runs
 from .process import STOP_MARGIN, Ended
-from .result import RunResult
+from .result import RunOutcome
 
 SERIAL = "serial.txt"
 
@@ -38,7 +38,7 @@ SAID = ("error: ", "warning: ")
 """How lines begin that a controller says besides its report."""
 
 
-def run_board(board: Board, request: runs.RunRequest, progress: runs.Progress) -> RunResult:
+def run_board(board: Board, request: runs.RunRequest, progress: Progress) -> RunOutcome:
     """Run a program on the emulator of its board; Unusable where it has none.
 
     Virtual time depends on the instructions alone, so no bound has an excuse. The bench of a
@@ -75,8 +75,8 @@ def _report(request: runs.RunRequest, controller: runs.Controller | None = None)
 
 
 def _joined(
-    board: Board, emulator: Emulator, request: runs.RunRequest, progress: runs.Progress
-) -> RunResult:
+    board: Board, emulator: Emulator, request: runs.RunRequest, progress: Progress
+) -> RunOutcome:
     """Run boards on one bus with the bench. Raises as `runs.run_controller`."""
     plan = None if request.scenario is None else load_scenario(request.scenario)
     if plan is not None and plan.bus_events:
@@ -136,7 +136,7 @@ def _concluded(
     request: runs.RunRequest,
     ended: Ended,
     problems: list[str],
-) -> RunResult:
+) -> RunOutcome:
     """What a run showed by the serial lines of its reports."""
     parts: dict[str, Observation] = {}
     for one in request.controllers:

@@ -9,15 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.hw_can.bench.interfaces import Interface
-from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
+from ravenchart.hw_can.bench.runner import Progress, ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Scenario, load_scenario
 
 from . import bus_log, judge, result
 from .attaching import attached
 from .process import Ended, separate_cores
-from .result import RunResult
-from .runs import Progress, RunRequest
-from .vocabulary import Vocabulary
+from .result import RunOutcome
+from .runs import RunRequest
+from .vocabulary import BusVocabulary
 
 WHY = "only the frames on the bus are seen"
 
@@ -25,17 +25,17 @@ GOES_ON = Ended(exit_code=0, killed=False, real_time=True, warnings=())
 """Of a controller that is neither started nor stopped here."""
 
 
-def run_on_bus(interface: Interface, request: RunRequest, progress: Progress) -> RunResult:
+def run_on_bus(interface: Interface, request: RunRequest, progress: Progress) -> RunOutcome:
     """Play the scenario, and leave the controller as it is then; Unusable where there is no bus."""
     assert request.scenario is not None
     plan = load_scenario(request.scenario)
-    vocabulary = Vocabulary.of(request.analysis.system)
+    vocabulary = BusVocabulary.of(request.analysis.system)
     with bus_log.recorded(request.log, vocabulary.bus.name) as record:
         peer = attached(interface, vocabulary, record)
         with separate_cores():
             played = run_scenario(plan, peer, progress=progress)
     unseen = {"expect_trace": plan.trace_checks, "expect": plan.expected}
-    return RunResult(
+    return RunOutcome(
         title=f"{plan.title}, on {interface}",
         scenario=plan,
         scenario_result=played,
@@ -55,7 +55,9 @@ def run_on_bus(interface: Interface, request: RunRequest, progress: Progress) ->
     )
 
 
-def _silence(vocabulary: Vocabulary, interface: Interface, played: ScenarioResult) -> Iterator[str]:
+def _silence(
+    vocabulary: BusVocabulary, interface: Interface, played: ScenarioResult
+) -> Iterator[str]:
     """Nothing that the controller sends came: most likely it is on another bus, or on none."""
     own = vocabulary.messages.keys() - vocabulary.outside()
     if own and not own & played.received.keys():

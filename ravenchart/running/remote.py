@@ -36,7 +36,7 @@ from ravenchart.hw_can.bench.scenario import DriveForm
 from . import bus_log, scenarios
 from .attaching import attached, interface_of
 from .process import separate_cores
-from .vocabulary import Vocabulary, WordError, hint_of
+from .vocabulary import BusVocabulary, WordError, hint_of
 
 PATIENCE = 10.0
 """How long an answer is waited for unless it is said, in s."""
@@ -83,7 +83,7 @@ class RemoteSystem:
 
     def __init__(
         self,
-        vocabulary: Vocabulary,
+        vocabulary: BusVocabulary,
         peer: Peer,
         drives: Mapping[str, DriveForm] | None = None,
         resources: ExitStack | None = None,
@@ -353,7 +353,7 @@ def connected(
 ) -> RemoteSystem:
     """The same of a model that was read, at an interface; Unusable where there is no such bus."""
     with ExitStack() as stack:
-        vocabulary = Vocabulary.of(system)
+        vocabulary = BusVocabulary.of(system)
         record = stack.enter_context(bus_log.recorded(log, vocabulary.bus.name))
         peer = attached(end, vocabulary, record)
         return RemoteSystem(vocabulary, peer, drives, stack.pop_all())

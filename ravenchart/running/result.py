@@ -19,7 +19,7 @@ from .process import ERROR, Ended
 
 
 @dataclass(frozen=True, slots=True)
-class RunResult:
+class RunOutcome:
     """What came out of one run; ``failures`` is empty exactly when it passed.
 
     ``observation`` is None when there is no readable trace, ``scenario_result``
@@ -108,7 +108,7 @@ def clock_offset(
     return min(offsets, default=None)
 
 
-def spans(result: RunResult) -> Mapping[str, tuple[Stay, ...]]:
+def spans(result: RunOutcome) -> Mapping[str, tuple[Stay, ...]]:
     """The states of each axis, on the bench's clock."""
     seen, offset = result.observation, result.clock_offset
     if seen is None or offset is None or result.scenario is None:
@@ -137,7 +137,7 @@ def marks(result: ScenarioResult) -> tuple[Mark, ...]:
     return tuple(sorted(found, key=lambda mark: mark.at))
 
 
-def frames(result: RunResult) -> Iterator[FrameRow]:
+def frames(result: RunOutcome) -> Iterator[FrameRow]:
     """The frames that the bench counted, both ways."""
     if result.scenario_result is not None:
         for message, count in sorted(result.scenario_result.sent.items()):
@@ -146,7 +146,7 @@ def frames(result: RunResult) -> Iterator[FrameRow]:
             yield FrameRow(message, "from controller", count)
 
 
-def positions(result: RunResult) -> Iterator[str]:
+def positions(result: RunOutcome) -> Iterator[str]:
     """Where each axis stood at the end, from its zero."""
     if result.scenario_result is None:
         return

@@ -31,18 +31,16 @@ from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
 from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer
-from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
+from ravenchart.hw_can.bench.runner import Progress, ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Cut, Hold, Mend, Scenario, ScenarioError, load_scenario
 from ravenchart.stacks.report import Memory
 
 from . import bus_log, expected, judge, plots, result, server, summary
 from .process import ControllerProcess, Ended, StartError, separate_cores
-from .result import RunResult
+from .result import RunOutcome
 
 DEFAULT_GRACE = 1.0
 """Grace of a controller whose model is not at hand, in s."""
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +88,7 @@ def joins_a_server(system: System, programs: int) -> bool:
     return programs > 1 or any(one.by_priority for one in system.buses)
 
 
-def run_on_this_machine(request: RunRequest, progress: Progress) -> RunResult:
+def run_on_this_machine(request: RunRequest, progress: Progress) -> RunOutcome:
     """Run as processes of this machine. Raises as `run_controller`."""
     first = request.controllers[0]
     if joins_a_server(request.analysis.system, len(request.controllers)):
@@ -129,8 +127,8 @@ def run_model(
     request: RunRequest,
     console: Console | None = None,
     refuse: Callable[[str], None] = lambda text: None,
-    execute: Callable[[RunRequest, Progress], RunResult] = run_on_this_machine,
-) -> RunResult | None:
+    execute: Callable[[RunRequest, Progress], RunOutcome] = run_on_this_machine,
+) -> RunOutcome | None:
     """Run, print the summary and write the report.
 
     None where nothing could be run: ``refuse`` gets the reason, which is printed too.
@@ -165,7 +163,7 @@ def run_controller(
     *,
     analysis: Analysis | None = None,
     log: Path | None = None,
-) -> RunResult:
+) -> RunOutcome:
     """Run ``executable`` through ``scenario``, for at most ``duration`` seconds.
 
     The controller gets one core for itself where there are two; its trace stays in
@@ -199,7 +197,7 @@ def run_alone(
     out_dir: Path,
     *,
     analysis: Analysis | None = None,
-) -> RunResult:
+) -> RunOutcome:
     """Run ``executable`` for that long with nobody on its bus."""
 
     def play(process: ControllerProcess, grace: float) -> None:
@@ -211,7 +209,7 @@ def run_alone(
 
 
 def write_report(
-    outcome: RunResult,
+    outcome: RunOutcome,
     analysis: Analysis,
     out_dir: Path,
     programs: Mapping[str, Memory | None] | None = None,
@@ -248,12 +246,12 @@ def write_report(
     return (page, *written)
 
 
-def _passed(outcome: RunResult) -> str:
+def _passed(outcome: RunOutcome) -> str:
     """What stands beside PASS."""
     return f"nothing failed; {outcome.gaps}" if outcome.gaps else "nothing failed"
 
 
-def print_summary(outcome: RunResult, console: Console | None = None) -> None:
+def print_summary(outcome: RunOutcome, console: Console | None = None) -> None:
     """Print what the run showed, 80 columns wide, without the verdict."""
     out = console or terminal.console()
     if outcome.steps:
@@ -280,7 +278,7 @@ def _run(
     plan: Scenario | None,
     play: Callable[[ControllerProcess, float], ScenarioResult | None],
     analysis: Analysis | None,
-) -> RunResult:
+) -> RunOutcome:
     """Start the controller, ``play``, stop it, and put everything together."""
     trace_map = read_map(_text(trace_json), trace_json.name)
     out_dir.mkdir(parents=True, exist_ok=True)
@@ -318,7 +316,7 @@ def concluded(
     analysis: Analysis | None,
     *,
     chains: bool = True,
-) -> RunResult:
+) -> RunOutcome:
     """Everything that a run showed, put together and judged; ``chains`` where its bus took the
     time that frames take.
     """
@@ -335,7 +333,7 @@ def concluded(
     if system and seen:
         real_time = ended.real_time
         unaccounted = tuple(judge.unaccounted(system, seen, compared, real_time=real_time))
-    return RunResult(
+    return RunOutcome(
         title=title,
         scenario=plan,
         scenario_result=played,
@@ -400,7 +398,7 @@ def run_nodes(
     progress: Progress = lambda text: None,
     *,
     log: Path | None = None,
-) -> RunResult:
+) -> RunOutcome:
     """Run the controllers of several nodes on one simulated bus, through ``scenario``.
 
     Without one they run for ``seconds``. Raises as `run_controller`; ToolMissing and ToolFailed

@@ -20,8 +20,7 @@ from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
 from ravenchart.hw_can.bench.peer import BenchError, Value
-from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
-from ravenchart.hw_can.bench.reading import Path as Place
+from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, FormPath, Source, rendered
 from ravenchart.hw_can.bench.replay import from_outside, read_log
 from ravenchart.hw_can.bench.scenario import (
     Cut,
@@ -38,7 +37,7 @@ from ravenchart.hw_can.bench.scenario import (
     load_scenario,
 )
 
-from .vocabulary import Vocabulary
+from .vocabulary import BusVocabulary
 
 LOSSES = ("lost_out", "lost_in", "rejected_lines")
 """What the controller of a bus counts as lost."""
@@ -74,7 +73,7 @@ def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
     if not system.buses:
         message = f"{system.name} has no bus for a scenario to play on"
         return [error(UNKNOWN, source.tree.origin, message, hint="run it without `--scenario`")]
-    check = _Check(source, system, Vocabulary.of(system))
+    check = _Check(source, system, BusVocabulary.of(system))
     check.drives(scenario)
     for index, step in enumerate(scenario.steps):
         if isinstance(step, SendStep):
@@ -94,7 +93,7 @@ def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
 class _Check:
     """What a scenario may name."""
 
-    def __init__(self, source: Source, system: System, vocabulary: Vocabulary) -> None:
+    def __init__(self, source: Source, system: System, vocabulary: BusVocabulary) -> None:
         self.source = source
         self.system = system
         self.vocabulary = vocabulary
@@ -123,7 +122,7 @@ class _Check:
             if drive.states is not None:
                 self.region(drive.states, (*path, "states"))
 
-    def send(self, step: SendStep, path: Place) -> None:
+    def send(self, step: SendStep, path: FormPath) -> None:
         """A message with all of its fields, each with a value that it has."""
         message = self.message(step.send, (*path, "send"))
         if message is None:
@@ -140,7 +139,7 @@ class _Check:
                 hint = f"the fields are {_names(message.signals)}"
                 self.source.wrong(VALUE, (*path, "with"), str(fault), hint)
 
-    def replay(self, step: Replay, scenario: Scenario, path: Place) -> None:
+    def replay(self, step: Replay, scenario: Scenario, path: FormPath) -> None:
         """A log with a frame that the bench can send."""
         drives = frozenset(drive.feedback for drive in scenario.drives.values())
         if not from_outside(read_log(scenario.file_of(step)), self.codec, drives):
@@ -149,20 +148,20 @@ class _Check:
             names = ", ".join(name for name in outside if name not in drives) or "none"
             self.source.wrong(MISFIT, path, told, f"the messages from outside: {names}")
 
-    def wait_for(self, step: WaitFor, path: Place) -> None:
+    def wait_for(self, step: WaitFor, path: FormPath) -> None:
         """A field, and a value that it can have."""
         found = self.signal(step.wait_for, (*path, "wait_for"))
         if found is not None:
             self.value(*found, step.value, (*path, "is"), by_name=True)
 
-    def signal(self, text: str, path: Place) -> tuple[DbcMessage, DbcSignal] | None:
+    def signal(self, text: str, path: FormPath) -> tuple[DbcMessage, DbcSignal] | None:
         """The message and the field of ``message.field``."""
         owner, _, name = text.partition(".")
         message = self.message(owner, path)
         signal = None if message is None else self.field(message, name, path)
         return None if message is None or signal is None else (message, signal)
 
-    def message(self, name: str, path: Place) -> DbcMessage | None:
+    def message(self, name: str, path: FormPath) -> DbcMessage | None:
         """A message of the bus."""
         if name not in self.messages:
             told = f"there is no message `{name}` on {self.system.buses[0].name}"
@@ -171,7 +170,7 @@ class _Check:
         return self.messages.get(name)
 
     def field(
-        self, message: DbcMessage, name: str, path: Place, *, key: bool = False
+        self, message: DbcMessage, name: str, path: FormPath, *, key: bool = False
     ) -> DbcSignal | None:
         """A field of a message."""
         for signal in message.signals:
@@ -186,7 +185,7 @@ class _Check:
         message: DbcMessage,
         signal: DbcSignal,
         value: Value,
-        path: Place,
+        path: FormPath,
         *,
         by_name: bool = False,
     ) -> None:
@@ -197,7 +196,7 @@ class _Check:
 
     # --- regions, states, ports, nodes
 
-    def trace(self, check: TraceCheck, path: Place) -> None:
+    def trace(self, check: TraceCheck, path: FormPath) -> None:
         """A region or a controller with its states, and the ports that times count from."""
         controllers = {one.element for one in elements(self.system) if one.kind == "bus"}
         if check.region in controllers:
@@ -218,7 +217,7 @@ class _Check:
             if port is not None:
                 self.port(port, (*path, key))
 
-    def state(self, region: Region, shown: str, name: str, path: Place) -> None:
+    def state(self, region: Region, shown: str, name: str, path: FormPath) -> None:
         """A state that a trace can tell of: one without states inside."""
         leaves = [state.name for state in region.states if state.is_leaf]
         if name not in leaves:
@@ -227,7 +226,7 @@ class _Check:
             told = f"`{name}` has states inside; a trace records those" if known else told
             self.source.wrong(UNKNOWN, path, told, f"name one of {', '.join(leaves)}")
 
-    def region(self, text: str, path: Place) -> Region | None:
+    def region(self, text: str, path: FormPath) -> Region | None:
         """The region ``instance.region``."""
         found = self.owner(text, path)
         if found is None:
@@ -241,7 +240,7 @@ class _Check:
         self.source.wrong(UNKNOWN, path, told, f"its regions: {regions}")
         return None
 
-    def port(self, text: str, path: Place) -> None:
+    def port(self, text: str, path: FormPath) -> None:
         """An input port, ``instance.port``."""
         found = self.owner(text, path)
         if found is None:
@@ -252,7 +251,7 @@ class _Check:
             told = f"{instance.name} has no input port `{name}`"
             self.source.wrong(UNKNOWN, path, told, f"its input ports: {', '.join(ports) or 'none'}")
 
-    def owner(self, text: str, path: Place) -> tuple[Instance, str] | None:
+    def owner(self, text: str, path: FormPath) -> tuple[Instance, str] | None:
         """The instance of ``instance.name``, and the name."""
         owner, _, name = text.partition(".")
         for instance in self.system.instances:
@@ -275,7 +274,7 @@ class _Check:
                 hint = f"name one of {', '.join(homes[1:])}: it and those behind it are cut off"
                 self.source.wrong(UNKNOWN, ("bus", index, "cut"), told, hint)
 
-    def expected(self, fault: Expected, path: Place) -> None:
+    def expected(self, fault: Expected, path: FormPath) -> None:
         """A fault of something that the model has, once."""
         kinds: dict[type[Expected], tuple[str, str, list[str]]] = {
             Lost: ("lost", "counts of losses", self.losses()),

@@ -21,7 +21,7 @@ from ravenchart.hw_can.bench.peer import FrameValues, Value
 from ravenchart.hw_can.bench.quantities import time_of
 
 from .remote import PATIENCE, RemoteSystem
-from .vocabulary import Vocabulary, WordError, hint_of
+from .vocabulary import BusVocabulary, WordError, hint_of
 
 USAGES: Mapping[str, tuple[str, str]] = {
     "send": ("NAME [FIELD=VALUE ...]", "send a message, or a command of one"),
@@ -48,7 +48,7 @@ class Shell:
     out: Console
 
     @property
-    def words(self) -> Vocabulary:
+    def words(self) -> BusVocabulary:
         """What can be said on the bus."""
         return self.robot.vocabulary
 

@@ -13,14 +13,14 @@ from ravenchart.hw_can.bench.peer import Peer
 from . import bus_log, server
 from .process import ControllerProcess, Ended, separate_cores
 from .runs import Controller, bus_words, joining, joins_a_server
-from .vocabulary import Vocabulary
+from .vocabulary import BusVocabulary
 
 
 @contextmanager
 def started(
     controllers: Sequence[Controller],
     analysis: Analysis,
-    vocabulary: Vocabulary,
+    vocabulary: BusVocabulary,
     folder: Path,
     log: Path | None = None,
 ) -> Iterator[tuple[Peer, list[Ended]]]:

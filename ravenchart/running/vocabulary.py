@@ -33,7 +33,7 @@ class WordError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Vocabulary:
+class BusVocabulary:
     """The messages of one bus."""
 
     system: System
@@ -46,7 +46,7 @@ class Vocabulary:
     """Literals that tell what to do: each is a value of one field, of one message from outside."""
 
     @staticmethod
-    def of(system: System) -> Vocabulary:
+    def of(system: System) -> BusVocabulary:
         """That of the first bus, the one that scenarios are played on; there is one."""
         bus = system.buses[0]
         database = cantools.database.load_string(emit_dbc(system, bus), "dbc")
@@ -55,7 +55,7 @@ class Vocabulary:
         partial = {(m.name, s.name) for m in system.messages for s in m.signals if s.other}
         messages = {message.name: message for message in database.messages}
         commands = dict(_commands(messages.values()))
-        return Vocabulary(system, bus, messages, Codec(database), frozenset(partial), commands)
+        return BusVocabulary(system, bus, messages, Codec(database), frozenset(partial), commands)
 
     def outside(self) -> list[str]:
         """The messages that no node of the model sends."""

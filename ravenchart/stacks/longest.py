@@ -11,7 +11,7 @@ from .graph import INDIRECT, Function, Graph, StackFrame, plain
 
 
 @dataclass(frozen=True, slots=True)
-class Bound:
+class StackBound:
     """What a function takes at most although the call graph does not say it, and why."""
 
     extra: int
@@ -27,7 +27,7 @@ class Rules:
 
     library: int | None = None
     """Bytes for any call of what is not in the graph; None: all must be in it."""
-    bounds: Mapping[str, Bound] = field(default_factory=dict)
+    bounds: Mapping[str, StackBound] = field(default_factory=dict)
     """Symbol to bound, of frames of dynamic size and functions that call themselves."""
     pointers: Mapping[str, Sequence[str]] = field(default_factory=dict)
     """Symbol of a caller to patterns of the symbols that it calls through pointers."""

@@ -8,6 +8,7 @@ import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from ravenchart.failures import ToolFailed, Unusable
 from ravenchart.paths import ROOT, work
@@ -43,7 +44,8 @@ def run(
 ) -> str:
     """Run a tool with scenario variables set; its output, or ToolMissing or ToolFailed.
 
-    Lines of the output that ``taken`` takes are no part of what is returned or raised.
+    Lines of the output that ``taken`` takes are no part of what is returned or raised. What the
+    tool leaves among the temporary files is deleted.
     """
     if not have(tool):
         raise ToolMissing(tool)
@@ -53,7 +55,9 @@ def run(
     environment = {**os.environ, "GPR_PROJECT_PATH": os.pathsep.join(paths)}
     if tool != "gprbuild":
         environment.pop("GPR_CONFIG", None)  # a configuration for compilers; gnatprove has its own
-    with _alone(tool, given) if "-P" in arguments else nullcontext():
+    alone = _alone(tool, given) if "-P" in arguments else nullcontext()
+    with alone, TemporaryDirectory(prefix="ravenchart-") as scratch:
+        environment["TMPDIR"] = scratch
         done = children.run_watched(
             [tool, *arguments, *variables], taken, cwd=where, env=environment, errors="replace"
         )

@@ -16,14 +16,14 @@ from ravenchart.commands import loopback_files
 from ravenchart.commands.loopback import show
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.conformance.ends import Ends, Setup, opened
-from ravenchart.hw_can.conformance.suite import LoopbackResult, run
+from ravenchart.hw_can.conformance.suite import SuiteResult, run
 
 from .driver_cases import LIMIT, VARIABLES, cases, started
 
 
 def tried(
     program: Path, channel: str, near: str, *, emulated: bool, name: str = "socketcan"
-) -> LoopbackResult:
+) -> SuiteResult:
     """Run all cases; BenchError when the program or python-can cannot open its interface."""
     setup = Setup("socketcan", near, "socketcan", near)
     with started(program, channel, emulated=emulated, name=name) as driver:

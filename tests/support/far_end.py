@@ -15,7 +15,7 @@ from ravenchart.building import checking
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.peer import FrameValues, Value
 from ravenchart.paths import ROOT
-from ravenchart.running.vocabulary import Vocabulary
+from ravenchart.running.vocabulary import BusVocabulary
 
 ROBOT = ROOT / "examples" / "cartesian_robot"
 
@@ -31,9 +31,9 @@ def system_of(model: Path) -> System:
     return checking.check(model).system
 
 
-def robot() -> Vocabulary:
+def robot() -> BusVocabulary:
     """What is said on the bus of the Cartesian robot."""
-    return Vocabulary.of(system_of(ROBOT / "model.yaml"))
+    return BusVocabulary.of(system_of(ROBOT / "model.yaml"))
 
 
 def status(condition: str, x: int = 0) -> Answer:
@@ -47,7 +47,7 @@ class FarEnd:
     def __init__(
         self,
         bus: can.BusABC,
-        words: Vocabulary,
+        words: BusVocabulary,
         answer: Callable[[str, FrameValues], list[Answer]] = lambda name, values: [],
     ) -> None:
         self.bus, self.words = bus, words

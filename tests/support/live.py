@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from ravenchart.paths import work
-from ravenchart.running.result import RunResult
+from ravenchart.running.result import RunOutcome
 
 TIMES = 3
 """So often a run is played at the most."""
@@ -21,7 +21,7 @@ def alone() -> Iterator[None]:
         yield
 
 
-def played(play: Callable[[], RunResult]) -> RunResult:
+def played(play: Callable[[], RunOutcome]) -> RunOutcome:
     """The outcome of a run; where the host withheld the core and something failed, of another."""
     for _ in range(TIMES):
         outcome = play()

@@ -14,7 +14,7 @@ from ravenchart.gen.emit.ada.text import print_unit
 from ravenchart.gen.emit.certificate.package import emit_certificate
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Message
-from ravenchart.gen.model.claims import ChainClaim, Claim, Claims
+from ravenchart.gen.model.claims import ChainClaim, Claims, ResponseClaim
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
 from tests.support.certificates import certificate, changed, compiled, numbers
@@ -48,7 +48,7 @@ def test_a_busy_period_of_no_time_hides_no_instance(tmp_path: Path) -> None:
         received("c", 3, *rest),
     )
     claims = claims_of(analyse(one))
-    short = Claim(Ns(3 * FRAME), (Ns(2 * FRAME),), Ns(0))
+    short = ResponseClaim(Ns(3 * FRAME), (Ns(2 * FRAME),), Ns(0))
     said = compiled(claimed(one, replace(claims, items={**claims.items, "bus.c": short})), tmp_path)
     assert "bus.c claims a wrong busy period" in said
 
@@ -56,15 +56,17 @@ def test_a_busy_period_of_no_time_hides_no_instance(tmp_path: Path) -> None:
 def test_negative_times_hold_no_demand(tmp_path: Path) -> None:
     """Two messages of 60 % each: Ada's quotients of negative numbers would let them pass."""
     one = of_messages(received("a", 1, 450_000, 900_000), received("b", 2, 450_000, 900_000))
-    found = Claim(Ns(2 * FRAME), (Ns(FRAME),), Ns(-(10**9)))
-    claims = Claims({"t": Claim(Ns(100_000), (Ns(100_000),)), "bus.a": found, "bus.b": found})
+    found = ResponseClaim(Ns(2 * FRAME), (Ns(FRAME),), Ns(-(10**9)))
+    claims = Claims(
+        {"t": ResponseClaim(Ns(100_000), (Ns(100_000),)), "bus.a": found, "bus.b": found}
+    )
     assert "bus.b claims a wrong busy period" in compiled(claimed(one, claims), tmp_path)
 
 
 def test_tasks_of_one_priority_cannot_claim_less_than_no_time(tmp_path: Path) -> None:
     """Three of 60 % each: to each of them the others are more than all of the time."""
     one = system([task(name, 1, 600, 1_000) for name in ("a", "b", "c")])
-    none = Claim(Ns(-(10**6)), (Ns(-(10**6)),))
+    none = ResponseClaim(Ns(-(10**6)), (Ns(-(10**6)),))
     said = compiled(claimed(one, Claims(dict.fromkeys(("a", "b", "c"), none))), tmp_path)
     assert "a claims a wrong response time" in said
 

@@ -17,7 +17,7 @@ from ravenchart.building import checking, generation, programs, stacks
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
 from ravenchart.running import runs as run
-from ravenchart.running.result import RunResult
+from ravenchart.running.result import RunOutcome
 from tests.support.faults import shows
 from tests.support.modes import MODES
 
@@ -124,7 +124,7 @@ OWN = re.compile(r"(        body:\n          - set: held.*?          - raise: Wo
 class Faulty:
     """The three components with a fault in a user's body: how a run of them ended."""
 
-    result: RunResult
+    result: RunOutcome
     fed: int
 
     @property

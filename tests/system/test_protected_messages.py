@@ -20,7 +20,7 @@ from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.peer import BenchError, Codec
 from ravenchart.hw_can.bench.protection import Wrong
 from ravenchart.paths import ROOT
-from ravenchart.running.result import RunResult
+from ravenchart.running.result import RunOutcome
 from ravenchart.running.runs import controller, run_controller
 from tests.support.ada_programs import ran
 from tests.support.on_bus import runner
@@ -198,7 +198,7 @@ def test_the_bench_protects_what_it_sends(tmp_path: Path) -> None:
 
 FACES = ("first", "second", "third", "fourth", "fifth")
 
-Playing = Callable[[str], RunResult]
+Playing = Callable[[str], RunOutcome]
 
 
 @pytest.fixture
@@ -210,7 +210,7 @@ def playing(tmp_path: Path) -> Playing:
     generation.write_program(checked)
     (program,) = (controller(made) for made in programs.programs_of(checked))
 
-    def play(text: str) -> RunResult:
+    def play(text: str) -> RunOutcome:
         scenario = copy / "scenario.yaml"
         scenario.write_text(text)
         outcome = run_controller(

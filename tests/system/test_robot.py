@@ -14,7 +14,7 @@ import pytest
 
 from ravenchart.building import checking
 from ravenchart.running.process import ControllerProcess
-from ravenchart.running.result import RunResult
+from ravenchart.running.result import RunOutcome
 from ravenchart.running.runs import run_controller
 from tests.support import live
 from tests.support.faults import shows
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.alone
 HERE = Path("examples/cartesian_robot")
 
 
-def _run(robot: tuple[checking.Checked, Path], scenario: str, folder: Path) -> RunResult:
+def _run(robot: tuple[checking.Checked, Path], scenario: str, folder: Path) -> RunOutcome:
     checked, executable = robot
     generated = checked.folder / "generated"
     play = partial(

@@ -16,7 +16,7 @@ from ravenchart.building import checking, generation, programs
 from ravenchart.commands import simulate
 from ravenchart.hw_can.bench.peer import Codec
 from ravenchart.paths import ROOT
-from ravenchart.running.result import RunResult
+from ravenchart.running.result import RunOutcome
 from ravenchart.running.runs import RunRequest, controller, run_model
 from tests.support import live
 from tests.support.faults import shows
@@ -62,7 +62,7 @@ def played(checked: checking.Checked, scenario: str, to: Path) -> str:
         to,
     )
 
-    def play() -> RunResult:
+    def play() -> RunOutcome:
         shown.truncate(shown.seek(0))
         outcome = run_model(request, Console(file=shown, width=80))
         assert outcome is not None, shown.getvalue()

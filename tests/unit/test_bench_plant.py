@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ravenchart.hw_can.bench.plant import STEP, Axis, Condition, Drive, Limit, Mode, Push
+from ravenchart.hw_can.bench.plant import STEP, Axis, Condition, Drive, DriveMode, Limit, Push
 
 AXIS = Axis(stroke=0.4, start=0.05, low_switch=0.008, high_switch=0.39, count_at_start=-1234)
 
@@ -18,7 +18,7 @@ def run(drive: Drive, seconds: float, speed: float | None = None) -> list[float]
     speeds = []
     for index in range(round(seconds / STEP)):
         if speed is not None and index % 20 == 0:
-            drive.command(Mode.ENABLED, speed)
+            drive.command(DriveMode.ENABLED, speed)
         drive.step()
         speeds.append(drive.speed)
     return speeds
@@ -49,9 +49,9 @@ def test_a_set_speed_of_zero_holds_the_axis() -> None:
 
 
 @settings(max_examples=40, deadline=None)
-@given(st.lists(st.tuples(st.sampled_from(Mode), st.floats(-2, 2)), min_size=1, max_size=40))
+@given(st.lists(st.tuples(st.sampled_from(DriveMode), st.floats(-2, 2)), min_size=1, max_size=40))
 def test_the_axis_never_leaves_its_stops_and_gains_no_energy_from_nothing(
-    commands: list[tuple[Mode, float]],
+    commands: list[tuple[DriveMode, float]],
 ) -> None:
     drive = Drive(AXIS)
     for mode, speed in commands:
@@ -67,7 +67,7 @@ def test_the_axis_never_leaves_its_stops_and_gains_no_energy_from_nothing(
 def test_a_disabled_axis_loses_all_its_speed_and_stays() -> None:
     drive = Drive(AXIS)
     run(drive, 0.3, 0.25)
-    drive.command(Mode.DISABLED, 0.25)
+    drive.command(DriveMode.DISABLED, 0.25)
     speeds = run(drive, 0.1)
     assert all(b <= a for a, b in itertools.pairwise(speeds))
     assert speeds[-1] == 0.0
@@ -88,7 +88,7 @@ def test_the_low_switch_lets_go_a_little_above_where_it_was_pressed() -> None:
             before = drive.limit
             if index % 20 == 0:
                 stay = speed < 0 and before is Limit.LOW_END
-                drive.command(Mode.ENABLED, 0.0 if stay else speed)
+                drive.command(DriveMode.ENABLED, 0.0 if stay else speed)
             drive.step()
             if (before, drive.limit) == (Limit.CLEAR, Limit.LOW_END):
                 pressed_at = drive.position
@@ -127,7 +127,7 @@ def test_a_drive_that_hears_nothing_stops_and_faults_until_it_hears_again() -> N
     assert drive.condition is Condition.READY
     run(drive, 0.16)
     assert (drive.condition, drive.speed) == (Condition.FAULTED, 0.0)
-    drive.command(Mode.ENABLED, 0.1)
+    drive.command(DriveMode.ENABLED, 0.1)
     assert drive.condition is Condition.READY
 
 

@@ -16,7 +16,7 @@ from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.bench.scenario import ScenarioError, TraceCheck, parse_scenario
 from ravenchart.running import expected, judge, summary
 from ravenchart.running.process import Ended
-from ravenchart.running.result import RunResult
+from ravenchart.running.result import RunOutcome
 from ravenchart.running.runs import (
     Controller,
     RunRequest,
@@ -74,7 +74,7 @@ PASSED = "verdict: PASS (timing not judged: the controller had no real-time prio
 BARE = "scenario: S\nsteps: [{wait: 1 s}]\n"
 
 
-def run(files: Files, duration: float | None = 20.0) -> RunResult:
+def run(files: Files, duration: float | None = 20.0) -> RunOutcome:
     return run_controller(
         files.executable,
         files.trace_json,
@@ -86,7 +86,7 @@ def run(files: Files, duration: float | None = 20.0) -> RunResult:
     )
 
 
-def printed(result: RunResult) -> str:
+def printed(result: RunOutcome) -> str:
     out = io.StringIO()
     console = Console(file=out, width=80, highlight=False)
     print_summary(result, console)

@@ -39,7 +39,7 @@ FACTS = {
     "link.ads": {
         "Id in Timing_Certificate.Link_Supervisor_Order_Id",
         "Bit_Rate => Timing_Certificate.Link_Bit_Rate",
-        "Driver_Priority => Timing_Certificate.Link_Driver_Rx_Supervisor_Order_Priority",
+        "Driver_Priority => Timing_Certificate.Link_Driver_Priority",
         "Controller.Given_Setting.Bit_Rate = Timing_Certificate.Link_Bit_Rate",
     },
     "link.adb": {

@@ -26,7 +26,7 @@ from ravenchart.gen.language.terms import (
 )
 from ravenchart.gen.origins import Origin
 from ravenchart.gen.resolve.typed import fitting, read
-from ravenchart.gen.resolve.vocabulary import Checked, Vocabulary
+from ravenchart.gen.resolve.vocabulary import CheckedExpression, Vocabulary
 
 PLACE = TextPlace(Origin("m.yaml", 7, 11), exact=True)
 LENGTH = IntegerType("Length", BUILT_IN, -100, 100, "mm")
@@ -61,7 +61,7 @@ def vocabulary() -> Vocabulary:
     return Vocabulary(readable, inputs, regions, frozenset(("red", "green", "stop")))
 
 
-def checked(text: int | bool | str) -> Checked:
+def checked(text: int | bool | str) -> CheckedExpression:
     """The sound expression that a text stands for."""
     findings = Findings()
     result = read(text, PLACE, vocabulary(), findings)

@@ -12,7 +12,7 @@ import pytest
 
 from ravenchart.hw_can.bench.echo import Echo, Standing
 from ravenchart.hw_can.conformance.ends import Ends, Setup, open_ends
-from ravenchart.hw_can.conformance.suite import CaseVerdict, LoopbackResult, run
+from ravenchart.hw_can.conformance.suite import CaseVerdict, SuiteResult, run
 from ravenchart.tools import toolchain
 from tests.hardware import __main__ as hw_test
 from tests.hardware.__main__ import Step, Total, load_order, missing, script, steps, total
@@ -221,5 +221,5 @@ def test_a_program_that_answers_wrongly_fails(
     assert _named(CaseVerdict.PASSED, result) == FRAMES - failing
 
 
-def _named(verdict: CaseVerdict, result: LoopbackResult) -> set[str]:
+def _named(verdict: CaseVerdict, result: SuiteResult) -> set[str]:
     return {case.name for case in result.cases if case.verdict is verdict}

@@ -20,7 +20,7 @@ from ravenchart.hw_can.conformance.ends import Ends, Setup, open_ends
 from ravenchart.hw_can.conformance.suite import (
     CaseResult,
     CaseVerdict,
-    LoopbackResult,
+    SuiteResult,
     histogram,
     run,
 )
@@ -34,11 +34,11 @@ def on(server: BusServer) -> Ends:
     return open_ends(setup, patience=0.3)
 
 
-def verdicts(result: LoopbackResult) -> dict[str, CaseVerdict]:
+def verdicts(result: SuiteResult) -> dict[str, CaseVerdict]:
     return {case.name: case.verdict for case in result.cases}
 
 
-def named(verdict: CaseVerdict, result: LoopbackResult) -> set[str]:
+def named(verdict: CaseVerdict, result: SuiteResult) -> set[str]:
     return {case.name for case in result.cases if case.verdict is verdict}
 
 
@@ -211,7 +211,7 @@ def test_error_frames_and_states_are_seen(server: BusServer) -> None:
 def test_nothing_passed_is_not_a_pass() -> None:
     setup = Setup("virtual", "x", "virtual", "x")
     case = CaseResult("burst", CaseVerdict.SKIPPED, "not today", 0.0)
-    result = LoopbackResult(setup, (case,), (), None)
+    result = SuiteResult(setup, (case,), (), None)
     assert not result.passed
     assert verdict_line(result) == "FAIL: 0 passed, 0 failed, 1 skipped"
     assert '<skipped message="not today"' in loopback_files.junit(result)
@@ -220,7 +220,7 @@ def test_nothing_passed_is_not_a_pass() -> None:
 def test_a_failure_is_told_in_each_form() -> None:
     setup = Setup("virtual", 'a<b>&"c', "virtual", "x")
     cases = (CaseResult("burst", CaseVerdict.FAILED, "sent <1> & lost", 0.5),)
-    result = LoopbackResult(setup, cases, (1_500, 1_700, 9_000), 10.0)
+    result = SuiteResult(setup, cases, (1_500, 1_700, 9_000), 10.0)
     suite = ElementTree.fromstring(loopback_files.junit(result).encode())
     failure = suite.find(".//failure")
     assert failure is not None and failure.get("message") == "sent <1> & lost"

@@ -20,7 +20,7 @@ from ravenchart.hw_can.bench.peer import BenchError, Peer
 from ravenchart.running.process import Ended, StartError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem
 from ravenchart.running.shell import USAGES, Shell, value_of
-from ravenchart.running.vocabulary import Vocabulary, WordError
+from ravenchart.running.vocabulary import BusVocabulary, WordError
 from tests.support.answers import answered
 from tests.support.bus_server import BusServer
 from tests.support.far_end import ROBOT, FarEnd, obedient, robot, status
@@ -252,7 +252,7 @@ def stopped(controller: Ended) -> Callable[..., AbstractContextManager[tuple[Pee
 
     @contextmanager
     def started(
-        _built: object, _analysis: object, words: Vocabulary, *_: object
+        _built: object, _analysis: object, words: BusVocabulary, *_: object
     ) -> Iterator[tuple[Peer, list[Ended]]]:
         if controller.killed:
             raise StartError("the controller did not open its bus within 10 s")

@@ -13,14 +13,14 @@ from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.paths import ROOT
 from ravenchart.running.remote import NoAnswerError, RemoteSystem
 from ravenchart.running.shell import USAGES, Shell
-from ravenchart.running.vocabulary import Vocabulary, WordError
+from ravenchart.running.vocabulary import BusVocabulary, WordError
 from tests.support.far_end import system_of
 
 LINES = 1_000
 ODD = ("1", "-5", "21.5", "=", "x=1", "'", '"', "#", "\\", "é", "9" * 30, "low", "", "\x1b[0m")
 
 
-def whole(words: Vocabulary, chance: random.Random) -> str:
+def whole(words: BusVocabulary, chance: random.Random) -> str:
     """A message with most of its fields, at the ends of their ranges or with names."""
     message = chance.choice(words.outside())
     given = [
@@ -33,7 +33,7 @@ def whole(words: Vocabulary, chance: random.Random) -> str:
 
 @pytest.mark.parametrize("feature", ["authenticated", "flexible", "pages", "protected", "signals"])
 def test_no_line_gets_another_exception(feature: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    words = Vocabulary.of(system_of(ROOT / "tests" / "feature" / feature / "model.yaml"))
+    words = BusVocabulary.of(system_of(ROOT / "tests" / "feature" / feature / "model.yaml"))
     verbs = [verb for verb in USAGES if verb != "wait"]
     known = [*verbs, *words.commands, *words.messages, *words.observable(), *ODD]
     chance, done = random.Random(feature), 0

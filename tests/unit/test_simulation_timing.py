@@ -17,7 +17,7 @@ from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.core.tasks import TableRow, Task
 from ravenchart.analysis.simulation import worst
 from ravenchart.analysis.simulation.engine import simulate
-from ravenchart.analysis.simulation.phases import Inside, Phase, Scenario, chance_scenario
+from ravenchart.analysis.simulation.phases import Inside, Phase, PhaseScenario, chance_scenario
 from tests.support.random_networks import random_network, with_offsets
 
 SYSTEMS = 1_000
@@ -32,7 +32,7 @@ def late(limit: int) -> Phase:
 
 def test_a_more_urgent_task_preempts_and_every_stretch_is_recorded() -> None:
     tasks = (Task("low", 1, 100, 100, 10), Task("high", 2, 100, 100, 3))
-    scenario = Scenario({"high": Phase(first=4)})
+    scenario = PhaseScenario({"high": Phase(first=4)})
     seen = simulate(Network(tasks), scenario, 50, record=True)
     assert seen.longest == {"low": 13, "high": 3}
     assert [(s.name, s.start, s.end) for s in seen.stretches] == [
@@ -48,23 +48,23 @@ def test_a_section_runs_at_its_ceiling_from_its_first_tick_on() -> None:
     inside = {"low": Phase(inside=(Inside(2, sections[0]),))}
     for first, response in ((2, 3), (3, 7), (6, 4), (7, 3)):
         phases = inside | {"high": Phase(first=first)}
-        seen = simulate(Network(tasks, sections=sections), Scenario(phases), 50)
+        seen = simulate(Network(tasks, sections=sections), PhaseScenario(phases), 50)
         assert seen.longest["high"] == response, first
 
 
 def test_equals_run_first_in_first_out() -> None:
     tasks = (Task("a", 1, 100, 100, 5), Task("b", 1, 100, 100, 5), Task("top", 2, 100, 100, 2))
-    scenario = Scenario({"b": Phase(first=1), "top": Phase(first=2)})
+    scenario = PhaseScenario({"b": Phase(first=1), "top": Phase(first=2)})
     assert simulate(Network(tasks), scenario, 50).longest == {"a": 7, "b": 11, "top": 2}
 
 
 def test_rows_run_in_their_frames_and_each_is_timed() -> None:
     rows = (TableRow("fast", 2), TableRow("slow", 5, every=2, phase=1))
     task = Task("t", 1, 10, 10, 1, rows=rows)
-    seen = simulate(Network((task,)), Scenario(), 40)
+    seen = simulate(Network((task,)), PhaseScenario(), 40)
     assert seen.rows == {("t", "fast"): 3, ("t", "slow"): 8}
     assert seen.longest == {"t": 8}
-    only = simulate(Network((task,)), Scenario(), 9)
+    only = simulate(Network((task,)), PhaseScenario(), 9)
     assert only.rows == {("t", "fast"): 3}
 
 
@@ -72,7 +72,7 @@ def test_a_frame_is_not_preempted_and_one_queued_within_a_bit_takes_part() -> No
     frames = {"can": (Frame("low", 2, 1_000, 1_000, 100), Frame("high", 1, 1_000, 1_000, 60))}
     for first, response in ((0, 60), (1, 59), (2, 158)):
         network = Network((), frames, {"can": Bus(2)})
-        seen = simulate(network, Scenario({"high": Phase(first=first)}), 900)
+        seen = simulate(network, PhaseScenario({"high": Phase(first=first)}), 900)
         assert seen.longest["high"] == response, first
 
 
@@ -83,8 +83,12 @@ def test_a_queue_sends_its_oldest_and_a_fault_costs_the_frame_and_its_recovery()
         Frame("middle", 5, 1_000, 1_000, 60),
     )
     network = Network((), {"can": frames}, {"can": Bus(1)})
-    assert simulate(network, Scenario(), 900).longest == {"middle": 60, "slow": 120, "urgent": 180}
-    struck = simulate(network, Scenario(faults={"can": (50,)}), 900)
+    assert simulate(network, PhaseScenario(), 900).longest == {
+        "middle": 60,
+        "slow": 120,
+        "urgent": 180,
+    }
+    struck = simulate(network, PhaseScenario(faults={"can": (50,)}), 900)
     assert struck.longest["middle"] == 50 + 31 + 60
 
 
@@ -95,18 +99,18 @@ def test_a_completion_releases_what_follows() -> None:
         {"can": Bus(1)},
         {"m": "send", "take": "m"},
     )
-    seen = simulate(network, Scenario({"send": late(5), "m": late(3)}), 900)
+    seen = simulate(network, PhaseScenario({"send": late(5), "m": late(3)}), 900)
     assert seen.longest == {"send": 15, "m": 78, "take": 98}
 
 
 def test_what_cannot_be_simulated_is_refused() -> None:
     task = Task("t", 1, 10, 10, 1, jitter=2)
     with pytest.raises(ValueError, match="overheads of core  cannot be simulated"):
-        simulate(Network((task,), platforms={"": Platform(release=1)}), Scenario(), 10)
+        simulate(Network((task,), platforms={"": Platform(release=1)}), PhaseScenario(), 10)
     with pytest.raises(ValueError, match="t must be released at most 2 late"):
-        simulate(Network((task,)), Scenario({"t": late(3)}), 10)
+        simulate(Network((task,)), PhaseScenario({"t": late(3)}), 10)
     with pytest.raises(ValueError, match="until of the simulation"):
-        simulate(Network((task,)), Scenario(), -1)
+        simulate(Network((task,)), PhaseScenario(), -1)
 
 
 # --- Against the bounds ----------------------------------------------------------------
@@ -253,7 +257,7 @@ def test_a_simulation_that_only_starts_together_would_not_show_blocking() -> Non
     response = analyse(network.tasks, network.sections)[0]
     assert response.bound == 14
     case = worst.of_task(response)
-    assert simulate(network, Scenario(), 90).longest["high"] == 5
+    assert simulate(network, PhaseScenario(), 90).longest["high"] == 5
     assert simulate(network, case.scenario, case.until).longest["high"] == 13
 
 
@@ -263,6 +267,6 @@ def test_errors_within_the_model_stay_within_the_bound_and_others_show() -> None
     bound = can.analyse(frames, bus)[2].bound
     assert bound is not None
     network = Network((), {"": frames}, {"": bus})
-    assert simulate(network, Scenario(faults={"": (120,)}), 1_900).longest["m2"] <= bound
+    assert simulate(network, PhaseScenario(faults={"": (120,)}), 1_900).longest["m2"] <= bound
     many = tuple(range(100, 1_500, 150))
-    assert simulate(network, Scenario(faults={"": many}), 5_000).longest["m2"] > bound
+    assert simulate(network, PhaseScenario(faults={"": many}), 5_000).longest["m2"] > bound

@@ -20,7 +20,7 @@ from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.plain.build import PlainSystem, load
 from ravenchart.analysis.plain.results import analyse
 from ravenchart.analysis.simulation.engine import simulate
-from ravenchart.analysis.simulation.phases import Phase, Scenario
+from ravenchart.analysis.simulation.phases import Phase, PhaseScenario
 from tests.support.certificates import certificate, compiled
 from tests.support.timing_models import QUEUE, analysed
 
@@ -69,7 +69,7 @@ def seen(chance: random.Random, longer: int) -> tuple[int, int, int]:
         "other": Phase(chance.randrange(11)),
     }
     events = list(accumulate((100 + m for m in more[:30]), initial=phases["command"].first))
-    ran = simulate(system, Scenario(phases), events[-1], record=True)
+    ran = simulate(system, PhaseScenario(phases), events[-1], record=True)
     heard = {s.number: s.end for s in ran.stretches if s.name == "hear"}
     begun: dict[int, int] = {}
     ended: dict[int, int] = {}

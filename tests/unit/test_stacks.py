@@ -10,12 +10,12 @@ import pytest
 from ravenchart.stacks import graph, machine, memory, symbols
 from ravenchart.stacks.longest import (
     LIBRARY,
-    Bound,
     Depths,
     Indirect,
     Missing,
     Recursion,
     Rules,
+    StackBound,
     Unbounded,
 )
 
@@ -169,7 +169,7 @@ def test_a_frame_of_dynamic_size_needs_a_bound() -> None:
     depths = Depths(graph.read([text]), Rules())
     depths.depth("a")
     assert list(depths.problems) == [Unbounded("c.constprop.0", "a.adb:1:1", ("T a.adb:3:4",))]
-    known = Depths(graph.read([text]), Rules(bounds={"c": Bound(1000, "measured")}))
+    known = Depths(graph.read([text]), Rules(bounds={"c": StackBound(1000, "measured")}))
     assert known.depth("a") == 1050
     assert not known.problems
 
@@ -182,7 +182,7 @@ def test_a_bound_covers_the_statements_that_a_compiler_sets_apart() -> None:
         _node(f"a.adb:{inside}", 40, "dynamic", "T a.adb:3:4"),
         _edge("a__tick", f"a.adb:{inside}"),
     )
-    depths = Depths(graph.read([text]), Rules(bounds={"a__tick": Bound(100, "three copies")}))
+    depths = Depths(graph.read([text]), Rules(bounds={"a__tick": StackBound(100, "three copies")}))
     assert depths.depth("a__tick") == 20 + 100 + 40 + 100
     assert not depths.problems
     assert graph.ada_name(inside) == "A.Tick"
@@ -190,11 +190,11 @@ def test_a_bound_covers_the_statements_that_a_compiler_sets_apart() -> None:
 
 def test_a_function_that_calls_itself_can_have_a_bound() -> None:
     found = _graph({"a": 10, "b": 20, "c": 7}, [("a", "b"), ("b", "b"), ("b", "c")])
-    depths = Depths(found, Rules(bounds={"b": Bound(0, "once for each byte", depth=65)}))
+    depths = Depths(found, Rules(bounds={"b": StackBound(0, "once for each byte", depth=65)}))
     assert depths.depth("a") == 10 + 65 * 20 + 7
     assert not depths.problems
     found["c"].calls["b"] = "a.adb:6:6"  # in a circle with another one it has none
-    wrong = Depths(found, Rules(bounds={"b": Bound(0, "once for each byte", depth=65)}))
+    wrong = Depths(found, Rules(bounds={"b": StackBound(0, "once for each byte", depth=65)}))
     wrong.depth("a")
     assert list(wrong.problems) == [Recursion(("b", "c", "b"), "a.adb:6:6")]
 

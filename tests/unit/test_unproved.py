@@ -12,7 +12,7 @@ import pytest
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
 from ravenchart.proof.spark_results import Open, Results, read_results
-from ravenchart.proof.unproved import IN_GENERATED, Finding, element_of, findings
+from ravenchart.proof.unproved import IN_GENERATED, UnprovedCheck, element_of, findings
 
 ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
 NAME = "Cartesian_Robot.Joint.Activities.Position_Control"
@@ -69,7 +69,7 @@ def test_what_an_annotation_skips_is_outside(tmp_path: Path) -> None:
     assert [one.name for one in _read(tmp_path, unit).outside] == [NAME, "Hidden"]
 
 
-def _finding(place: str, text: str, entity: str, folder: Path) -> Finding:
+def _finding(place: str, text: str, entity: str, folder: Path) -> UnprovedCheck:
     source = folder / place
     source.parent.mkdir(exist_ok=True)
     source.write_text("\n" * 167 + "      Measured.Position := Position (Reached);\n")

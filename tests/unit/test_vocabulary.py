@@ -6,14 +6,14 @@ import pytest
 
 from ravenchart.hw_can.bench.scenario import parse_scenario
 from ravenchart.paths import ROOT
-from ravenchart.running.vocabulary import Vocabulary
+from ravenchart.running.vocabulary import BusVocabulary
 from tests.support.far_end import robot, system_of
 
 FEATURES = ROOT / "tests" / "feature"
 
 
-def words_of(feature: str) -> Vocabulary:
-    return Vocabulary.of(system_of(FEATURES / feature / "model.yaml"))
+def words_of(feature: str) -> BusVocabulary:
+    return BusVocabulary.of(system_of(FEATURES / feature / "model.yaml"))
 
 
 def test_a_command_is_a_literal_of_one_field_alone() -> None:
@@ -26,7 +26,7 @@ def test_the_values_of_a_boolean_are_no_commands() -> None:
     for feature in sorted(path.name for path in FEATURES.iterdir() if path.is_dir()):
         system = system_of(FEATURES / feature / "model.yaml")
         if system.buses:
-            assert not {"True", "False"} & Vocabulary.of(system).commands.keys()
+            assert not {"True", "False"} & BusVocabulary.of(system).commands.keys()
 
 
 def test_the_header_of_a_protected_message_is_none_of_its_fields() -> None:

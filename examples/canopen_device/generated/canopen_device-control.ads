@@ -29,8 +29,8 @@ is
       Table_Type => Row_Table,
       Table =>
         (Device_Regulate =>
-           (Divisor => Timing_Certificate.Device_Regulate_Divisor,
-            Phase => Timing_Certificate.Device_Regulate_Phase)),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Control_T,
       Offset => 0,
@@ -56,7 +56,7 @@ is
       "control has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Device_Regulate).Divisor
-      = Timing_Certificate.Device_Regulate_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (Device_Regulate).Phase
-        = Timing_Certificate.Device_Regulate_Phase);
+        = Timing_Certificate.Control_Phase);
 end Canopen_Device.Control;

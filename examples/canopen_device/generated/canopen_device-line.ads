@@ -34,7 +34,7 @@ is
    package Controller is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 4,
       Receive_Ceiling => System.Default_Priority + 4,
-      Driver_Priority => Timing_Certificate.Line_Driver_Rx_Nmt_Priority,
+      Driver_Priority => Timing_Certificate.Line_Driver_Priority,
       Transmit_Depth => 8,
       Receive_Depth => 16,
       Stack_Bytes => 65_536,
@@ -48,8 +48,7 @@ is
    use type Ravenchart.Can.Bits_Per_Second;
 
    pragma Compile_Time_Error
-     (Controller.Given_Priority
-      /= Timing_Certificate.Line_Driver_Rx_Nmt_Priority,
+     (Controller.Given_Priority /= Timing_Certificate.Line_Driver_Priority,
       "line has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Line_Bit_Rate

@@ -31,26 +31,26 @@ is
       Table_Type => Row_Table,
       Table =>
         (Device_Ports =>
-           (Divisor => Timing_Certificate.Device_Ports_Divisor,
-            Phase => Timing_Certificate.Device_Ports_Phase),
+           (Divisor => Timing_Certificate.Protocol_Divisor,
+            Phase => Timing_Certificate.Protocol_Phase),
          Device_Nmt =>
-           (Divisor => Timing_Certificate.Device_Nmt_Divisor,
-            Phase => Timing_Certificate.Device_Nmt_Phase),
+           (Divisor => Timing_Certificate.Protocol_Divisor,
+            Phase => Timing_Certificate.Protocol_Phase),
          Device_Inbox =>
-           (Divisor => Timing_Certificate.Device_Inbox_Divisor,
-            Phase => Timing_Certificate.Device_Inbox_Phase),
+           (Divisor => Timing_Certificate.Protocol_Divisor,
+            Phase => Timing_Certificate.Protocol_Phase),
          Device_Serve =>
-           (Divisor => Timing_Certificate.Device_Serve_Divisor,
-            Phase => Timing_Certificate.Device_Serve_Phase),
+           (Divisor => Timing_Certificate.Protocol_Divisor,
+            Phase => Timing_Certificate.Protocol_Phase),
          Device_Respond =>
-           (Divisor => Timing_Certificate.Device_Respond_Divisor,
-            Phase => Timing_Certificate.Device_Respond_Phase),
+           (Divisor => Timing_Certificate.Protocol_Divisor,
+            Phase => Timing_Certificate.Protocol_Phase),
          Device_Produce_Heartbeat =>
-           (Divisor => Timing_Certificate.Device_Produce_Heartbeat_Divisor,
-            Phase => Timing_Certificate.Device_Produce_Heartbeat_Phase),
+           (Divisor => Timing_Certificate.Protocol_Divisor,
+            Phase => Timing_Certificate.Protocol_Phase),
          Device_Report =>
-           (Divisor => Timing_Certificate.Device_Report_Divisor,
-            Phase => Timing_Certificate.Device_Report_Phase)),
+           (Divisor => Timing_Certificate.Protocol_Divisor,
+            Phase => Timing_Certificate.Protocol_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Protocol_T,
       Offset => 0,
@@ -76,37 +76,37 @@ is
       "protocol has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Device_Ports).Divisor
-      = Timing_Certificate.Device_Ports_Divisor
+      = Timing_Certificate.Protocol_Divisor
       and then Processor.Given_Table (Device_Ports).Phase
-        = Timing_Certificate.Device_Ports_Phase);
+        = Timing_Certificate.Protocol_Phase);
    pragma Assert
      (Processor.Given_Table (Device_Nmt).Divisor
-      = Timing_Certificate.Device_Nmt_Divisor
+      = Timing_Certificate.Protocol_Divisor
       and then Processor.Given_Table (Device_Nmt).Phase
-        = Timing_Certificate.Device_Nmt_Phase);
+        = Timing_Certificate.Protocol_Phase);
    pragma Assert
      (Processor.Given_Table (Device_Inbox).Divisor
-      = Timing_Certificate.Device_Inbox_Divisor
+      = Timing_Certificate.Protocol_Divisor
       and then Processor.Given_Table (Device_Inbox).Phase
-        = Timing_Certificate.Device_Inbox_Phase);
+        = Timing_Certificate.Protocol_Phase);
    pragma Assert
      (Processor.Given_Table (Device_Serve).Divisor
-      = Timing_Certificate.Device_Serve_Divisor
+      = Timing_Certificate.Protocol_Divisor
       and then Processor.Given_Table (Device_Serve).Phase
-        = Timing_Certificate.Device_Serve_Phase);
+        = Timing_Certificate.Protocol_Phase);
    pragma Assert
      (Processor.Given_Table (Device_Respond).Divisor
-      = Timing_Certificate.Device_Respond_Divisor
+      = Timing_Certificate.Protocol_Divisor
       and then Processor.Given_Table (Device_Respond).Phase
-        = Timing_Certificate.Device_Respond_Phase);
+        = Timing_Certificate.Protocol_Phase);
    pragma Assert
      (Processor.Given_Table (Device_Produce_Heartbeat).Divisor
-      = Timing_Certificate.Device_Produce_Heartbeat_Divisor
+      = Timing_Certificate.Protocol_Divisor
       and then Processor.Given_Table (Device_Produce_Heartbeat).Phase
-        = Timing_Certificate.Device_Produce_Heartbeat_Phase);
+        = Timing_Certificate.Protocol_Phase);
    pragma Assert
      (Processor.Given_Table (Device_Report).Divisor
-      = Timing_Certificate.Device_Report_Divisor
+      = Timing_Certificate.Protocol_Divisor
       and then Processor.Given_Table (Device_Report).Phase
-        = Timing_Certificate.Device_Report_Phase);
+        = Timing_Certificate.Protocol_Phase);
 end Canopen_Device.Protocol;

@@ -52,6 +52,9 @@ is
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
+   --  [line] the priority of its driver, whatever that works at
+   Line_Driver_Priority : constant := System.Default_Priority + 4;
+
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: protocol in device.nmt_in.mailbox.
    Reception_Priority : constant := System.Default_Priority + 3;
@@ -73,35 +76,10 @@ is
    Device_Report_Budget : constant := 100_000;
    Protocol_T : constant := 5_000_000;
    Protocol_D : constant := 5_000_000;
-   Device_Ports_Divisor : constant := 1;
-   Device_Ports_Phase : constant := 0;
-   Device_Nmt_Divisor : constant := 1;
-   Device_Nmt_Phase : constant := 0;
-   Device_Inbox_Divisor : constant := 1;
-   Device_Inbox_Phase : constant := 0;
-   Device_Serve_Divisor : constant := 1;
-   Device_Serve_Phase : constant := 0;
-   Device_Respond_Divisor : constant := 1;
-   Device_Respond_Phase : constant := 0;
-   Device_Produce_Heartbeat_Divisor : constant := 1;
-   Device_Produce_Heartbeat_Phase : constant := 0;
-   Device_Report_Divisor : constant := 1;
-   Device_Report_Phase : constant := 0;
+   Protocol_Divisor : constant := 1;
+   Protocol_Phase : constant := 0;
    pragma Compile_Time_Error
-     (Device_Ports_Divisor /= 1
-      or else Device_Ports_Phase /= 0
-      or else Device_Nmt_Divisor /= 1
-      or else Device_Nmt_Phase /= 0
-      or else Device_Inbox_Divisor /= 1
-      or else Device_Inbox_Phase /= 0
-      or else Device_Serve_Divisor /= 1
-      or else Device_Serve_Phase /= 0
-      or else Device_Respond_Divisor /= 1
-      or else Device_Respond_Phase /= 0
-      or else Device_Produce_Heartbeat_Divisor /= 1
-      or else Device_Produce_Heartbeat_Phase /= 0
-      or else Device_Report_Divisor /= 1
-      or else Device_Report_Phase /= 0,
+     (Protocol_Divisor /= 1 or else Protocol_Phase /= 0,
       "protocol must keep divisors and phases of its rows");
    Protocol_J : constant := 0;
    Protocol_C : constant :=
@@ -116,10 +94,10 @@ is
    Device_Regulate_Budget : constant := 100_000;
    Control_T : constant := 50_000_000;
    Control_D : constant := 50_000_000;
-   Device_Regulate_Divisor : constant := 1;
-   Device_Regulate_Phase : constant := 0;
+   Control_Divisor : constant := 1;
+   Control_Phase : constant := 0;
    pragma Compile_Time_Error
-     (Device_Regulate_Divisor /= 1 or else Device_Regulate_Phase /= 0,
+     (Control_Divisor /= 1 or else Control_Phase /= 0,
       "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
    Control_C : constant :=
@@ -128,7 +106,6 @@ is
 
    --  [line.driver_rx.nmt] the driver, released by line.nmt. B: protocol in
    --  line.transmit.
-   Line_Driver_Rx_Nmt_Priority : constant := System.Default_Priority + 4;
    Line_Driver_Rx_Nmt_Budget : constant := 40_000;
    Line_Driver_Rx_Nmt_T : constant := 10_000_000;
    Line_Driver_Rx_Nmt_D : constant := 10_000_000;
@@ -139,7 +116,6 @@ is
 
    --  [line.driver_rx.sync] the driver, released by line.sync. B: protocol
    --  in line.transmit.
-   Line_Driver_Rx_Sync_Priority : constant := System.Default_Priority + 4;
    Line_Driver_Rx_Sync_Budget : constant := 40_000;
    Line_Driver_Rx_Sync_T : constant := 10_000_000;
    Line_Driver_Rx_Sync_D : constant := 10_000_000;
@@ -150,7 +126,6 @@ is
 
    --  [line.driver_tx.tpdo_1] the driver, released by protocol. B: protocol
    --  in line.transmit.
-   Line_Driver_Tx_Tpdo_1_Priority : constant := System.Default_Priority + 4;
    Line_Driver_Tx_Tpdo_1_Budget : constant := 40_000;
    Line_Driver_Tx_Tpdo_1_T : constant := 5_000_000;
    Line_Driver_Tx_Tpdo_1_D : constant := 5_000_000;
@@ -161,7 +136,6 @@ is
 
    --  [line.driver_rx.rpdo_1] the driver, released by line.rpdo_1. B:
    --  protocol in line.transmit.
-   Line_Driver_Rx_Rpdo_1_Priority : constant := System.Default_Priority + 4;
    Line_Driver_Rx_Rpdo_1_Budget : constant := 40_000;
    Line_Driver_Rx_Rpdo_1_T : constant := 10_000_000;
    Line_Driver_Rx_Rpdo_1_D : constant := 10_000_000;
@@ -172,8 +146,6 @@ is
 
    --  [line.driver_tx.sdo_response] the driver, released by protocol. B:
    --  protocol in line.transmit.
-   Line_Driver_Tx_Sdo_Response_Priority : constant :=
-     System.Default_Priority + 4;
    Line_Driver_Tx_Sdo_Response_Budget : constant := 40_000;
    Line_Driver_Tx_Sdo_Response_T : constant := 5_000_000;
    Line_Driver_Tx_Sdo_Response_D : constant := 5_000_000;
@@ -184,8 +156,6 @@ is
 
    --  [line.driver_rx.sdo_request] the driver, released by
    --  line.sdo_request. B: protocol in line.transmit.
-   Line_Driver_Rx_Sdo_Request_Priority : constant :=
-     System.Default_Priority + 4;
    Line_Driver_Rx_Sdo_Request_Budget : constant := 40_000;
    Line_Driver_Rx_Sdo_Request_T : constant := 5_000_000;
    Line_Driver_Rx_Sdo_Request_D : constant := 5_000_000;
@@ -196,8 +166,6 @@ is
 
    --  [line.driver_tx.heartbeat] the driver, released by protocol. B:
    --  protocol in line.transmit.
-   Line_Driver_Tx_Heartbeat_Priority : constant :=
-     System.Default_Priority + 4;
    Line_Driver_Tx_Heartbeat_Budget : constant := 40_000;
    Line_Driver_Tx_Heartbeat_T : constant := 5_000_000;
    Line_Driver_Tx_Heartbeat_D : constant := 5_000_000;
@@ -272,18 +240,8 @@ is
          Line_Driver_Rx_Sync_C, Line_Driver_Tx_Tpdo_1_Rest (W))) with Static;
 
    pragma Compile_Time_Error
-     (Board_Probe_Priority <= Line_Driver_Rx_Nmt_Priority
-      or else Line_Driver_Rx_Nmt_Priority /= Line_Driver_Rx_Sync_Priority
-      or else Line_Driver_Rx_Sync_Priority /= Line_Driver_Tx_Tpdo_1_Priority
-      or else Line_Driver_Tx_Tpdo_1_Priority
-        /= Line_Driver_Rx_Rpdo_1_Priority
-      or else Line_Driver_Rx_Rpdo_1_Priority
-        /= Line_Driver_Tx_Sdo_Response_Priority
-      or else Line_Driver_Tx_Sdo_Response_Priority
-        /= Line_Driver_Rx_Sdo_Request_Priority
-      or else Line_Driver_Rx_Sdo_Request_Priority
-        /= Line_Driver_Tx_Heartbeat_Priority
-      or else Line_Driver_Tx_Heartbeat_Priority <= Reception_Priority
+     (Board_Probe_Priority <= Line_Driver_Priority
+      or else Line_Driver_Priority <= Reception_Priority
       or else Reception_Priority <= Protocol_Priority
       or else Protocol_Priority <= Control_Priority,
       "board must keep the order of its priorities");
@@ -292,8 +250,16 @@ is
    --  message waits for the longest frame that goes behind it and has
    --  begun, and for those that go before it. Of a message, Stuffed: bits
    --  that stuffing can lengthen by a quarter; Bits: the longest frame,
-   --  with 10 bits that are not stuffed and 3 to the next frame.
+   --  with 10 bits that are not stuffed and 3 to the next frame; Time_Of:
+   --  how long that takes.
    Line_Bit_Rate : constant := 500_000;
+
+   function Line_Bits (Stuffed : Positive) return Time is
+     (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+   function Line_Time_Of (Stuffed : Positive) return Time is
+     ((Line_Bits (Stuffed) * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate)
+   with Static;
+
    Line_Bit : constant :=
      (1_000_000_000 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
 
@@ -302,11 +268,7 @@ is
    Line_Nmt_Length : constant := 2;
    Line_Nmt_T : constant := 10_000_000;
    Line_Nmt_D : constant := 10_000_000;
-   Line_Nmt_Stuffed : constant := 34 + 8 * Line_Nmt_Length;
-   Line_Nmt_Bits : constant :=
-     Line_Nmt_Stuffed + 13 + (Line_Nmt_Stuffed - 1) / 4;
-   Line_Nmt_C : constant :=
-     (Line_Nmt_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+   Line_Nmt_C : constant := Line_Time_Of (34 + 8 * Line_Nmt_Length);
    Line_Nmt_J : constant := 0;
 
    --  [line.sync] 11-bit identifier Id, Length bytes from somebody outside
@@ -314,11 +276,7 @@ is
    Line_Sync_Length : constant := 1;
    Line_Sync_T : constant := 10_000_000;
    Line_Sync_D : constant := 10_000_000;
-   Line_Sync_Stuffed : constant := 34 + 8 * Line_Sync_Length;
-   Line_Sync_Bits : constant :=
-     Line_Sync_Stuffed + 13 + (Line_Sync_Stuffed - 1) / 4;
-   Line_Sync_C : constant :=
-     (Line_Sync_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+   Line_Sync_C : constant := Line_Time_Of (34 + 8 * Line_Sync_Length);
    Line_Sync_J : constant := 0;
 
    --  [line.tpdo_1] 11-bit identifier Id, Length bytes from device.tpdo_1
@@ -326,11 +284,7 @@ is
    Line_Tpdo_1_Length : constant := 3;
    Line_Tpdo_1_T : constant := 5_000_000;
    Line_Tpdo_1_D : constant := 5_000_000;
-   Line_Tpdo_1_Stuffed : constant := 34 + 8 * Line_Tpdo_1_Length;
-   Line_Tpdo_1_Bits : constant :=
-     Line_Tpdo_1_Stuffed + 13 + (Line_Tpdo_1_Stuffed - 1) / 4;
-   Line_Tpdo_1_C : constant :=
-     (Line_Tpdo_1_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+   Line_Tpdo_1_C : constant := Line_Time_Of (34 + 8 * Line_Tpdo_1_Length);
    Line_Tpdo_1_J : constant := Line_Driver_Tx_Tpdo_1_R;
 
    --  [line.rpdo_1] 11-bit identifier Id, Length bytes from somebody
@@ -339,11 +293,7 @@ is
    Line_Rpdo_1_Length : constant := 2;
    Line_Rpdo_1_T : constant := 10_000_000;
    Line_Rpdo_1_D : constant := 10_000_000;
-   Line_Rpdo_1_Stuffed : constant := 34 + 8 * Line_Rpdo_1_Length;
-   Line_Rpdo_1_Bits : constant :=
-     Line_Rpdo_1_Stuffed + 13 + (Line_Rpdo_1_Stuffed - 1) / 4;
-   Line_Rpdo_1_C : constant :=
-     (Line_Rpdo_1_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+   Line_Rpdo_1_C : constant := Line_Time_Of (34 + 8 * Line_Rpdo_1_Length);
    Line_Rpdo_1_J : constant := 0;
 
    --  [line.sdo_response] 11-bit identifier Id, Length bytes from
@@ -352,12 +302,8 @@ is
    Line_Sdo_Response_Length : constant := 8;
    Line_Sdo_Response_T : constant := 5_000_000;
    Line_Sdo_Response_D : constant := 5_000_000;
-   Line_Sdo_Response_Stuffed : constant :=
-     34 + 8 * Line_Sdo_Response_Length;
-   Line_Sdo_Response_Bits : constant :=
-     Line_Sdo_Response_Stuffed + 13 + (Line_Sdo_Response_Stuffed - 1) / 4;
    Line_Sdo_Response_C : constant :=
-     (Line_Sdo_Response_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     Line_Time_Of (34 + 8 * Line_Sdo_Response_Length);
    Line_Sdo_Response_J : constant := Line_Driver_Tx_Sdo_Response_R;
 
    --  [line.sdo_request] 11-bit identifier Id, Length bytes from somebody
@@ -366,11 +312,8 @@ is
    Line_Sdo_Request_Length : constant := 8;
    Line_Sdo_Request_T : constant := 5_000_000;
    Line_Sdo_Request_D : constant := 5_000_000;
-   Line_Sdo_Request_Stuffed : constant := 34 + 8 * Line_Sdo_Request_Length;
-   Line_Sdo_Request_Bits : constant :=
-     Line_Sdo_Request_Stuffed + 13 + (Line_Sdo_Request_Stuffed - 1) / 4;
    Line_Sdo_Request_C : constant :=
-     (Line_Sdo_Request_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     Line_Time_Of (34 + 8 * Line_Sdo_Request_Length);
    Line_Sdo_Request_J : constant := 0;
 
    --  [line.heartbeat] 11-bit identifier Id, Length bytes from
@@ -379,11 +322,8 @@ is
    Line_Heartbeat_Length : constant := 1;
    Line_Heartbeat_T : constant := 5_000_000;
    Line_Heartbeat_D : constant := 5_000_000;
-   Line_Heartbeat_Stuffed : constant := 34 + 8 * Line_Heartbeat_Length;
-   Line_Heartbeat_Bits : constant :=
-     Line_Heartbeat_Stuffed + 13 + (Line_Heartbeat_Stuffed - 1) / 4;
    Line_Heartbeat_C : constant :=
-     (Line_Heartbeat_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     Line_Time_Of (34 + 8 * Line_Heartbeat_Length);
    Line_Heartbeat_J : constant := Line_Driver_Tx_Heartbeat_R;
 
    --  [reception] what delays it
@@ -579,9 +519,6 @@ is
    function Line_Sdo_Request_Up (W : Window) return Time is
      (Demand (W, Line_Sdo_Request_J, Line_Sdo_Request_T, Line_Sdo_Request_C,
          Line_Sdo_Response_Up (W))) with Static;
-   function Line_Heartbeat_Up (W : Window) return Time is
-     (Demand (W, Line_Heartbeat_R - Line_Heartbeat_C, Line_Heartbeat_T,
-         Line_Heartbeat_C, Line_Sdo_Request_Up (W))) with Static;
    function Line_Nmt_Up_Board (W : Window) return Time is
      (Demand (W, Line_Nmt_J, Line_Nmt_T, Line_Nmt_C)) with Static;
    function Line_Sync_Up_Board (W : Window) return Time is

@@ -29,32 +29,32 @@ is
       Table_Type => Row_Table,
       Table =>
         (Joint_X_Ports =>
-           (Divisor => Timing_Certificate.Joint_X_Ports_Divisor,
-            Phase => Timing_Certificate.Joint_X_Ports_Phase),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase),
          Joint_X_Monitoring =>
-           (Divisor => Timing_Certificate.Joint_X_Monitoring_Divisor,
-            Phase => Timing_Certificate.Joint_X_Monitoring_Phase),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase),
          Joint_X_Position_Control =>
-           (Divisor => Timing_Certificate.Joint_X_Position_Control_Divisor,
-            Phase => Timing_Certificate.Joint_X_Position_Control_Phase),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase),
          Joint_Y_Ports =>
-           (Divisor => Timing_Certificate.Joint_Y_Ports_Divisor,
-            Phase => Timing_Certificate.Joint_Y_Ports_Phase),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase),
          Joint_Y_Monitoring =>
-           (Divisor => Timing_Certificate.Joint_Y_Monitoring_Divisor,
-            Phase => Timing_Certificate.Joint_Y_Monitoring_Phase),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase),
          Joint_Y_Position_Control =>
-           (Divisor => Timing_Certificate.Joint_Y_Position_Control_Divisor,
-            Phase => Timing_Certificate.Joint_Y_Position_Control_Phase),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase),
          Joint_Z_Ports =>
-           (Divisor => Timing_Certificate.Joint_Z_Ports_Divisor,
-            Phase => Timing_Certificate.Joint_Z_Ports_Phase),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase),
          Joint_Z_Monitoring =>
-           (Divisor => Timing_Certificate.Joint_Z_Monitoring_Divisor,
-            Phase => Timing_Certificate.Joint_Z_Monitoring_Phase),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase),
          Joint_Z_Position_Control =>
-           (Divisor => Timing_Certificate.Joint_Z_Position_Control_Divisor,
-            Phase => Timing_Certificate.Joint_Z_Position_Control_Phase)),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Control_T,
       Offset => 0,
@@ -80,47 +80,47 @@ is
       "control has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Joint_X_Ports).Divisor
-      = Timing_Certificate.Joint_X_Ports_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (Joint_X_Ports).Phase
-        = Timing_Certificate.Joint_X_Ports_Phase);
+        = Timing_Certificate.Control_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_X_Monitoring).Divisor
-      = Timing_Certificate.Joint_X_Monitoring_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (Joint_X_Monitoring).Phase
-        = Timing_Certificate.Joint_X_Monitoring_Phase);
+        = Timing_Certificate.Control_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_X_Position_Control).Divisor
-      = Timing_Certificate.Joint_X_Position_Control_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (Joint_X_Position_Control).Phase
-        = Timing_Certificate.Joint_X_Position_Control_Phase);
+        = Timing_Certificate.Control_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Y_Ports).Divisor
-      = Timing_Certificate.Joint_Y_Ports_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (Joint_Y_Ports).Phase
-        = Timing_Certificate.Joint_Y_Ports_Phase);
+        = Timing_Certificate.Control_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Y_Monitoring).Divisor
-      = Timing_Certificate.Joint_Y_Monitoring_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (Joint_Y_Monitoring).Phase
-        = Timing_Certificate.Joint_Y_Monitoring_Phase);
+        = Timing_Certificate.Control_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Y_Position_Control).Divisor
-      = Timing_Certificate.Joint_Y_Position_Control_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (Joint_Y_Position_Control).Phase
-        = Timing_Certificate.Joint_Y_Position_Control_Phase);
+        = Timing_Certificate.Control_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Z_Ports).Divisor
-      = Timing_Certificate.Joint_Z_Ports_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (Joint_Z_Ports).Phase
-        = Timing_Certificate.Joint_Z_Ports_Phase);
+        = Timing_Certificate.Control_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Z_Monitoring).Divisor
-      = Timing_Certificate.Joint_Z_Monitoring_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (Joint_Z_Monitoring).Phase
-        = Timing_Certificate.Joint_Z_Monitoring_Phase);
+        = Timing_Certificate.Control_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Z_Position_Control).Divisor
-      = Timing_Certificate.Joint_Z_Position_Control_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (Joint_Z_Position_Control).Phase
-        = Timing_Certificate.Joint_Z_Position_Control_Phase);
+        = Timing_Certificate.Control_Phase);
 end Cartesian_Robot.Control;

@@ -31,8 +31,7 @@ is
    package Controller is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 5,
       Receive_Ceiling => System.Default_Priority + 5,
-      Driver_Priority =>
-        Timing_Certificate.Robot_Bus_Driver_Rx_Robot_Command_Priority,
+      Driver_Priority => Timing_Certificate.Robot_Bus_Driver_Priority,
       Transmit_Depth => 32,
       Receive_Depth => 32,
       Stack_Bytes => 65_536,
@@ -47,7 +46,7 @@ is
 
    pragma Compile_Time_Error
      (Controller.Given_Priority
-      /= Timing_Certificate.Robot_Bus_Driver_Rx_Robot_Command_Priority,
+      /= Timing_Certificate.Robot_Bus_Driver_Priority,
       "robot_bus has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate

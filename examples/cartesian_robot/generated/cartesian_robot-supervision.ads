@@ -29,32 +29,32 @@ is
       Table_Type => Row_Table,
       Table =>
         (Coordinator_Ports =>
-           (Divisor => Timing_Certificate.Coordinator_Ports_Divisor,
-            Phase => Timing_Certificate.Coordinator_Ports_Phase),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase),
          Coordinator_Mission =>
-           (Divisor => Timing_Certificate.Coordinator_Mission_Divisor,
-            Phase => Timing_Certificate.Coordinator_Mission_Phase),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase),
          Joint_X_Motion =>
-           (Divisor => Timing_Certificate.Joint_X_Motion_Divisor,
-            Phase => Timing_Certificate.Joint_X_Motion_Phase),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase),
          Joint_Y_Motion =>
-           (Divisor => Timing_Certificate.Joint_Y_Motion_Divisor,
-            Phase => Timing_Certificate.Joint_Y_Motion_Phase),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase),
          Joint_Z_Motion =>
-           (Divisor => Timing_Certificate.Joint_Z_Motion_Divisor,
-            Phase => Timing_Certificate.Joint_Z_Motion_Phase),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase),
          Joint_X_Supervise =>
-           (Divisor => Timing_Certificate.Joint_X_Supervise_Divisor,
-            Phase => Timing_Certificate.Joint_X_Supervise_Phase),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase),
          Joint_Y_Supervise =>
-           (Divisor => Timing_Certificate.Joint_Y_Supervise_Divisor,
-            Phase => Timing_Certificate.Joint_Y_Supervise_Phase),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase),
          Joint_Z_Supervise =>
-           (Divisor => Timing_Certificate.Joint_Z_Supervise_Divisor,
-            Phase => Timing_Certificate.Joint_Z_Supervise_Phase),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase),
          Coordinator_Summarise =>
-           (Divisor => Timing_Certificate.Coordinator_Summarise_Divisor,
-            Phase => Timing_Certificate.Coordinator_Summarise_Phase)),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Supervision_T,
       Offset => 0,
@@ -80,47 +80,47 @@ is
       "supervision has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Coordinator_Ports).Divisor
-      = Timing_Certificate.Coordinator_Ports_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Coordinator_Ports).Phase
-        = Timing_Certificate.Coordinator_Ports_Phase);
+        = Timing_Certificate.Supervision_Phase);
    pragma Assert
      (Processor.Given_Table (Coordinator_Mission).Divisor
-      = Timing_Certificate.Coordinator_Mission_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Coordinator_Mission).Phase
-        = Timing_Certificate.Coordinator_Mission_Phase);
+        = Timing_Certificate.Supervision_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_X_Motion).Divisor
-      = Timing_Certificate.Joint_X_Motion_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Joint_X_Motion).Phase
-        = Timing_Certificate.Joint_X_Motion_Phase);
+        = Timing_Certificate.Supervision_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Y_Motion).Divisor
-      = Timing_Certificate.Joint_Y_Motion_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Joint_Y_Motion).Phase
-        = Timing_Certificate.Joint_Y_Motion_Phase);
+        = Timing_Certificate.Supervision_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Z_Motion).Divisor
-      = Timing_Certificate.Joint_Z_Motion_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Joint_Z_Motion).Phase
-        = Timing_Certificate.Joint_Z_Motion_Phase);
+        = Timing_Certificate.Supervision_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_X_Supervise).Divisor
-      = Timing_Certificate.Joint_X_Supervise_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Joint_X_Supervise).Phase
-        = Timing_Certificate.Joint_X_Supervise_Phase);
+        = Timing_Certificate.Supervision_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Y_Supervise).Divisor
-      = Timing_Certificate.Joint_Y_Supervise_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Joint_Y_Supervise).Phase
-        = Timing_Certificate.Joint_Y_Supervise_Phase);
+        = Timing_Certificate.Supervision_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Z_Supervise).Divisor
-      = Timing_Certificate.Joint_Z_Supervise_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Joint_Z_Supervise).Phase
-        = Timing_Certificate.Joint_Z_Supervise_Phase);
+        = Timing_Certificate.Supervision_Phase);
    pragma Assert
      (Processor.Given_Table (Coordinator_Summarise).Divisor
-      = Timing_Certificate.Coordinator_Summarise_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Coordinator_Summarise).Phase
-        = Timing_Certificate.Coordinator_Summarise_Phase);
+        = Timing_Certificate.Supervision_Phase);
 end Cartesian_Robot.Supervision;

@@ -53,6 +53,9 @@ is
    Controller_Context_Switch : constant := 5_000;
    Controller_Critical_Section : constant := 5_000;
 
+   --  [robot_bus] the priority of its driver, whatever that works at
+   Robot_Bus_Driver_Priority : constant := System.Default_Priority + 5;
+
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: control in joint_x.feedback.mailbox.
    Reception_Priority : constant := System.Default_Priority + 4;
@@ -72,19 +75,10 @@ is
    Joint_Z_Trajectory_Step_Budget : constant := 100_000;
    Trajectory_T : constant := 5_000_000;
    Trajectory_D : constant := 5_000_000;
-   Joint_X_Trajectory_Step_Divisor : constant := 1;
-   Joint_X_Trajectory_Step_Phase : constant := 0;
-   Joint_Y_Trajectory_Step_Divisor : constant := 1;
-   Joint_Y_Trajectory_Step_Phase : constant := 0;
-   Joint_Z_Trajectory_Step_Divisor : constant := 1;
-   Joint_Z_Trajectory_Step_Phase : constant := 0;
+   Trajectory_Divisor : constant := 1;
+   Trajectory_Phase : constant := 0;
    pragma Compile_Time_Error
-     (Joint_X_Trajectory_Step_Divisor /= 1
-      or else Joint_X_Trajectory_Step_Phase /= 0
-      or else Joint_Y_Trajectory_Step_Divisor /= 1
-      or else Joint_Y_Trajectory_Step_Phase /= 0
-      or else Joint_Z_Trajectory_Step_Divisor /= 1
-      or else Joint_Z_Trajectory_Step_Phase /= 0,
+     (Trajectory_Divisor /= 1 or else Trajectory_Phase /= 0,
       "trajectory must keep divisors and phases of its rows");
    Trajectory_J : constant := 0;
    Trajectory_C : constant :=
@@ -105,43 +99,10 @@ is
    Joint_Z_Position_Control_Budget : constant := 150_000;
    Control_T : constant := 10_000_000;
    Control_D : constant := 10_000_000;
-   Joint_X_Ports_Divisor : constant := 1;
-   Joint_X_Ports_Phase : constant := 0;
-   Joint_X_Monitoring_Divisor : constant := 1;
-   Joint_X_Monitoring_Phase : constant := 0;
-   Joint_X_Position_Control_Divisor : constant := 1;
-   Joint_X_Position_Control_Phase : constant := 0;
-   Joint_Y_Ports_Divisor : constant := 1;
-   Joint_Y_Ports_Phase : constant := 0;
-   Joint_Y_Monitoring_Divisor : constant := 1;
-   Joint_Y_Monitoring_Phase : constant := 0;
-   Joint_Y_Position_Control_Divisor : constant := 1;
-   Joint_Y_Position_Control_Phase : constant := 0;
-   Joint_Z_Ports_Divisor : constant := 1;
-   Joint_Z_Ports_Phase : constant := 0;
-   Joint_Z_Monitoring_Divisor : constant := 1;
-   Joint_Z_Monitoring_Phase : constant := 0;
-   Joint_Z_Position_Control_Divisor : constant := 1;
-   Joint_Z_Position_Control_Phase : constant := 0;
+   Control_Divisor : constant := 1;
+   Control_Phase : constant := 0;
    pragma Compile_Time_Error
-     (Joint_X_Ports_Divisor /= 1
-      or else Joint_X_Ports_Phase /= 0
-      or else Joint_X_Monitoring_Divisor /= 1
-      or else Joint_X_Monitoring_Phase /= 0
-      or else Joint_X_Position_Control_Divisor /= 1
-      or else Joint_X_Position_Control_Phase /= 0
-      or else Joint_Y_Ports_Divisor /= 1
-      or else Joint_Y_Ports_Phase /= 0
-      or else Joint_Y_Monitoring_Divisor /= 1
-      or else Joint_Y_Monitoring_Phase /= 0
-      or else Joint_Y_Position_Control_Divisor /= 1
-      or else Joint_Y_Position_Control_Phase /= 0
-      or else Joint_Z_Ports_Divisor /= 1
-      or else Joint_Z_Ports_Phase /= 0
-      or else Joint_Z_Monitoring_Divisor /= 1
-      or else Joint_Z_Monitoring_Phase /= 0
-      or else Joint_Z_Position_Control_Divisor /= 1
-      or else Joint_Z_Position_Control_Phase /= 0,
+     (Control_Divisor /= 1 or else Control_Phase /= 0,
       "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
    Control_C : constant :=
@@ -165,43 +126,10 @@ is
    Coordinator_Summarise_Budget : constant := 100_000;
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
-   Coordinator_Ports_Divisor : constant := 1;
-   Coordinator_Ports_Phase : constant := 0;
-   Coordinator_Mission_Divisor : constant := 1;
-   Coordinator_Mission_Phase : constant := 0;
-   Joint_X_Motion_Divisor : constant := 1;
-   Joint_X_Motion_Phase : constant := 0;
-   Joint_Y_Motion_Divisor : constant := 1;
-   Joint_Y_Motion_Phase : constant := 0;
-   Joint_Z_Motion_Divisor : constant := 1;
-   Joint_Z_Motion_Phase : constant := 0;
-   Joint_X_Supervise_Divisor : constant := 1;
-   Joint_X_Supervise_Phase : constant := 0;
-   Joint_Y_Supervise_Divisor : constant := 1;
-   Joint_Y_Supervise_Phase : constant := 0;
-   Joint_Z_Supervise_Divisor : constant := 1;
-   Joint_Z_Supervise_Phase : constant := 0;
-   Coordinator_Summarise_Divisor : constant := 1;
-   Coordinator_Summarise_Phase : constant := 0;
+   Supervision_Divisor : constant := 1;
+   Supervision_Phase : constant := 0;
    pragma Compile_Time_Error
-     (Coordinator_Ports_Divisor /= 1
-      or else Coordinator_Ports_Phase /= 0
-      or else Coordinator_Mission_Divisor /= 1
-      or else Coordinator_Mission_Phase /= 0
-      or else Joint_X_Motion_Divisor /= 1
-      or else Joint_X_Motion_Phase /= 0
-      or else Joint_Y_Motion_Divisor /= 1
-      or else Joint_Y_Motion_Phase /= 0
-      or else Joint_Z_Motion_Divisor /= 1
-      or else Joint_Z_Motion_Phase /= 0
-      or else Joint_X_Supervise_Divisor /= 1
-      or else Joint_X_Supervise_Phase /= 0
-      or else Joint_Y_Supervise_Divisor /= 1
-      or else Joint_Y_Supervise_Phase /= 0
-      or else Joint_Z_Supervise_Divisor /= 1
-      or else Joint_Z_Supervise_Phase /= 0
-      or else Coordinator_Summarise_Divisor /= 1
-      or else Coordinator_Summarise_Phase /= 0,
+     (Supervision_Divisor /= 1 or else Supervision_Phase /= 0,
       "supervision must keep divisors and phases of its rows");
    Supervision_J : constant := 0;
    Supervision_C : constant :=
@@ -214,8 +142,6 @@ is
 
    --  [robot_bus.driver_rx.robot_command] the driver, released by
    --  robot_bus.robot_command. B: supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Rx_Robot_Command_Priority : constant :=
-     System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_Robot_Command_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Robot_Command_T : constant := 100_000_000;
    Robot_Bus_Driver_Rx_Robot_Command_D : constant := 100_000_000;
@@ -229,8 +155,6 @@ is
 
    --  [robot_bus.driver_tx.robot_status] the driver, released by
    --  supervision. B: supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Tx_Robot_Status_Priority : constant :=
-     System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_Robot_Status_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Robot_Status_T : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_D : constant := 20_000_000;
@@ -242,8 +166,6 @@ is
 
    --  [robot_bus.driver_tx.x_set_point] the driver, released by control. B:
    --  supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Tx_X_Set_Point_Priority : constant :=
-     System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_X_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_X_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_D : constant := 10_000_000;
@@ -255,8 +177,6 @@ is
 
    --  [robot_bus.driver_tx.y_set_point] the driver, released by control. B:
    --  supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Tx_Y_Set_Point_Priority : constant :=
-     System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_Y_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_D : constant := 10_000_000;
@@ -268,8 +188,6 @@ is
 
    --  [robot_bus.driver_tx.z_set_point] the driver, released by control. B:
    --  supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Tx_Z_Set_Point_Priority : constant :=
-     System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_Z_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_D : constant := 10_000_000;
@@ -281,8 +199,6 @@ is
 
    --  [robot_bus.driver_rx.x_feedback] the driver, released by
    --  robot_bus.x_feedback. B: supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Rx_X_Feedback_Priority : constant :=
-     System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_X_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_X_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_D : constant := 5_000_000;
@@ -294,8 +210,6 @@ is
 
    --  [robot_bus.driver_rx.y_feedback] the driver, released by
    --  robot_bus.y_feedback. B: supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Rx_Y_Feedback_Priority : constant :=
-     System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_Y_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Y_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_D : constant := 5_000_000;
@@ -307,8 +221,6 @@ is
 
    --  [robot_bus.driver_rx.z_feedback] the driver, released by
    --  robot_bus.z_feedback. B: supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Rx_Z_Feedback_Priority : constant :=
-     System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_Z_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Z_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_D : constant := 5_000_000;
@@ -427,23 +339,8 @@ is
 
    pragma Compile_Time_Error
      (Controller_Probe_Priority <= Controller_Supervisor_Priority
-      or else Controller_Supervisor_Priority
-        <= Robot_Bus_Driver_Rx_Robot_Command_Priority
-      or else Robot_Bus_Driver_Rx_Robot_Command_Priority
-        /= Robot_Bus_Driver_Tx_Robot_Status_Priority
-      or else Robot_Bus_Driver_Tx_Robot_Status_Priority
-        /= Robot_Bus_Driver_Tx_X_Set_Point_Priority
-      or else Robot_Bus_Driver_Tx_X_Set_Point_Priority
-        /= Robot_Bus_Driver_Tx_Y_Set_Point_Priority
-      or else Robot_Bus_Driver_Tx_Y_Set_Point_Priority
-        /= Robot_Bus_Driver_Tx_Z_Set_Point_Priority
-      or else Robot_Bus_Driver_Tx_Z_Set_Point_Priority
-        /= Robot_Bus_Driver_Rx_X_Feedback_Priority
-      or else Robot_Bus_Driver_Rx_X_Feedback_Priority
-        /= Robot_Bus_Driver_Rx_Y_Feedback_Priority
-      or else Robot_Bus_Driver_Rx_Y_Feedback_Priority
-        /= Robot_Bus_Driver_Rx_Z_Feedback_Priority
-      or else Robot_Bus_Driver_Rx_Z_Feedback_Priority <= Reception_Priority
+      or else Controller_Supervisor_Priority <= Robot_Bus_Driver_Priority
+      or else Robot_Bus_Driver_Priority <= Reception_Priority
       or else Reception_Priority <= Trajectory_Priority
       or else Trajectory_Priority <= Control_Priority
       or else Control_Priority <= Supervision_Priority,
@@ -453,8 +350,16 @@ is
    --  A message waits for the longest frame that goes behind it and has
    --  begun, and for those that go before it. Of a message, Stuffed: bits
    --  that stuffing can lengthen by a quarter; Bits: the longest frame,
-   --  with 10 bits that are not stuffed and 3 to the next frame.
+   --  with 10 bits that are not stuffed and 3 to the next frame; Time_Of:
+   --  how long that takes.
    Robot_Bus_Bit_Rate : constant := 500_000;
+
+   function Robot_Bus_Bits (Stuffed : Positive) return Time is
+     (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+   function Robot_Bus_Time_Of (Stuffed : Positive) return Time is
+     ((Robot_Bus_Bits (Stuffed) * 10**9 + (Robot_Bus_Bit_Rate - 1))
+      / Robot_Bus_Bit_Rate) with Static;
+
    Robot_Bus_Bit : constant :=
      (1_000_000_000 + (Robot_Bus_Bit_Rate - 1)) / Robot_Bus_Bit_Rate;
 
@@ -464,14 +369,8 @@ is
    Robot_Bus_Robot_Command_Length : constant := 8;
    Robot_Bus_Robot_Command_T : constant := 100_000_000;
    Robot_Bus_Robot_Command_D : constant := 100_000_000;
-   Robot_Bus_Robot_Command_Stuffed : constant :=
-     34 + 8 * Robot_Bus_Robot_Command_Length;
-   Robot_Bus_Robot_Command_Bits : constant :=
-     Robot_Bus_Robot_Command_Stuffed + 13
-     + (Robot_Bus_Robot_Command_Stuffed - 1) / 4;
    Robot_Bus_Robot_Command_C : constant :=
-     (Robot_Bus_Robot_Command_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
-     / Robot_Bus_Bit_Rate;
+     Robot_Bus_Time_Of (34 + 8 * Robot_Bus_Robot_Command_Length);
    Robot_Bus_Robot_Command_J : constant := 0;
 
    --  [robot_bus.x_set_point] 11-bit identifier Id, Length bytes from
@@ -480,14 +379,8 @@ is
    Robot_Bus_X_Set_Point_Length : constant := 3;
    Robot_Bus_X_Set_Point_T : constant := 10_000_000;
    Robot_Bus_X_Set_Point_D : constant := 10_000_000;
-   Robot_Bus_X_Set_Point_Stuffed : constant :=
-     34 + 8 * Robot_Bus_X_Set_Point_Length;
-   Robot_Bus_X_Set_Point_Bits : constant :=
-     Robot_Bus_X_Set_Point_Stuffed + 13
-     + (Robot_Bus_X_Set_Point_Stuffed - 1) / 4;
    Robot_Bus_X_Set_Point_C : constant :=
-     (Robot_Bus_X_Set_Point_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
-     / Robot_Bus_Bit_Rate;
+     Robot_Bus_Time_Of (34 + 8 * Robot_Bus_X_Set_Point_Length);
    Robot_Bus_X_Set_Point_J : constant := Robot_Bus_Driver_Tx_X_Set_Point_R;
 
    --  [robot_bus.y_set_point] 11-bit identifier Id, Length bytes from
@@ -496,14 +389,8 @@ is
    Robot_Bus_Y_Set_Point_Length : constant := 3;
    Robot_Bus_Y_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Y_Set_Point_D : constant := 10_000_000;
-   Robot_Bus_Y_Set_Point_Stuffed : constant :=
-     34 + 8 * Robot_Bus_Y_Set_Point_Length;
-   Robot_Bus_Y_Set_Point_Bits : constant :=
-     Robot_Bus_Y_Set_Point_Stuffed + 13
-     + (Robot_Bus_Y_Set_Point_Stuffed - 1) / 4;
    Robot_Bus_Y_Set_Point_C : constant :=
-     (Robot_Bus_Y_Set_Point_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
-     / Robot_Bus_Bit_Rate;
+     Robot_Bus_Time_Of (34 + 8 * Robot_Bus_Y_Set_Point_Length);
    Robot_Bus_Y_Set_Point_J : constant := Robot_Bus_Driver_Tx_Y_Set_Point_R;
 
    --  [robot_bus.z_set_point] 11-bit identifier Id, Length bytes from
@@ -512,14 +399,8 @@ is
    Robot_Bus_Z_Set_Point_Length : constant := 3;
    Robot_Bus_Z_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Z_Set_Point_D : constant := 10_000_000;
-   Robot_Bus_Z_Set_Point_Stuffed : constant :=
-     34 + 8 * Robot_Bus_Z_Set_Point_Length;
-   Robot_Bus_Z_Set_Point_Bits : constant :=
-     Robot_Bus_Z_Set_Point_Stuffed + 13
-     + (Robot_Bus_Z_Set_Point_Stuffed - 1) / 4;
    Robot_Bus_Z_Set_Point_C : constant :=
-     (Robot_Bus_Z_Set_Point_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
-     / Robot_Bus_Bit_Rate;
+     Robot_Bus_Time_Of (34 + 8 * Robot_Bus_Z_Set_Point_Length);
    Robot_Bus_Z_Set_Point_J : constant := Robot_Bus_Driver_Tx_Z_Set_Point_R;
 
    --  [robot_bus.x_feedback] 11-bit identifier Id, Length bytes from
@@ -528,14 +409,8 @@ is
    Robot_Bus_X_Feedback_Length : constant := 6;
    Robot_Bus_X_Feedback_T : constant := 5_000_000;
    Robot_Bus_X_Feedback_D : constant := 5_000_000;
-   Robot_Bus_X_Feedback_Stuffed : constant :=
-     34 + 8 * Robot_Bus_X_Feedback_Length;
-   Robot_Bus_X_Feedback_Bits : constant :=
-     Robot_Bus_X_Feedback_Stuffed + 13
-     + (Robot_Bus_X_Feedback_Stuffed - 1) / 4;
    Robot_Bus_X_Feedback_C : constant :=
-     (Robot_Bus_X_Feedback_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
-     / Robot_Bus_Bit_Rate;
+     Robot_Bus_Time_Of (34 + 8 * Robot_Bus_X_Feedback_Length);
    Robot_Bus_X_Feedback_J : constant := 0;
 
    --  [robot_bus.y_feedback] 11-bit identifier Id, Length bytes from
@@ -544,14 +419,8 @@ is
    Robot_Bus_Y_Feedback_Length : constant := 6;
    Robot_Bus_Y_Feedback_T : constant := 5_000_000;
    Robot_Bus_Y_Feedback_D : constant := 5_000_000;
-   Robot_Bus_Y_Feedback_Stuffed : constant :=
-     34 + 8 * Robot_Bus_Y_Feedback_Length;
-   Robot_Bus_Y_Feedback_Bits : constant :=
-     Robot_Bus_Y_Feedback_Stuffed + 13
-     + (Robot_Bus_Y_Feedback_Stuffed - 1) / 4;
    Robot_Bus_Y_Feedback_C : constant :=
-     (Robot_Bus_Y_Feedback_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
-     / Robot_Bus_Bit_Rate;
+     Robot_Bus_Time_Of (34 + 8 * Robot_Bus_Y_Feedback_Length);
    Robot_Bus_Y_Feedback_J : constant := 0;
 
    --  [robot_bus.z_feedback] 11-bit identifier Id, Length bytes from
@@ -560,14 +429,8 @@ is
    Robot_Bus_Z_Feedback_Length : constant := 6;
    Robot_Bus_Z_Feedback_T : constant := 5_000_000;
    Robot_Bus_Z_Feedback_D : constant := 5_000_000;
-   Robot_Bus_Z_Feedback_Stuffed : constant :=
-     34 + 8 * Robot_Bus_Z_Feedback_Length;
-   Robot_Bus_Z_Feedback_Bits : constant :=
-     Robot_Bus_Z_Feedback_Stuffed + 13
-     + (Robot_Bus_Z_Feedback_Stuffed - 1) / 4;
    Robot_Bus_Z_Feedback_C : constant :=
-     (Robot_Bus_Z_Feedback_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
-     / Robot_Bus_Bit_Rate;
+     Robot_Bus_Time_Of (34 + 8 * Robot_Bus_Z_Feedback_Length);
    Robot_Bus_Z_Feedback_J : constant := 0;
 
    --  [robot_bus.robot_status] 11-bit identifier Id, Length bytes from
@@ -576,14 +439,8 @@ is
    Robot_Bus_Robot_Status_Length : constant := 6;
    Robot_Bus_Robot_Status_T : constant := 20_000_000;
    Robot_Bus_Robot_Status_D : constant := 20_000_000;
-   Robot_Bus_Robot_Status_Stuffed : constant :=
-     34 + 8 * Robot_Bus_Robot_Status_Length;
-   Robot_Bus_Robot_Status_Bits : constant :=
-     Robot_Bus_Robot_Status_Stuffed + 13
-     + (Robot_Bus_Robot_Status_Stuffed - 1) / 4;
    Robot_Bus_Robot_Status_C : constant :=
-     (Robot_Bus_Robot_Status_Bits * 10**9 + (Robot_Bus_Bit_Rate - 1))
-     / Robot_Bus_Bit_Rate;
+     Robot_Bus_Time_Of (34 + 8 * Robot_Bus_Robot_Status_Length);
    Robot_Bus_Robot_Status_J : constant :=
      Robot_Bus_Driver_Tx_Robot_Status_R;
 
@@ -1005,10 +862,6 @@ is
    function Robot_Bus_Z_Feedback_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Z_Feedback_J, Robot_Bus_Z_Feedback_T,
          Robot_Bus_Z_Feedback_C, Robot_Bus_Y_Feedback_Up (W))) with Static;
-   function Robot_Bus_Robot_Status_Up (W : Window) return Time is
-     (Demand (W, Robot_Bus_Robot_Status_R - Robot_Bus_Robot_Status_C,
-         Robot_Bus_Robot_Status_T, Robot_Bus_Robot_Status_C,
-         Robot_Bus_Z_Feedback_Up (W))) with Static;
    function Robot_Bus_Robot_Command_Up_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_Robot_Command_J, Robot_Bus_Robot_Command_T,
          Robot_Bus_Robot_Command_C)) with Static;
@@ -1299,9 +1152,6 @@ is
    function Robot_Bus_Y_Feedback_Turn_Rest (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_Y_Feedback_R, Robot_Bus_Y_Feedback_T,
          Reception_T, Robot_Bus_Z_Feedback_Turn_Rest (W))) with Static;
-   function Robot_Bus_X_Feedback_Turn_Rest (W : Window) return Time is
-     (Demand (W, Robot_Bus_Driver_Rx_X_Feedback_R, Robot_Bus_X_Feedback_T,
-         Reception_T, Robot_Bus_Y_Feedback_Turn_Rest (W))) with Static;
 
    Reception_Busy : constant := 7_000_000;
    Reception_Busy_Needs : constant :=

@@ -28,14 +28,14 @@ is
       Table_Type => Row_Table,
       Table =>
         (Joint_X_Trajectory_Step =>
-           (Divisor => Timing_Certificate.Joint_X_Trajectory_Step_Divisor,
-            Phase => Timing_Certificate.Joint_X_Trajectory_Step_Phase),
+           (Divisor => Timing_Certificate.Trajectory_Divisor,
+            Phase => Timing_Certificate.Trajectory_Phase),
          Joint_Y_Trajectory_Step =>
-           (Divisor => Timing_Certificate.Joint_Y_Trajectory_Step_Divisor,
-            Phase => Timing_Certificate.Joint_Y_Trajectory_Step_Phase),
+           (Divisor => Timing_Certificate.Trajectory_Divisor,
+            Phase => Timing_Certificate.Trajectory_Phase),
          Joint_Z_Trajectory_Step =>
-           (Divisor => Timing_Certificate.Joint_Z_Trajectory_Step_Divisor,
-            Phase => Timing_Certificate.Joint_Z_Trajectory_Step_Phase)),
+           (Divisor => Timing_Certificate.Trajectory_Divisor,
+            Phase => Timing_Certificate.Trajectory_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Trajectory_T,
       Offset => 0,
@@ -61,17 +61,17 @@ is
       "trajectory has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Joint_X_Trajectory_Step).Divisor
-      = Timing_Certificate.Joint_X_Trajectory_Step_Divisor
+      = Timing_Certificate.Trajectory_Divisor
       and then Processor.Given_Table (Joint_X_Trajectory_Step).Phase
-        = Timing_Certificate.Joint_X_Trajectory_Step_Phase);
+        = Timing_Certificate.Trajectory_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Y_Trajectory_Step).Divisor
-      = Timing_Certificate.Joint_Y_Trajectory_Step_Divisor
+      = Timing_Certificate.Trajectory_Divisor
       and then Processor.Given_Table (Joint_Y_Trajectory_Step).Phase
-        = Timing_Certificate.Joint_Y_Trajectory_Step_Phase);
+        = Timing_Certificate.Trajectory_Phase);
    pragma Assert
      (Processor.Given_Table (Joint_Z_Trajectory_Step).Divisor
-      = Timing_Certificate.Joint_Z_Trajectory_Step_Divisor
+      = Timing_Certificate.Trajectory_Divisor
       and then Processor.Given_Table (Joint_Z_Trajectory_Step).Phase
-        = Timing_Certificate.Joint_Z_Trajectory_Step_Phase);
+        = Timing_Certificate.Trajectory_Phase);
 end Cartesian_Robot.Trajectory;

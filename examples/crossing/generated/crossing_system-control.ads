@@ -29,14 +29,14 @@ is
       Table_Type => Row_Table,
       Table =>
         (School_Ports =>
-           (Divisor => Timing_Certificate.School_Ports_Divisor,
-            Phase => Timing_Certificate.School_Ports_Phase),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase),
          School_Lights =>
-           (Divisor => Timing_Certificate.School_Lights_Divisor,
-            Phase => Timing_Certificate.School_Lights_Phase),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase),
          School_Show =>
-           (Divisor => Timing_Certificate.School_Show_Divisor,
-            Phase => Timing_Certificate.School_Show_Phase)),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Control_T,
       Offset => 0,
@@ -62,17 +62,17 @@ is
       "control has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (School_Ports).Divisor
-      = Timing_Certificate.School_Ports_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (School_Ports).Phase
-        = Timing_Certificate.School_Ports_Phase);
+        = Timing_Certificate.Control_Phase);
    pragma Assert
      (Processor.Given_Table (School_Lights).Divisor
-      = Timing_Certificate.School_Lights_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (School_Lights).Phase
-        = Timing_Certificate.School_Lights_Phase);
+        = Timing_Certificate.Control_Phase);
    pragma Assert
      (Processor.Given_Table (School_Show).Divisor
-      = Timing_Certificate.School_Show_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (School_Show).Phase
-        = Timing_Certificate.School_Show_Phase);
+        = Timing_Certificate.Control_Phase);
 end Crossing_System.Control;

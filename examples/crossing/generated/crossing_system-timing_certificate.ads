@@ -46,6 +46,9 @@ is
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
+   --  [street] the priority of its driver, whatever that works at
+   Street_Driver_Priority : constant := System.Default_Priority + 3;
+
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: control in school.button.mailbox.
    Reception_Priority : constant := System.Default_Priority + 2;
@@ -64,19 +67,10 @@ is
    School_Show_Budget : constant := 100_000;
    Control_T : constant := 100_000_000;
    Control_D : constant := 100_000_000;
-   School_Ports_Divisor : constant := 1;
-   School_Ports_Phase : constant := 0;
-   School_Lights_Divisor : constant := 1;
-   School_Lights_Phase : constant := 0;
-   School_Show_Divisor : constant := 1;
-   School_Show_Phase : constant := 0;
+   Control_Divisor : constant := 1;
+   Control_Phase : constant := 0;
    pragma Compile_Time_Error
-     (School_Ports_Divisor /= 1
-      or else School_Ports_Phase /= 0
-      or else School_Lights_Divisor /= 1
-      or else School_Lights_Phase /= 0
-      or else School_Show_Divisor /= 1
-      or else School_Show_Phase /= 0,
+     (Control_Divisor /= 1 or else Control_Phase /= 0,
       "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
    Control_C : constant :=
@@ -86,8 +80,6 @@ is
 
    --  [street.driver_rx.order] the driver, released by street.order. B:
    --  control in street.transmit.
-   Street_Driver_Rx_Order_Priority : constant :=
-     System.Default_Priority + 3;
    Street_Driver_Rx_Order_Budget : constant := 20_000;
    Street_Driver_Rx_Order_T : constant := 1_000_000_000;
    Street_Driver_Rx_Order_D : constant := 1_000_000_000;
@@ -98,8 +90,6 @@ is
 
    --  [street.driver_rx.button] the driver, released by street.button. B:
    --  control in street.transmit.
-   Street_Driver_Rx_Button_Priority : constant :=
-     System.Default_Priority + 3;
    Street_Driver_Rx_Button_Budget : constant := 20_000;
    Street_Driver_Rx_Button_T : constant := 50_000_000;
    Street_Driver_Rx_Button_D : constant := 50_000_000;
@@ -110,8 +100,6 @@ is
 
    --  [street.driver_tx.car_lamp] the driver, released by control. B:
    --  control in street.transmit.
-   Street_Driver_Tx_Car_Lamp_Priority : constant :=
-     System.Default_Priority + 3;
    Street_Driver_Tx_Car_Lamp_Budget : constant := 20_000;
    Street_Driver_Tx_Car_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Car_Lamp_D : constant := 100_000_000;
@@ -122,8 +110,6 @@ is
 
    --  [street.driver_tx.walk_lamp] the driver, released by control. B:
    --  control in street.transmit.
-   Street_Driver_Tx_Walk_Lamp_Priority : constant :=
-     System.Default_Priority + 3;
    Street_Driver_Tx_Walk_Lamp_Budget : constant := 20_000;
    Street_Driver_Tx_Walk_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Walk_Lamp_D : constant := 100_000_000;
@@ -134,7 +120,6 @@ is
 
    --  [street.driver_tx.sign] the driver, released by control. B: control
    --  in street.transmit.
-   Street_Driver_Tx_Sign_Priority : constant := System.Default_Priority + 3;
    Street_Driver_Tx_Sign_Budget : constant := 20_000;
    Street_Driver_Tx_Sign_T : constant := 100_000_000;
    Street_Driver_Tx_Sign_D : constant := 100_000_000;
@@ -182,14 +167,7 @@ is
    with Static;
 
    pragma Compile_Time_Error
-     (Street_Driver_Rx_Order_Priority /= Street_Driver_Rx_Button_Priority
-      or else Street_Driver_Rx_Button_Priority
-        /= Street_Driver_Tx_Car_Lamp_Priority
-      or else Street_Driver_Tx_Car_Lamp_Priority
-        /= Street_Driver_Tx_Walk_Lamp_Priority
-      or else Street_Driver_Tx_Walk_Lamp_Priority
-        /= Street_Driver_Tx_Sign_Priority
-      or else Street_Driver_Tx_Sign_Priority <= Reception_Priority
+     (Street_Driver_Priority <= Reception_Priority
       or else Reception_Priority <= Control_Priority,
       "board must keep the order of its priorities");
 
@@ -197,8 +175,16 @@ is
    --  message waits for the longest frame that goes behind it and has
    --  begun, and for those that go before it. Of a message, Stuffed: bits
    --  that stuffing can lengthen by a quarter; Bits: the longest frame,
-   --  with 10 bits that are not stuffed and 3 to the next frame.
+   --  with 10 bits that are not stuffed and 3 to the next frame; Time_Of:
+   --  how long that takes.
    Street_Bit_Rate : constant := 125_000;
+
+   function Street_Bits (Stuffed : Positive) return Time is
+     (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+   function Street_Time_Of (Stuffed : Positive) return Time is
+     ((Street_Bits (Stuffed) * 10**9 + (Street_Bit_Rate - 1))
+      / Street_Bit_Rate) with Static;
+
    Street_Bit : constant :=
      (1_000_000_000 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
 
@@ -208,11 +194,8 @@ is
    Street_Order_Length : constant := 1;
    Street_Order_T : constant := 1_000_000_000;
    Street_Order_D : constant := 1_000_000_000;
-   Street_Order_Stuffed : constant := 34 + 8 * Street_Order_Length;
-   Street_Order_Bits : constant :=
-     Street_Order_Stuffed + 13 + (Street_Order_Stuffed - 1) / 4;
    Street_Order_C : constant :=
-     (Street_Order_Bits * 10**9 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
+     Street_Time_Of (34 + 8 * Street_Order_Length);
    Street_Order_J : constant := 0;
 
    --  [street.button] 11-bit identifier Id, Length bytes from somebody
@@ -221,11 +204,8 @@ is
    Street_Button_Length : constant := 1;
    Street_Button_T : constant := 50_000_000;
    Street_Button_D : constant := 50_000_000;
-   Street_Button_Stuffed : constant := 34 + 8 * Street_Button_Length;
-   Street_Button_Bits : constant :=
-     Street_Button_Stuffed + 13 + (Street_Button_Stuffed - 1) / 4;
    Street_Button_C : constant :=
-     (Street_Button_Bits * 10**9 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
+     Street_Time_Of (34 + 8 * Street_Button_Length);
    Street_Button_J : constant := 0;
 
    --  [street.car_lamp] 11-bit identifier Id, Length bytes from
@@ -234,12 +214,8 @@ is
    Street_Car_Lamp_Length : constant := 1;
    Street_Car_Lamp_T : constant := 100_000_000;
    Street_Car_Lamp_D : constant := 100_000_000;
-   Street_Car_Lamp_Stuffed : constant := 34 + 8 * Street_Car_Lamp_Length;
-   Street_Car_Lamp_Bits : constant :=
-     Street_Car_Lamp_Stuffed + 13 + (Street_Car_Lamp_Stuffed - 1) / 4;
    Street_Car_Lamp_C : constant :=
-     (Street_Car_Lamp_Bits * 10**9 + (Street_Bit_Rate - 1))
-     / Street_Bit_Rate;
+     Street_Time_Of (34 + 8 * Street_Car_Lamp_Length);
    Street_Car_Lamp_J : constant := Street_Driver_Tx_Car_Lamp_R;
 
    --  [street.walk_lamp] 11-bit identifier Id, Length bytes from
@@ -248,12 +224,8 @@ is
    Street_Walk_Lamp_Length : constant := 1;
    Street_Walk_Lamp_T : constant := 100_000_000;
    Street_Walk_Lamp_D : constant := 100_000_000;
-   Street_Walk_Lamp_Stuffed : constant := 34 + 8 * Street_Walk_Lamp_Length;
-   Street_Walk_Lamp_Bits : constant :=
-     Street_Walk_Lamp_Stuffed + 13 + (Street_Walk_Lamp_Stuffed - 1) / 4;
    Street_Walk_Lamp_C : constant :=
-     (Street_Walk_Lamp_Bits * 10**9 + (Street_Bit_Rate - 1))
-     / Street_Bit_Rate;
+     Street_Time_Of (34 + 8 * Street_Walk_Lamp_Length);
    Street_Walk_Lamp_J : constant := Street_Driver_Tx_Walk_Lamp_R;
 
    --  [street.sign] 11-bit identifier Id, Length bytes from school.sign
@@ -261,11 +233,7 @@ is
    Street_Sign_Length : constant := 1;
    Street_Sign_T : constant := 100_000_000;
    Street_Sign_D : constant := 100_000_000;
-   Street_Sign_Stuffed : constant := 34 + 8 * Street_Sign_Length;
-   Street_Sign_Bits : constant :=
-     Street_Sign_Stuffed + 13 + (Street_Sign_Stuffed - 1) / 4;
-   Street_Sign_C : constant :=
-     (Street_Sign_Bits * 10**9 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
+   Street_Sign_C : constant := Street_Time_Of (34 + 8 * Street_Sign_Length);
    Street_Sign_J : constant := Street_Driver_Tx_Sign_R;
 
    --  [reception] what delays it
@@ -386,16 +354,6 @@ is
    function Street_Button_Up (W : Window) return Time is
      (Demand (W, Street_Button_J, Street_Button_T, Street_Button_C,
          Street_Order_Up (W))) with Static;
-   function Street_Car_Lamp_Up (W : Window) return Time is
-     (Demand (W, Street_Car_Lamp_R - Street_Car_Lamp_C, Street_Car_Lamp_T,
-         Street_Car_Lamp_C, Street_Button_Up (W))) with Static;
-   function Street_Walk_Lamp_Up (W : Window) return Time is
-     (Demand (W, Street_Walk_Lamp_R - Street_Walk_Lamp_C,
-         Street_Walk_Lamp_T, Street_Walk_Lamp_C, Street_Car_Lamp_Up (W)))
-   with Static;
-   function Street_Sign_Up (W : Window) return Time is
-     (Demand (W, Street_Sign_R - Street_Sign_C, Street_Sign_T,
-         Street_Sign_C, Street_Walk_Lamp_Up (W))) with Static;
    function Street_Order_Up_Board (W : Window) return Time is
      (Demand (W, Street_Order_J, Street_Order_T, Street_Order_C))
    with Static;

@@ -29,8 +29,8 @@ is
       Table_Type => Row_Table,
       Table =>
         (Fan_Regulate =>
-           (Divisor => Timing_Certificate.Fan_Regulate_Divisor,
-            Phase => Timing_Certificate.Fan_Regulate_Phase)),
+           (Divisor => Timing_Certificate.Control_Divisor,
+            Phase => Timing_Certificate.Control_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Control_T,
       Offset => 0,
@@ -56,7 +56,7 @@ is
       "control has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Fan_Regulate).Divisor
-      = Timing_Certificate.Fan_Regulate_Divisor
+      = Timing_Certificate.Control_Divisor
       and then Processor.Given_Table (Fan_Regulate).Phase
-        = Timing_Certificate.Fan_Regulate_Phase);
+        = Timing_Certificate.Control_Phase);
 end J1939_Node.Control;

@@ -29,17 +29,17 @@ is
       Table_Type => Row_Table,
       Table =>
         (Fan_Ports =>
-           (Divisor => Timing_Certificate.Fan_Ports_Divisor,
-            Phase => Timing_Certificate.Fan_Ports_Phase),
+           (Divisor => Timing_Certificate.Protocol_Divisor,
+            Phase => Timing_Certificate.Protocol_Phase),
          Fan_Address =>
-           (Divisor => Timing_Certificate.Fan_Address_Divisor,
-            Phase => Timing_Certificate.Fan_Address_Phase),
+           (Divisor => Timing_Certificate.Protocol_Divisor,
+            Phase => Timing_Certificate.Protocol_Phase),
          Fan_Answers =>
-           (Divisor => Timing_Certificate.Fan_Answers_Divisor,
-            Phase => Timing_Certificate.Fan_Answers_Phase),
+           (Divisor => Timing_Certificate.Protocol_Divisor,
+            Phase => Timing_Certificate.Protocol_Phase),
          Fan_Tell =>
-           (Divisor => Timing_Certificate.Fan_Tell_Divisor,
-            Phase => Timing_Certificate.Fan_Tell_Phase)),
+           (Divisor => Timing_Certificate.Protocol_Divisor,
+            Phase => Timing_Certificate.Protocol_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Protocol_T,
       Offset => 0,
@@ -65,22 +65,22 @@ is
       "protocol has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Fan_Ports).Divisor
-      = Timing_Certificate.Fan_Ports_Divisor
+      = Timing_Certificate.Protocol_Divisor
       and then Processor.Given_Table (Fan_Ports).Phase
-        = Timing_Certificate.Fan_Ports_Phase);
+        = Timing_Certificate.Protocol_Phase);
    pragma Assert
      (Processor.Given_Table (Fan_Address).Divisor
-      = Timing_Certificate.Fan_Address_Divisor
+      = Timing_Certificate.Protocol_Divisor
       and then Processor.Given_Table (Fan_Address).Phase
-        = Timing_Certificate.Fan_Address_Phase);
+        = Timing_Certificate.Protocol_Phase);
    pragma Assert
      (Processor.Given_Table (Fan_Answers).Divisor
-      = Timing_Certificate.Fan_Answers_Divisor
+      = Timing_Certificate.Protocol_Divisor
       and then Processor.Given_Table (Fan_Answers).Phase
-        = Timing_Certificate.Fan_Answers_Phase);
+        = Timing_Certificate.Protocol_Phase);
    pragma Assert
      (Processor.Given_Table (Fan_Tell).Divisor
-      = Timing_Certificate.Fan_Tell_Divisor
+      = Timing_Certificate.Protocol_Divisor
       and then Processor.Given_Table (Fan_Tell).Phase
-        = Timing_Certificate.Fan_Tell_Phase);
+        = Timing_Certificate.Protocol_Phase);
 end J1939_Node.Protocol;

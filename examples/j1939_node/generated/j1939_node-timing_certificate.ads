@@ -56,6 +56,9 @@ is
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
+   --  [line] the priority of its driver, whatever that works at
+   Line_Driver_Priority : constant := System.Default_Priority + 4;
+
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: protocol in fan.rival.mailbox.
    Reception_Priority : constant := System.Default_Priority + 3;
@@ -74,23 +77,10 @@ is
    Fan_Tell_Budget : constant := 100_000;
    Protocol_T : constant := 10_000_000;
    Protocol_D : constant := 10_000_000;
-   Fan_Ports_Divisor : constant := 1;
-   Fan_Ports_Phase : constant := 0;
-   Fan_Address_Divisor : constant := 1;
-   Fan_Address_Phase : constant := 0;
-   Fan_Answers_Divisor : constant := 1;
-   Fan_Answers_Phase : constant := 0;
-   Fan_Tell_Divisor : constant := 1;
-   Fan_Tell_Phase : constant := 0;
+   Protocol_Divisor : constant := 1;
+   Protocol_Phase : constant := 0;
    pragma Compile_Time_Error
-     (Fan_Ports_Divisor /= 1
-      or else Fan_Ports_Phase /= 0
-      or else Fan_Address_Divisor /= 1
-      or else Fan_Address_Phase /= 0
-      or else Fan_Answers_Divisor /= 1
-      or else Fan_Answers_Phase /= 0
-      or else Fan_Tell_Divisor /= 1
-      or else Fan_Tell_Phase /= 0,
+     (Protocol_Divisor /= 1 or else Protocol_Phase /= 0,
       "protocol must keep divisors and phases of its rows");
    Protocol_J : constant := 0;
    Protocol_C : constant :=
@@ -103,10 +93,10 @@ is
    Fan_Regulate_Budget : constant := 100_000;
    Control_T : constant := 100_000_000;
    Control_D : constant := 100_000_000;
-   Fan_Regulate_Divisor : constant := 1;
-   Fan_Regulate_Phase : constant := 0;
+   Control_Divisor : constant := 1;
+   Control_Phase : constant := 0;
    pragma Compile_Time_Error
-     (Fan_Regulate_Divisor /= 1 or else Fan_Regulate_Phase /= 0,
+     (Control_Divisor /= 1 or else Control_Phase /= 0,
       "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
    Control_C : constant := Fan_Regulate_Budget + 2 * Board_Context_Switch;
@@ -114,7 +104,6 @@ is
 
    --  [line.driver_tx.claim] the driver, released by protocol. B: protocol
    --  in line.transmit.
-   Line_Driver_Tx_Claim_Priority : constant := System.Default_Priority + 4;
    Line_Driver_Tx_Claim_Budget : constant := 40_000;
    Line_Driver_Tx_Claim_T : constant := 10_000_000;
    Line_Driver_Tx_Claim_D : constant := 10_000_000;
@@ -125,8 +114,6 @@ is
 
    --  [line.driver_rx.rival_claim] the driver, released by
    --  line.rival_claim. B: protocol in line.transmit.
-   Line_Driver_Rx_Rival_Claim_Priority : constant :=
-     System.Default_Priority + 4;
    Line_Driver_Rx_Rival_Claim_Budget : constant := 40_000;
    Line_Driver_Rx_Rival_Claim_T : constant := 10_000_000;
    Line_Driver_Rx_Rival_Claim_D : constant := 10_000_000;
@@ -137,8 +124,6 @@ is
 
    --  [line.driver_tx.cannot_claim] the driver, released by protocol. B:
    --  protocol in line.transmit.
-   Line_Driver_Tx_Cannot_Claim_Priority : constant :=
-     System.Default_Priority + 4;
    Line_Driver_Tx_Cannot_Claim_Budget : constant := 40_000;
    Line_Driver_Tx_Cannot_Claim_T : constant := 10_000_000;
    Line_Driver_Tx_Cannot_Claim_D : constant := 10_000_000;
@@ -149,8 +134,6 @@ is
 
    --  [line.driver_rx.request_to_all] the driver, released by
    --  line.request_to_all. B: protocol in line.transmit.
-   Line_Driver_Rx_Request_To_All_Priority : constant :=
-     System.Default_Priority + 4;
    Line_Driver_Rx_Request_To_All_Budget : constant := 40_000;
    Line_Driver_Rx_Request_To_All_T : constant := 10_000_000;
    Line_Driver_Rx_Request_To_All_D : constant := 10_000_000;
@@ -161,8 +144,6 @@ is
 
    --  [line.driver_rx.request_to_us] the driver, released by
    --  line.request_to_us. B: protocol in line.transmit.
-   Line_Driver_Rx_Request_To_Us_Priority : constant :=
-     System.Default_Priority + 4;
    Line_Driver_Rx_Request_To_Us_Budget : constant := 40_000;
    Line_Driver_Rx_Request_To_Us_T : constant := 10_000_000;
    Line_Driver_Rx_Request_To_Us_D : constant := 10_000_000;
@@ -173,8 +154,6 @@ is
 
    --  [line.driver_rx.request_without_address] the driver, released by
    --  line.request_without_address. B: protocol in line.transmit.
-   Line_Driver_Rx_Request_Without_Address_Priority : constant :=
-     System.Default_Priority + 4;
    Line_Driver_Rx_Request_Without_Address_Budget : constant := 40_000;
    Line_Driver_Rx_Request_Without_Address_T : constant := 10_000_000;
    Line_Driver_Rx_Request_Without_Address_D : constant := 10_000_000;
@@ -188,8 +167,6 @@ is
 
    --  [line.driver_tx.acknowledgement] the driver, released by protocol. B:
    --  protocol in line.transmit.
-   Line_Driver_Tx_Acknowledgement_Priority : constant :=
-     System.Default_Priority + 4;
    Line_Driver_Tx_Acknowledgement_Budget : constant := 40_000;
    Line_Driver_Tx_Acknowledgement_T : constant := 10_000_000;
    Line_Driver_Tx_Acknowledgement_D : constant := 10_000_000;
@@ -200,8 +177,6 @@ is
 
    --  [line.driver_rx.engine_temperature_1] the driver, released by
    --  line.engine_temperature_1. B: protocol in line.transmit.
-   Line_Driver_Rx_Engine_Temperature_1_Priority : constant :=
-     System.Default_Priority + 4;
    Line_Driver_Rx_Engine_Temperature_1_Budget : constant := 40_000;
    Line_Driver_Rx_Engine_Temperature_1_T : constant := 500_000_000;
    Line_Driver_Rx_Engine_Temperature_1_D : constant := 500_000_000;
@@ -214,8 +189,6 @@ is
 
    --  [line.driver_tx.fan_drive_state] the driver, released by protocol. B:
    --  protocol in line.transmit.
-   Line_Driver_Tx_Fan_Drive_State_Priority : constant :=
-     System.Default_Priority + 4;
    Line_Driver_Tx_Fan_Drive_State_Budget : constant := 40_000;
    Line_Driver_Tx_Fan_Drive_State_T : constant := 10_000_000;
    Line_Driver_Tx_Fan_Drive_State_D : constant := 10_000_000;
@@ -321,24 +294,8 @@ is
    with Static;
 
    pragma Compile_Time_Error
-     (Board_Probe_Priority <= Line_Driver_Tx_Claim_Priority
-      or else Line_Driver_Tx_Claim_Priority
-        /= Line_Driver_Rx_Rival_Claim_Priority
-      or else Line_Driver_Rx_Rival_Claim_Priority
-        /= Line_Driver_Tx_Cannot_Claim_Priority
-      or else Line_Driver_Tx_Cannot_Claim_Priority
-        /= Line_Driver_Rx_Request_To_All_Priority
-      or else Line_Driver_Rx_Request_To_All_Priority
-        /= Line_Driver_Rx_Request_To_Us_Priority
-      or else Line_Driver_Rx_Request_To_Us_Priority
-        /= Line_Driver_Rx_Request_Without_Address_Priority
-      or else Line_Driver_Rx_Request_Without_Address_Priority
-        /= Line_Driver_Tx_Acknowledgement_Priority
-      or else Line_Driver_Tx_Acknowledgement_Priority
-        /= Line_Driver_Rx_Engine_Temperature_1_Priority
-      or else Line_Driver_Rx_Engine_Temperature_1_Priority
-        /= Line_Driver_Tx_Fan_Drive_State_Priority
-      or else Line_Driver_Tx_Fan_Drive_State_Priority <= Reception_Priority
+     (Board_Probe_Priority <= Line_Driver_Priority
+      or else Line_Driver_Priority <= Reception_Priority
       or else Reception_Priority <= Protocol_Priority
       or else Protocol_Priority <= Control_Priority,
       "board must keep the order of its priorities");
@@ -347,8 +304,16 @@ is
    --  message waits for the longest frame that goes behind it and has
    --  begun, and for those that go before it. Of a message, Stuffed: bits
    --  that stuffing can lengthen by a quarter; Bits: the longest frame,
-   --  with 10 bits that are not stuffed and 3 to the next frame.
+   --  with 10 bits that are not stuffed and 3 to the next frame; Time_Of:
+   --  how long that takes.
    Line_Bit_Rate : constant := 250_000;
+
+   function Line_Bits (Stuffed : Positive) return Time is
+     (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+   function Line_Time_Of (Stuffed : Positive) return Time is
+     ((Line_Bits (Stuffed) * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate)
+   with Static;
+
    Line_Bit : constant :=
      (1_000_000_000 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
 
@@ -358,14 +323,8 @@ is
    Line_Acknowledgement_Length : constant := 8;
    Line_Acknowledgement_T : constant := 10_000_000;
    Line_Acknowledgement_D : constant := 10_000_000;
-   Line_Acknowledgement_Stuffed : constant :=
-     54 + 8 * Line_Acknowledgement_Length;
-   Line_Acknowledgement_Bits : constant :=
-     Line_Acknowledgement_Stuffed + 13
-     + (Line_Acknowledgement_Stuffed - 1) / 4;
    Line_Acknowledgement_C : constant :=
-     (Line_Acknowledgement_Bits * 10**9 + (Line_Bit_Rate - 1))
-     / Line_Bit_Rate;
+     Line_Time_Of (54 + 8 * Line_Acknowledgement_Length);
    Line_Acknowledgement_J : constant := Line_Driver_Tx_Acknowledgement_R;
 
    --  [line.request_to_us] 29-bit identifier Id, Length bytes from somebody
@@ -374,12 +333,8 @@ is
    Line_Request_To_Us_Length : constant := 3;
    Line_Request_To_Us_T : constant := 10_000_000;
    Line_Request_To_Us_D : constant := 10_000_000;
-   Line_Request_To_Us_Stuffed : constant :=
-     54 + 8 * Line_Request_To_Us_Length;
-   Line_Request_To_Us_Bits : constant :=
-     Line_Request_To_Us_Stuffed + 13 + (Line_Request_To_Us_Stuffed - 1) / 4;
    Line_Request_To_Us_C : constant :=
-     (Line_Request_To_Us_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     Line_Time_Of (54 + 8 * Line_Request_To_Us_Length);
    Line_Request_To_Us_J : constant := 0;
 
    --  [line.request_to_all] 29-bit identifier Id, Length bytes from
@@ -388,14 +343,8 @@ is
    Line_Request_To_All_Length : constant := 3;
    Line_Request_To_All_T : constant := 10_000_000;
    Line_Request_To_All_D : constant := 10_000_000;
-   Line_Request_To_All_Stuffed : constant :=
-     54 + 8 * Line_Request_To_All_Length;
-   Line_Request_To_All_Bits : constant :=
-     Line_Request_To_All_Stuffed + 13
-     + (Line_Request_To_All_Stuffed - 1) / 4;
    Line_Request_To_All_C : constant :=
-     (Line_Request_To_All_Bits * 10**9 + (Line_Bit_Rate - 1))
-     / Line_Bit_Rate;
+     Line_Time_Of (54 + 8 * Line_Request_To_All_Length);
    Line_Request_To_All_J : constant := 0;
 
    --  [line.request_without_address] 29-bit identifier Id, Length bytes
@@ -404,14 +353,8 @@ is
    Line_Request_Without_Address_Length : constant := 3;
    Line_Request_Without_Address_T : constant := 10_000_000;
    Line_Request_Without_Address_D : constant := 10_000_000;
-   Line_Request_Without_Address_Stuffed : constant :=
-     54 + 8 * Line_Request_Without_Address_Length;
-   Line_Request_Without_Address_Bits : constant :=
-     Line_Request_Without_Address_Stuffed + 13
-     + (Line_Request_Without_Address_Stuffed - 1) / 4;
    Line_Request_Without_Address_C : constant :=
-     (Line_Request_Without_Address_Bits * 10**9 + (Line_Bit_Rate - 1))
-     / Line_Bit_Rate;
+     Line_Time_Of (54 + 8 * Line_Request_Without_Address_Length);
    Line_Request_Without_Address_J : constant := 0;
 
    --  [line.rival_claim] 29-bit identifier Id, Length bytes from somebody
@@ -420,11 +363,8 @@ is
    Line_Rival_Claim_Length : constant := 8;
    Line_Rival_Claim_T : constant := 10_000_000;
    Line_Rival_Claim_D : constant := 10_000_000;
-   Line_Rival_Claim_Stuffed : constant := 54 + 8 * Line_Rival_Claim_Length;
-   Line_Rival_Claim_Bits : constant :=
-     Line_Rival_Claim_Stuffed + 13 + (Line_Rival_Claim_Stuffed - 1) / 4;
    Line_Rival_Claim_C : constant :=
-     (Line_Rival_Claim_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     Line_Time_Of (54 + 8 * Line_Rival_Claim_Length);
    Line_Rival_Claim_J : constant := 0;
 
    --  [line.cannot_claim] 29-bit identifier Id, Length bytes from
@@ -433,12 +373,8 @@ is
    Line_Cannot_Claim_Length : constant := 8;
    Line_Cannot_Claim_T : constant := 10_000_000;
    Line_Cannot_Claim_D : constant := 10_000_000;
-   Line_Cannot_Claim_Stuffed : constant :=
-     54 + 8 * Line_Cannot_Claim_Length;
-   Line_Cannot_Claim_Bits : constant :=
-     Line_Cannot_Claim_Stuffed + 13 + (Line_Cannot_Claim_Stuffed - 1) / 4;
    Line_Cannot_Claim_C : constant :=
-     (Line_Cannot_Claim_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+     Line_Time_Of (54 + 8 * Line_Cannot_Claim_Length);
    Line_Cannot_Claim_J : constant := Line_Driver_Tx_Cannot_Claim_R;
 
    --  [line.fan_drive_state] 29-bit identifier Id, Length bytes from
@@ -447,14 +383,8 @@ is
    Line_Fan_Drive_State_Length : constant := 8;
    Line_Fan_Drive_State_T : constant := 10_000_000;
    Line_Fan_Drive_State_D : constant := 10_000_000;
-   Line_Fan_Drive_State_Stuffed : constant :=
-     54 + 8 * Line_Fan_Drive_State_Length;
-   Line_Fan_Drive_State_Bits : constant :=
-     Line_Fan_Drive_State_Stuffed + 13
-     + (Line_Fan_Drive_State_Stuffed - 1) / 4;
    Line_Fan_Drive_State_C : constant :=
-     (Line_Fan_Drive_State_Bits * 10**9 + (Line_Bit_Rate - 1))
-     / Line_Bit_Rate;
+     Line_Time_Of (54 + 8 * Line_Fan_Drive_State_Length);
    Line_Fan_Drive_State_J : constant := Line_Driver_Tx_Fan_Drive_State_R;
 
    --  [line.engine_temperature_1] 29-bit identifier Id, Length bytes from
@@ -463,14 +393,8 @@ is
    Line_Engine_Temperature_1_Length : constant := 8;
    Line_Engine_Temperature_1_T : constant := 500_000_000;
    Line_Engine_Temperature_1_D : constant := 500_000_000;
-   Line_Engine_Temperature_1_Stuffed : constant :=
-     54 + 8 * Line_Engine_Temperature_1_Length;
-   Line_Engine_Temperature_1_Bits : constant :=
-     Line_Engine_Temperature_1_Stuffed + 13
-     + (Line_Engine_Temperature_1_Stuffed - 1) / 4;
    Line_Engine_Temperature_1_C : constant :=
-     (Line_Engine_Temperature_1_Bits * 10**9 + (Line_Bit_Rate - 1))
-     / Line_Bit_Rate;
+     Line_Time_Of (54 + 8 * Line_Engine_Temperature_1_Length);
    Line_Engine_Temperature_1_J : constant := 0;
 
    --  [line.claim] 29-bit identifier Id, Length bytes from fan.claim
@@ -478,11 +402,7 @@ is
    Line_Claim_Length : constant := 8;
    Line_Claim_T : constant := 10_000_000;
    Line_Claim_D : constant := 10_000_000;
-   Line_Claim_Stuffed : constant := 54 + 8 * Line_Claim_Length;
-   Line_Claim_Bits : constant :=
-     Line_Claim_Stuffed + 13 + (Line_Claim_Stuffed - 1) / 4;
-   Line_Claim_C : constant :=
-     (Line_Claim_Bits * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
+   Line_Claim_C : constant := Line_Time_Of (54 + 8 * Line_Claim_Length);
    Line_Claim_J : constant := Line_Driver_Tx_Claim_R;
 
    --  [reception] what delays it
@@ -758,9 +678,6 @@ is
      (Demand (W, Line_Engine_Temperature_1_J, Line_Engine_Temperature_1_T,
          Line_Engine_Temperature_1_C, Line_Fan_Drive_State_Up (W)))
    with Static;
-   function Line_Claim_Up (W : Window) return Time is
-     (Demand (W, Line_Claim_R - Line_Claim_C, Line_Claim_T, Line_Claim_C,
-         Line_Engine_Temperature_1_Up (W))) with Static;
    function Line_Request_To_Us_Up_Board (W : Window) return Time is
      (Demand (W, Line_Request_To_Us_J, Line_Request_To_Us_T,
          Line_Request_To_Us_C)) with Static;

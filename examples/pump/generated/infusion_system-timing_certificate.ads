@@ -44,6 +44,9 @@ is
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
+   --  [ward] the priority of its driver, whatever that works at
+   Ward_Driver_Priority : constant := System.Default_Priority + 3;
+
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: control in bed.line.mailbox.
    Reception_Priority : constant := System.Default_Priority + 2;
@@ -107,7 +110,6 @@ is
 
    --  [ward.driver_rx.line] the driver, released by ward.line. B: control
    --  in ward.transmit.
-   Ward_Driver_Rx_Line_Priority : constant := System.Default_Priority + 3;
    Ward_Driver_Rx_Line_Budget : constant := 20_000;
    Ward_Driver_Rx_Line_T : constant := 1_000_000_000;
    Ward_Driver_Rx_Line_D : constant := 1_000_000_000;
@@ -118,7 +120,6 @@ is
 
    --  [ward.driver_tx.motor] the driver, released by control. B: control in
    --  ward.transmit.
-   Ward_Driver_Tx_Motor_Priority : constant := System.Default_Priority + 3;
    Ward_Driver_Tx_Motor_Budget : constant := 20_000;
    Ward_Driver_Tx_Motor_T : constant := 50_000_000;
    Ward_Driver_Tx_Motor_D : constant := 50_000_000;
@@ -129,7 +130,6 @@ is
 
    --  [ward.driver_rx.panel] the driver, released by ward.panel. B: control
    --  in ward.transmit.
-   Ward_Driver_Rx_Panel_Priority : constant := System.Default_Priority + 3;
    Ward_Driver_Rx_Panel_Budget : constant := 20_000;
    Ward_Driver_Rx_Panel_T : constant := 50_000_000;
    Ward_Driver_Rx_Panel_D : constant := 50_000_000;
@@ -140,8 +140,6 @@ is
 
    --  [ward.driver_tx.display] the driver, released by control. B: control
    --  in ward.transmit.
-   Ward_Driver_Tx_Display_Priority : constant :=
-     System.Default_Priority + 3;
    Ward_Driver_Tx_Display_Budget : constant := 20_000;
    Ward_Driver_Tx_Display_T : constant := 200_000_000;
    Ward_Driver_Tx_Display_D : constant := 200_000_000;
@@ -177,11 +175,7 @@ is
          Ward_Driver_Tx_Motor_C, Ward_Driver_Rx_Panel_Rest (W))) with Static;
 
    pragma Compile_Time_Error
-     (Ward_Driver_Rx_Line_Priority /= Ward_Driver_Tx_Motor_Priority
-      or else Ward_Driver_Tx_Motor_Priority /= Ward_Driver_Rx_Panel_Priority
-      or else Ward_Driver_Rx_Panel_Priority
-        /= Ward_Driver_Tx_Display_Priority
-      or else Ward_Driver_Tx_Display_Priority <= Reception_Priority
+     (Ward_Driver_Priority <= Reception_Priority
       or else Reception_Priority <= Control_Priority,
       "board must keep the order of its priorities");
 
@@ -189,8 +183,16 @@ is
    --  message waits for the longest frame that goes behind it and has
    --  begun, and for those that go before it. Of a message, Stuffed: bits
    --  that stuffing can lengthen by a quarter; Bits: the longest frame,
-   --  with 10 bits that are not stuffed and 3 to the next frame.
+   --  with 10 bits that are not stuffed and 3 to the next frame; Time_Of:
+   --  how long that takes.
    Ward_Bit_Rate : constant := 125_000;
+
+   function Ward_Bits (Stuffed : Positive) return Time is
+     (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+   function Ward_Time_Of (Stuffed : Positive) return Time is
+     ((Ward_Bits (Stuffed) * 10**9 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate)
+   with Static;
+
    Ward_Bit : constant :=
      (1_000_000_000 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
 
@@ -199,11 +201,7 @@ is
    Ward_Line_Length : constant := 1;
    Ward_Line_T : constant := 1_000_000_000;
    Ward_Line_D : constant := 1_000_000_000;
-   Ward_Line_Stuffed : constant := 34 + 8 * Ward_Line_Length;
-   Ward_Line_Bits : constant :=
-     Ward_Line_Stuffed + 13 + (Ward_Line_Stuffed - 1) / 4;
-   Ward_Line_C : constant :=
-     (Ward_Line_Bits * 10**9 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+   Ward_Line_C : constant := Ward_Time_Of (34 + 8 * Ward_Line_Length);
    Ward_Line_J : constant := 0;
 
    --  [ward.motor] 11-bit identifier Id, Length bytes from bed.motor
@@ -211,11 +209,7 @@ is
    Ward_Motor_Length : constant := 2;
    Ward_Motor_T : constant := 50_000_000;
    Ward_Motor_D : constant := 50_000_000;
-   Ward_Motor_Stuffed : constant := 34 + 8 * Ward_Motor_Length;
-   Ward_Motor_Bits : constant :=
-     Ward_Motor_Stuffed + 13 + (Ward_Motor_Stuffed - 1) / 4;
-   Ward_Motor_C : constant :=
-     (Ward_Motor_Bits * 10**9 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+   Ward_Motor_C : constant := Ward_Time_Of (34 + 8 * Ward_Motor_Length);
    Ward_Motor_J : constant := Ward_Driver_Tx_Motor_R;
 
    --  [ward.panel] 11-bit identifier Id, Length bytes from somebody outside
@@ -223,11 +217,7 @@ is
    Ward_Panel_Length : constant := 3;
    Ward_Panel_T : constant := 50_000_000;
    Ward_Panel_D : constant := 50_000_000;
-   Ward_Panel_Stuffed : constant := 34 + 8 * Ward_Panel_Length;
-   Ward_Panel_Bits : constant :=
-     Ward_Panel_Stuffed + 13 + (Ward_Panel_Stuffed - 1) / 4;
-   Ward_Panel_C : constant :=
-     (Ward_Panel_Bits * 10**9 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+   Ward_Panel_C : constant := Ward_Time_Of (34 + 8 * Ward_Panel_Length);
    Ward_Panel_J : constant := 0;
 
    --  [ward.display] 11-bit identifier Id, Length bytes from bed.display
@@ -235,11 +225,7 @@ is
    Ward_Display_Length : constant := 3;
    Ward_Display_T : constant := 200_000_000;
    Ward_Display_D : constant := 200_000_000;
-   Ward_Display_Stuffed : constant := 34 + 8 * Ward_Display_Length;
-   Ward_Display_Bits : constant :=
-     Ward_Display_Stuffed + 13 + (Ward_Display_Stuffed - 1) / 4;
-   Ward_Display_C : constant :=
-     (Ward_Display_Bits * 10**9 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+   Ward_Display_C : constant := Ward_Time_Of (34 + 8 * Ward_Display_Length);
    Ward_Display_J : constant := Ward_Driver_Tx_Display_R;
 
    --  [reception] what delays it
@@ -344,9 +330,6 @@ is
    function Ward_Panel_Up (W : Window) return Time is
      (Demand (W, Ward_Panel_J, Ward_Panel_T, Ward_Panel_C,
          Ward_Motor_Up (W))) with Static;
-   function Ward_Display_Up (W : Window) return Time is
-     (Demand (W, Ward_Display_R - Ward_Display_C, Ward_Display_T,
-         Ward_Display_C, Ward_Panel_Up (W))) with Static;
    function Ward_Line_Up_Board (W : Window) return Time is
      (Demand (W, Ward_Line_J, Ward_Line_T, Ward_Line_C)) with Static;
    function Ward_Panel_Up_Board (W : Window) return Time is

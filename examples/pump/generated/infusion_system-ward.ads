@@ -32,7 +32,7 @@ is
    package Controller is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 3,
       Receive_Ceiling => System.Default_Priority + 3,
-      Driver_Priority => Timing_Certificate.Ward_Driver_Rx_Line_Priority,
+      Driver_Priority => Timing_Certificate.Ward_Driver_Priority,
       Transmit_Depth => 8,
       Receive_Depth => 8,
       Stack_Bytes => 65_536,
@@ -46,8 +46,7 @@ is
    use type Ravenchart.Can.Bits_Per_Second;
 
    pragma Compile_Time_Error
-     (Controller.Given_Priority
-      /= Timing_Certificate.Ward_Driver_Rx_Line_Priority,
+     (Controller.Given_Priority /= Timing_Certificate.Ward_Driver_Priority,
       "ward has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Ward_Bit_Rate

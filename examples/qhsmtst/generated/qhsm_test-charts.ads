@@ -31,14 +31,14 @@ is
       Table_Type => Row_Table,
       Table =>
         (Test_Ports =>
-           (Divisor => Timing_Certificate.Test_Ports_Divisor,
-            Phase => Timing_Certificate.Test_Ports_Phase),
+           (Divisor => Timing_Certificate.Charts_Divisor,
+            Phase => Timing_Certificate.Charts_Phase),
          Test_Keys =>
-           (Divisor => Timing_Certificate.Test_Keys_Divisor,
-            Phase => Timing_Certificate.Test_Keys_Phase),
+           (Divisor => Timing_Certificate.Charts_Divisor,
+            Phase => Timing_Certificate.Charts_Phase),
          Test_Chart =>
-           (Divisor => Timing_Certificate.Test_Chart_Divisor,
-            Phase => Timing_Certificate.Test_Chart_Phase)),
+           (Divisor => Timing_Certificate.Charts_Divisor,
+            Phase => Timing_Certificate.Charts_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Charts_T,
       Offset => 0,
@@ -64,17 +64,17 @@ is
       "charts has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Test_Ports).Divisor
-      = Timing_Certificate.Test_Ports_Divisor
+      = Timing_Certificate.Charts_Divisor
       and then Processor.Given_Table (Test_Ports).Phase
-        = Timing_Certificate.Test_Ports_Phase);
+        = Timing_Certificate.Charts_Phase);
    pragma Assert
      (Processor.Given_Table (Test_Keys).Divisor
-      = Timing_Certificate.Test_Keys_Divisor
+      = Timing_Certificate.Charts_Divisor
       and then Processor.Given_Table (Test_Keys).Phase
-        = Timing_Certificate.Test_Keys_Phase);
+        = Timing_Certificate.Charts_Phase);
    pragma Assert
      (Processor.Given_Table (Test_Chart).Divisor
-      = Timing_Certificate.Test_Chart_Divisor
+      = Timing_Certificate.Charts_Divisor
       and then Processor.Given_Table (Test_Chart).Phase
-        = Timing_Certificate.Test_Chart_Phase);
+        = Timing_Certificate.Charts_Phase);
 end Qhsm_Test.Charts;

@@ -29,7 +29,7 @@ is
    package Controller is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 3,
       Receive_Ceiling => System.Default_Priority + 3,
-      Driver_Priority => Timing_Certificate.Panel_Driver_Rx_Key_Priority,
+      Driver_Priority => Timing_Certificate.Panel_Driver_Priority,
       Transmit_Depth => 8,
       Receive_Depth => 8,
       Stack_Bytes => 65_536,
@@ -43,8 +43,7 @@ is
    use type Ravenchart.Can.Bits_Per_Second;
 
    pragma Compile_Time_Error
-     (Controller.Given_Priority
-      /= Timing_Certificate.Panel_Driver_Rx_Key_Priority,
+     (Controller.Given_Priority /= Timing_Certificate.Panel_Driver_Priority,
       "panel has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Panel_Bit_Rate

@@ -40,6 +40,9 @@ is
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
+   --  [panel] the priority of its driver, whatever that works at
+   Panel_Driver_Priority : constant := System.Default_Priority + 3;
+
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: charts in test.key.mailbox.
    Reception_Priority : constant := System.Default_Priority + 2;
@@ -58,19 +61,9 @@ is
    Test_Chart_Budget : constant := 100_000;
    Charts_T : constant := 10_000_000;
    Charts_D : constant := 10_000_000;
-   Test_Ports_Divisor : constant := 1;
-   Test_Ports_Phase : constant := 0;
-   Test_Keys_Divisor : constant := 1;
-   Test_Keys_Phase : constant := 0;
-   Test_Chart_Divisor : constant := 1;
-   Test_Chart_Phase : constant := 0;
-   pragma Compile_Time_Error
-     (Test_Ports_Divisor /= 1
-      or else Test_Ports_Phase /= 0
-      or else Test_Keys_Divisor /= 1
-      or else Test_Keys_Phase /= 0
-      or else Test_Chart_Divisor /= 1
-      or else Test_Chart_Phase /= 0,
+   Charts_Divisor : constant := 1;
+   Charts_Phase : constant := 0;
+   pragma Compile_Time_Error (Charts_Divisor /= 1 or else Charts_Phase /= 0,
       "charts must keep divisors and phases of its rows");
    Charts_J : constant := 0;
    Charts_C : constant :=
@@ -80,7 +73,6 @@ is
 
    --  [panel.driver_rx.key] the driver, released by panel.key. B: reception
    --  in panel.receive.
-   Panel_Driver_Rx_Key_Priority : constant := System.Default_Priority + 3;
    Panel_Driver_Rx_Key_Budget : constant := 20_000;
    Panel_Driver_Rx_Key_T : constant := 10_000_000;
    Panel_Driver_Rx_Key_D : constant := 10_000_000;
@@ -97,7 +89,7 @@ is
          Panel_Driver_Rx_Key_Up (W))) with Static;
 
    pragma Compile_Time_Error
-     (Panel_Driver_Rx_Key_Priority <= Reception_Priority
+     (Panel_Driver_Priority <= Reception_Priority
       or else Reception_Priority <= Charts_Priority,
       "board must keep the order of its priorities");
 
@@ -105,8 +97,16 @@ is
    --  message waits for the longest frame that goes behind it and has
    --  begun, and for those that go before it. Of a message, Stuffed: bits
    --  that stuffing can lengthen by a quarter; Bits: the longest frame,
-   --  with 10 bits that are not stuffed and 3 to the next frame.
+   --  with 10 bits that are not stuffed and 3 to the next frame; Time_Of:
+   --  how long that takes.
    Panel_Bit_Rate : constant := 125_000;
+
+   function Panel_Bits (Stuffed : Positive) return Time is
+     (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+   function Panel_Time_Of (Stuffed : Positive) return Time is
+     ((Panel_Bits (Stuffed) * 10**9 + (Panel_Bit_Rate - 1)) / Panel_Bit_Rate)
+   with Static;
+
    Panel_Bit : constant :=
      (1_000_000_000 + (Panel_Bit_Rate - 1)) / Panel_Bit_Rate;
 
@@ -115,11 +115,7 @@ is
    Panel_Key_Length : constant := 1;
    Panel_Key_T : constant := 10_000_000;
    Panel_Key_D : constant := 10_000_000;
-   Panel_Key_Stuffed : constant := 34 + 8 * Panel_Key_Length;
-   Panel_Key_Bits : constant :=
-     Panel_Key_Stuffed + 13 + (Panel_Key_Stuffed - 1) / 4;
-   Panel_Key_C : constant :=
-     (Panel_Key_Bits * 10**9 + (Panel_Bit_Rate - 1)) / Panel_Bit_Rate;
+   Panel_Key_C : constant := Panel_Time_Of (34 + 8 * Panel_Key_Length);
    Panel_Key_J : constant := 0;
 
    --  [reception] what delays it

@@ -26,14 +26,14 @@ is
       Table_Type => Row_Table,
       Table =>
         (Servo_1_Take_Orders =>
-           (Divisor => Timing_Certificate.Servo_1_Take_Orders_Divisor,
-            Phase => Timing_Certificate.Servo_1_Take_Orders_Phase),
+           (Divisor => Timing_Certificate.Servo_Loop_Divisor,
+            Phase => Timing_Certificate.Servo_Loop_Phase),
          Servo_1_Differ =>
-           (Divisor => Timing_Certificate.Servo_1_Differ_Divisor,
-            Phase => Timing_Certificate.Servo_1_Differ_Phase),
+           (Divisor => Timing_Certificate.Servo_Loop_Divisor,
+            Phase => Timing_Certificate.Servo_Loop_Phase),
          Servo_1_Control =>
-           (Divisor => Timing_Certificate.Servo_1_Control_Divisor,
-            Phase => Timing_Certificate.Servo_1_Control_Phase)),
+           (Divisor => Timing_Certificate.Servo_Loop_Divisor,
+            Phase => Timing_Certificate.Servo_Loop_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Servo_Loop_T,
       Offset => 0,
@@ -59,17 +59,17 @@ is
       "servo_loop has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Servo_1_Take_Orders).Divisor
-      = Timing_Certificate.Servo_1_Take_Orders_Divisor
+      = Timing_Certificate.Servo_Loop_Divisor
       and then Processor.Given_Table (Servo_1_Take_Orders).Phase
-        = Timing_Certificate.Servo_1_Take_Orders_Phase);
+        = Timing_Certificate.Servo_Loop_Phase);
    pragma Assert
      (Processor.Given_Table (Servo_1_Differ).Divisor
-      = Timing_Certificate.Servo_1_Differ_Divisor
+      = Timing_Certificate.Servo_Loop_Divisor
       and then Processor.Given_Table (Servo_1_Differ).Phase
-        = Timing_Certificate.Servo_1_Differ_Phase);
+        = Timing_Certificate.Servo_Loop_Phase);
    pragma Assert
      (Processor.Given_Table (Servo_1_Control).Divisor
-      = Timing_Certificate.Servo_1_Control_Divisor
+      = Timing_Certificate.Servo_Loop_Divisor
       and then Processor.Given_Table (Servo_1_Control).Phase
-        = Timing_Certificate.Servo_1_Control_Phase);
+        = Timing_Certificate.Servo_Loop_Phase);
 end Surgical_Robot.Servo_Loop;

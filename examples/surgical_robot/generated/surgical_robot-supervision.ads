@@ -26,8 +26,8 @@ is
       Table_Type => Row_Table,
       Table =>
         (Supervisor_1_Task_Of_Arm =>
-           (Divisor => Timing_Certificate.Supervisor_1_Task_Of_Arm_Divisor,
-            Phase => Timing_Certificate.Supervisor_1_Task_Of_Arm_Phase)),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Supervision_T,
       Offset => 0,
@@ -53,7 +53,7 @@ is
       "supervision has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Supervisor_1_Task_Of_Arm).Divisor
-      = Timing_Certificate.Supervisor_1_Task_Of_Arm_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Supervisor_1_Task_Of_Arm).Phase
-        = Timing_Certificate.Supervisor_1_Task_Of_Arm_Phase);
+        = Timing_Certificate.Supervision_Phase);
 end Surgical_Robot.Supervision;

@@ -44,19 +44,10 @@ is
    Servo_1_Control_Budget : constant := 146_000;
    Servo_Loop_T : constant := 5_000_000;
    Servo_Loop_D : constant := 5_000_000;
-   Servo_1_Take_Orders_Divisor : constant := 1;
-   Servo_1_Take_Orders_Phase : constant := 0;
-   Servo_1_Differ_Divisor : constant := 1;
-   Servo_1_Differ_Phase : constant := 0;
-   Servo_1_Control_Divisor : constant := 1;
-   Servo_1_Control_Phase : constant := 0;
+   Servo_Loop_Divisor : constant := 1;
+   Servo_Loop_Phase : constant := 0;
    pragma Compile_Time_Error
-     (Servo_1_Take_Orders_Divisor /= 1
-      or else Servo_1_Take_Orders_Phase /= 0
-      or else Servo_1_Differ_Divisor /= 1
-      or else Servo_1_Differ_Phase /= 0
-      or else Servo_1_Control_Divisor /= 1
-      or else Servo_1_Control_Phase /= 0,
+     (Servo_Loop_Divisor /= 1 or else Servo_Loop_Phase /= 0,
       "servo_loop must keep divisors and phases of its rows");
    Servo_Loop_J : constant := 0;
    Servo_Loop_C : constant :=
@@ -69,11 +60,10 @@ is
    Supervisor_1_Task_Of_Arm_Budget : constant := 300_000;
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
-   Supervisor_1_Task_Of_Arm_Divisor : constant := 1;
-   Supervisor_1_Task_Of_Arm_Phase : constant := 0;
+   Supervision_Divisor : constant := 1;
+   Supervision_Phase : constant := 0;
    pragma Compile_Time_Error
-     (Supervisor_1_Task_Of_Arm_Divisor /= 1
-      or else Supervisor_1_Task_Of_Arm_Phase /= 0,
+     (Supervision_Divisor /= 1 or else Supervision_Phase /= 0,
       "supervision must keep divisors and phases of its rows");
    Supervision_J : constant := 0;
    Supervision_C : constant :=

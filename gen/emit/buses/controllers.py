@@ -16,17 +16,16 @@ from ravenchart.gen.emit.ada.syntax import (
     equal,
     number,
 )
-from ravenchart.gen.emit.certificate.certified import agrees, fact
+from ravenchart.gen.emit.certificate.certified import agrees, driver_element, fact
 from ravenchart.gen.model.buses import Bus
-from ravenchart.gen.model.system import Task
 
 
-def controller_checks(bus: Bus, driver: Task) -> list[Decl]:
+def controller_checks(bus: Bus) -> list[Decl]:
     """The controller runs as the certificate says."""
     same = [
         equal(Ref(f"Controller.Given_Setting.{what}"), rate) for what, rate in _rates(bus).items()
     ]
-    level = fact(driver.element, "Priority")
+    level = fact(driver_element(bus.name), "Priority")
     return [
         UseType("Ravenchart.Can.Bits_Per_Second"),
         agrees("Controller.Given_Priority", level, bus.name, "priority of its driver"),

@@ -36,7 +36,7 @@ from ravenchart.gen.emit.ada.syntax import (
     member,
     number,
 )
-from ravenchart.gen.emit.certificate.certified import CERTIFICATE, fact
+from ravenchart.gen.emit.certificate.certified import CERTIFICATE, driver_element, fact
 from ravenchart.gen.emit.commands.remote_calls import received_as
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
 from ravenchart.gen.emit.tables.trace_calls import note, traced
@@ -113,8 +113,6 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     sent, received = _sent(system, bus), _received(system, bus)
     transmit = system.object(f"{bus.name}.transmit").ceiling
     receive = system.object(f"{bus.name}.receive").ceiling
-    drivers = [t for t in system.tasks if t.driver_of == bus.name]
-    driver = max(drivers, key=lambda t: t.priority)
     standard = [fact(m.element, "Id").text for m in received if not m.extended]
     extended = [fact(m.element, "Id").text for m in received if m.extended]
     wanted: list[tuple[str, Expr]] = []
@@ -139,7 +137,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
             arguments(
                 Transmit_Ceiling=priority(transmit),
                 Receive_Ceiling=priority(receive),
-                Driver_Priority=fact(driver.element, "Priority"),
+                Driver_Priority=fact(driver_element(bus.name), "Priority"),
                 Transmit_Depth=number(bus.transmit_depth),
                 Receive_Depth=number(bus.receive_depth),
                 Stack_Bytes=number(DRIVER_STACK),
@@ -148,7 +146,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
             ),
         ),
     ]
-    items += controller_checks(bus, driver)
+    items += controller_checks(bus)
     if received:
         items.append(
             Comment(f"[{bus.name}] all that is received passes, and its frame holds its signals")

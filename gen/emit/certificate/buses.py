@@ -19,7 +19,7 @@ from ravenchart.gen.derive.identifiers import leading
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
 from ravenchart.gen.model.buses import Bus, Message
-from ravenchart.gen.model.claims import Claim, Claims
+from ravenchart.gen.model.claims import Claims, ResponseClaim
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System
 
@@ -66,7 +66,8 @@ def bus_terms(system: System, bus: Bus) -> list[Decl]:
         "for the longest frame that goes behind it and has begun, and for those that go before "
         f"it. Of a message, {explained(bus)}"
     )
-    items: list[Decl] = [Comment(words), *rate_terms(bus)]
+    messages = _of(system, bus)
+    items: list[Decl] = [Comment(words), *rate_terms(bus, messages)]
     if bus.errors is not None:
         hit = f"[{bus.name}] errors: so many at once, one more every T, bits lost to each"
         items += [
@@ -75,7 +76,6 @@ def bus_terms(system: System, bus: Bus) -> list[Decl]:
             stated(f"{own}_Error_T", bus.errors.period),
             stated(f"{own}_Error_Bits", ERROR_BITS),
         ]
-    messages = _of(system, bus)
     for message in messages:
         items += _terms(message, bus)
     return items
@@ -270,11 +270,11 @@ def _of_message(level: _Level, claims: Claims) -> list[Decl]:
     return items
 
 
-def _tail(claim: Claim, instance: int) -> str:
+def _tail(claim: ResponseClaim, instance: int) -> str:
     return "" if len(claim.windows) == 1 else f"_{instance + 1}"
 
 
-def _busy(own: str, label: str, claim: Claim, demand: Expr) -> list[Decl]:
+def _busy(own: str, label: str, claim: ResponseClaim, demand: Expr) -> list[Decl]:
     """A busy period: no time at all would hold no demand as well."""
     busy, needs = Ref(f"{own}_Busy"), Ref(f"{own}_Busy_Needs")
     return [
@@ -287,7 +287,7 @@ def _busy(own: str, label: str, claim: Claim, demand: Expr) -> list[Decl]:
 def _windows(
     own: str,
     label: str,
-    claim: Claim,
+    claim: ResponseClaim,
     waiting: Callable[[int, Expr], Expr],
     span_of: tuple[Expr, Expr],
     prefix: str = "",
@@ -326,7 +326,7 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
     ladder = Ladder(tuple(steps), "Turn_Up", "Turn_Rest")
     line = name_of(processor.name)
     busy = Ref(f"{line}_Busy")
-    first = claims.turns.get(wanted[0].element, Claim())
+    first = claims.turns.get(wanted[0].element, ResponseClaim())
     whole = plus(*ladder.whole(steps[0].name, busy))
     items: list[Decl] = [
         Comment(f"[{processor.name}] how long it is ever busy with what it receives"),
@@ -335,7 +335,7 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
     ]
     for one in wanted:
         own, label = name_of(one.element), one.element
-        claim = claims.turns.get(label, Claim())
+        claim = claims.turns.get(label, ResponseClaim())
         jitter, turn = Ref(f"{own}_Turn_J"), Ref(f"{own}_Turn")
 
         def waiting(instance: int, window: Expr, own: str = own) -> Expr:

@@ -6,10 +6,12 @@ tables and settings by gnatprove.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ravenchart.gen.emit.ada.naming import constant_name as name_of
 from ravenchart.gen.emit.ada.naming import row_name
 from ravenchart.gen.emit.ada.syntax import Decl, Expr, OperatorChain, Pragma, Ref, both
-from ravenchart.gen.model.system import Processor
+from ravenchart.gen.model.system import Processor, Slot
 
 from .terms import differs
 
@@ -19,6 +21,17 @@ CERTIFICATE = "Timing_Certificate"
 def fact(element: str, what: str) -> Ref:
     """A number of an element in the certificate, as the program sees it."""
     return Ref(f"{CERTIFICATE}.{name_of(element)}_{what}")
+
+
+def driver_element(bus: str) -> str:
+    """What has the priority of a bus's driver."""
+    return f"{bus}.driver"
+
+
+def timed_by(processor: str, slots: Sequence[Slot], slot: Slot) -> str:
+    """The element whose divisor and phase a row has: its processor where every row always runs."""
+    always = all((one.divisor, one.phase) == (1, 0) for one in slots)
+    return processor if always else slot.element
 
 
 def agrees(given: str, certified: Expr, element: str, what: str) -> Decl:
@@ -32,7 +45,10 @@ def rows_agree(processor: Processor, table: str) -> list[Decl]:
     for slot in processor.slots:
         row = f"{table} ({row_name(slot)})"
         same = [
-            OperatorChain("=", (Ref(f"{row}.{what}"), fact(slot.element, what)))
+            OperatorChain(
+                "=",
+                (Ref(f"{row}.{what}"), fact(timed_by(processor.name, processor.slots, slot), what)),
+            )
             for what in ("Divisor", "Phase")
         ]
         found.append(Pragma("Assert", (both(*same),)))

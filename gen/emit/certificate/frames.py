@@ -7,10 +7,21 @@ behind the CRC, and a body in between, at the data rate where the bus has one (I
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import Decl, Expr, OperatorChain, Ref, number
+from ravenchart.gen.emit.ada.syntax import (
+    Aspect,
+    Decl,
+    Expr,
+    OperatorChain,
+    Param,
+    Ref,
+    Subprogram,
+    call,
+    number,
+)
 from ravenchart.gen.model.buses import Bus, Message
 
 from .terms import ONE, ceiling, name_of, named, plus, stated, times
@@ -27,7 +38,7 @@ def explained(bus: Bus) -> str:
     """What the numbers of a message's length mean."""
     text = (
         "Stuffed: bits that stuffing can lengthen by a quarter; Bits: the longest frame, with 10 "
-        "bits that are not stuffed and 3 to the next frame."
+        "bits that are not stuffed and 3 to the next frame; Time_Of: how long that takes."
     )
     if bus.takes_fd:
         text += (
@@ -35,6 +46,26 @@ def explained(bus: Bus) -> str:
             "there; Body: the longest part from there to the end of the CRC; Bits: the rest."
         )
     return text
+
+
+def _time_functions(bus: Bus, messages: Sequence[Message]) -> list[Decl]:
+    """How long a classic frame of the bus takes at most, by the bits that are stuffed."""
+    if all(message.fd for message in messages):
+        return []
+    line = ada_case(bus.name)
+    rate, stuffed = Ref(f"{line}_Bit_Rate"), call("Time", Ref("Stuffed"))
+    bits = plus(stuffed, number(UNSTUFFED), _quarter(stuffed))
+    time = ceiling(times(call(f"{line}_Bits", Ref("Stuffed")), Ref("10**9")), rate)
+    return [
+        Subprogram(
+            f"{line}_{name}",
+            (Param("Stuffed", "in", "Positive"),),
+            "Time",
+            (Aspect("Static"),),
+            expression=value,
+        )
+        for name, value in (("Bits", bits), ("Time_Of", time))
+    ]
 
 
 def _head(message: Message) -> int:
@@ -52,14 +83,11 @@ def _checks(message: Message) -> int:
 def length_terms(message: Message, bus: Bus) -> list[Decl]:
     """The bits of a message's longest frame, and its time."""
     own, line = name_of(message.element), ada_case(bus.name)
+    if not message.fd:
+        stuffed = Ref(f"{_head(message)} + 8 * {own}_Length")
+        return [named(f"{own}_C", call(f"{line}_Time_Of", stuffed))]
     stuffed, bits, rate = Ref(f"{own}_Stuffed"), Ref(f"{own}_Bits"), Ref(f"{line}_Bit_Rate")
     second = Ref("10**9")
-    if not message.fd:
-        return [
-            named(stuffed.text, Ref(f"{_head(message)} + 8 * {own}_Length")),
-            named(bits.text, plus(stuffed, number(UNSTUFFED), _quarter(stuffed))),
-            named(f"{own}_C", ceiling(times(bits, second), rate)),
-        ]
     head, early, body = (Ref(f"{own}_{part}") for part in ("Head", "Early", "Body"))
     behind = _less(stuffed, head), _less(_quarter(stuffed), early)
     cost: Expr = ceiling(times(plus(bits, body), second), rate)
@@ -85,13 +113,13 @@ def _less(left: Expr, right: Expr) -> Expr:
     return OperatorChain("-", (left, right))
 
 
-def rate_terms(bus: Bus) -> list[Decl]:
-    """The rates of a bus, and one bit in nanoseconds."""
+def rate_terms(bus: Bus, messages: Sequence[Message]) -> list[Decl]:
+    """The rates of a bus, the times of its classic frames, and one bit in nanoseconds."""
     line = ada_case(bus.name)
     rate = f"{line}_Bit_Rate"
     switched = [] if bus.data_rate is None else [stated(f"{line}_Data_Rate", bus.data_rate)]
     bit = named(f"{line}_Bit", ceiling(number(10**9), Ref(rate)))
-    return [stated(rate, bus.bit_rate), *switched, bit]
+    return [stated(rate, bus.bit_rate), *switched, *_time_functions(bus, messages), bit]
 
 
 def span(message: Message, bus: Bus) -> Fraction:

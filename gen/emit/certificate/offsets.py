@@ -13,7 +13,7 @@ from __future__ import annotations
 from ravenchart.gen.derive.instants import Instant, cycle_of, instants, lateness, phased
 from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.claims import Claim
+from ravenchart.gen.model.claims import ResponseClaim
 from ravenchart.gen.model.system import System, Task
 
 from .interference import asked, costs, platform
@@ -36,7 +36,7 @@ from .terms import (
 UNLISTED = "can be late from an instant that is not listed"
 
 
-def offset_claims(system: System, task: Task, claim: Claim) -> list[Decl]:
+def offset_claims(system: System, task: Task, claim: ResponseClaim) -> list[Decl]:
     """That a job is done by its deadline, whichever instant its busy period begins at."""
     own, label = name_of(task.element), task.element
     reach = claim.response - lateness(system, task) - task.deadline

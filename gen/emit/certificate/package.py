@@ -10,7 +10,7 @@ Lehoczky 1990 (several jobs) and Davis, Burns, Bril, Lukkien 2007 (frames).
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Sequence, Set
 
 from ravenchart.gen.derive.instants import has_offset
 from ravenchart.gen.emit.ada.naming import ada_case, priority
@@ -24,10 +24,12 @@ from ravenchart.gen.emit.ada.syntax import (
     OperatorChain,
     Package,
     Ref,
+    Subprogram,
     Unit,
     UsePackage,
     call,
     number,
+    units_named_in,
 )
 from ravenchart.gen.model.claims import ChainClaim, Claims
 from ravenchart.gen.model.nodes import SUPERVISOR, Node
@@ -40,7 +42,7 @@ from .hops import hops_of
 from .interference import UNIT, task_functions
 from .offsets import offset_claims
 from .protection import protection_claims, watched
-from .tables import order, table_terms
+from .tables import driver_levels, order, table_terms
 from .terms import (
     LATE,
     OVERLAP,
@@ -93,6 +95,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
         if node.tick is not None:
             items.append(stated(f"{own}_Tick_T", node.tick.period))
             items.append(stated(f"{own}_Tick_C", node.tick.wcet))
+    items += driver_levels(system)
     for task in system.tasks:
         items += _terms(system, task)
     for node in system.nodes:
@@ -119,9 +122,20 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
         items += chain_claims(system, chain, claims.chains.get(chain.name, ChainClaim()))
     items += protection_claims(system, claims)
     package = Package(
-        f"{ada_case(system.name)}.Timing_Certificate", tuple(items), (SPARK, Aspect("Pure"))
+        f"{ada_case(system.name)}.Timing_Certificate", _used(items), (SPARK, Aspect("Pure"))
     )
     return Unit(header, ("System", UNIT), package)
+
+
+def _used(items: Sequence[Decl]) -> tuple[Decl, ...]:
+    """Without the functions that nothing behind them calls."""
+    kept: list[Decl] = []
+    called: set[str] = set()
+    for item in reversed(items):
+        if not isinstance(item, Subprogram) or item.name in called:
+            called |= units_named_in(item)
+            kept.append(item)
+    return tuple(reversed(kept))
 
 
 def blocker(system: System, task: Task) -> tuple[SharedObject, str] | None:
@@ -181,7 +195,8 @@ def _terms(system: System, task: Task) -> list[Decl]:
     held = blocker(system, task)
     blocking = _section(system, held[0]) if held else number(0)
     items: list[Decl] = [Comment(_words(system, task, held))]
-    items.append(named(f"{own}_Priority", priority(task.priority)))
+    if task.driver_of is None:
+        items.append(named(f"{own}_Priority", priority(task.priority)))
     for slot in task.slots:
         items.append(stated(f"{name_of(slot.element)}_Budget", slot.timing.wcet))
     if not task.slots:

@@ -8,19 +8,38 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from ravenchart.gen.emit.ada.syntax import Decl, Expr, OperatorChain, Ref, number
+from ravenchart.gen.emit.ada.naming import priority
+from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System, Task
 
+from .certified import driver_element, timed_by
 from .interference import by_priority
-from .terms import name_of, none_of, stated
+from .terms import name_of, named, none_of, stated
+
+
+def driver_levels(system: System) -> list[Decl]:
+    """The priority of each bus's driver, whatever it works at."""
+    found = {t.driver_of: t.priority for t in system.tasks if t.driver_of is not None}
+    items: list[Decl] = []
+    for bus, level in found.items():
+        items.append(Comment(f"[{bus}] the priority of its driver, whatever that works at"))
+        items.append(named(f"{name_of(driver_element(bus))}_Priority", priority(level)))
+    return items
+
+
+def level_of(task: Task) -> str:
+    """The element whose priority a task has: a driver works at everything with its own."""
+    return task.element if task.driver_of is None else driver_element(task.driver_of)
 
 
 def order(system: System, node: Node) -> list[Decl]:
     """The tasks of a node have the order of priority that their sums suppose."""
     wrong: list[Expr] = []
     for high, low in pairwise(by_priority(system, node)):
-        above, below = (Ref(f"{name_of(t.element)}_Priority") for t in (high, low))
+        above, below = (Ref(f"{name_of(level_of(t))}_Priority") for t in (high, low))
+        if above == below:
+            continue
         wrong.append(OperatorChain("/=" if high.priority == low.priority else "<=", (above, below)))
     problem = "must keep the order of its priorities"
     return none_of(wrong, node.name, problem)
@@ -32,9 +51,10 @@ def table_terms(task: Task) -> list[Decl]:
         return []
     items: list[Decl] = []
     wrong: list[Expr] = []
-    for slot in task.slots:
-        row = name_of(slot.element)
-        divisor, phase = Ref(f"{row}_Divisor"), Ref(f"{row}_Phase")
+    timed = {timed_by(task.element, task.slots, slot): slot for slot in task.slots}
+    for element, slot in timed.items():
+        own = name_of(element)
+        divisor, phase = Ref(f"{own}_Divisor"), Ref(f"{own}_Phase")
         items += [stated(divisor.text, slot.divisor), stated(phase.text, slot.phase)]
         wrong.append(OperatorChain("/=", (divisor, number(slot.divisor))))
         late: Expr = OperatorChain(">=", (phase, divisor))

@@ -41,7 +41,13 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.emit.buses.packages import emit_bus
-from ravenchart.gen.emit.certificate.certified import CERTIFICATE, agrees, fact, rows_agree
+from ravenchart.gen.emit.certificate.certified import (
+    CERTIFICATE,
+    agrees,
+    fact,
+    rows_agree,
+    timed_by,
+)
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID
 from ravenchart.gen.emit.tables.trace_calls import element_constant, note, row_number, traced
 from ravenchart.gen.emit.tables.trace_map import elements
@@ -154,7 +160,7 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     )
     if processor.released_by is None:
         generic = "Ravenchart.Periodic_Processors"
-        slots = tuple(Arg(row_name(s), _slot(s)) for s in processor.slots)
+        slots = tuple(Arg(row_name(s), _slot(processor, s)) for s in processor.slots)
         items.append(PlainType("Row_Table", "array (Row) of Ravenchart.Schedules.Slot"))
         args = arguments(
             Activity_Id=Ref("Row"),
@@ -219,8 +225,11 @@ def _checks(processor: Processor, offset: Expr) -> list[Decl]:
     return found
 
 
-def _slot(slot: Slot) -> Expr:
-    facts = {what: fact(slot.element, what) for what in ("Divisor", "Phase")}
+def _slot(processor: Processor, slot: Slot) -> Expr:
+    facts = {
+        what: fact(timed_by(processor.name, processor.slots, slot), what)
+        for what in ("Divisor", "Phase")
+    }
     return Aggregate(tuple(Arg(what, value) for what, value in facts.items()))
 
 

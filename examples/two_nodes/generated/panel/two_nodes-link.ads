@@ -30,8 +30,7 @@ is
    package Controller is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 5,
       Receive_Ceiling => System.Default_Priority + 5,
-      Driver_Priority =>
-        Timing_Certificate.Link_Driver_Tx_Supervisor_Order_Priority,
+      Driver_Priority => Timing_Certificate.Link_Driver_Priority,
       Transmit_Depth => 8,
       Receive_Depth => 32,
       Stack_Bytes => 65_536,
@@ -45,8 +44,7 @@ is
    use type Ravenchart.Can.Bits_Per_Second;
 
    pragma Compile_Time_Error
-     (Controller.Given_Priority
-      /= Timing_Certificate.Link_Driver_Tx_Supervisor_Order_Priority,
+     (Controller.Given_Priority /= Timing_Certificate.Link_Driver_Priority,
       "link has another priority of its driver than its certificate");
    pragma Assert
      (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Link_Bit_Rate

@@ -31,17 +31,17 @@ is
       Table_Type => Row_Table,
       Table =>
         (Link_Watch_Panel =>
-           (Divisor => Timing_Certificate.Link_Watch_Panel_Divisor,
-            Phase => Timing_Certificate.Link_Watch_Panel_Phase),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase),
          Supervisor_Ports =>
-           (Divisor => Timing_Certificate.Supervisor_Ports_Divisor,
-            Phase => Timing_Certificate.Supervisor_Ports_Phase),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase),
          Supervisor_Mission =>
-           (Divisor => Timing_Certificate.Supervisor_Mission_Divisor,
-            Phase => Timing_Certificate.Supervisor_Mission_Phase),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase),
          Supervisor_Plan =>
-           (Divisor => Timing_Certificate.Supervisor_Plan_Divisor,
-            Phase => Timing_Certificate.Supervisor_Plan_Phase)),
+           (Divisor => Timing_Certificate.Supervision_Divisor,
+            Phase => Timing_Certificate.Supervision_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Supervision_T,
       Offset => 0,
@@ -67,22 +67,22 @@ is
       "supervision has another offset than its certificate");
    pragma Assert
      (Processor.Given_Table (Link_Watch_Panel).Divisor
-      = Timing_Certificate.Link_Watch_Panel_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Link_Watch_Panel).Phase
-        = Timing_Certificate.Link_Watch_Panel_Phase);
+        = Timing_Certificate.Supervision_Phase);
    pragma Assert
      (Processor.Given_Table (Supervisor_Ports).Divisor
-      = Timing_Certificate.Supervisor_Ports_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Supervisor_Ports).Phase
-        = Timing_Certificate.Supervisor_Ports_Phase);
+        = Timing_Certificate.Supervision_Phase);
    pragma Assert
      (Processor.Given_Table (Supervisor_Mission).Divisor
-      = Timing_Certificate.Supervisor_Mission_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Supervisor_Mission).Phase
-        = Timing_Certificate.Supervisor_Mission_Phase);
+        = Timing_Certificate.Supervision_Phase);
    pragma Assert
      (Processor.Given_Table (Supervisor_Plan).Divisor
-      = Timing_Certificate.Supervisor_Plan_Divisor
+      = Timing_Certificate.Supervision_Divisor
       and then Processor.Given_Table (Supervisor_Plan).Phase
-        = Timing_Certificate.Supervisor_Plan_Phase);
+        = Timing_Certificate.Supervision_Phase);
 end Two_Nodes.Supervision;

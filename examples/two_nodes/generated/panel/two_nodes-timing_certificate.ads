@@ -50,6 +50,9 @@ is
    Drive_Context_Switch : constant := 10_000;
    Drive_Critical_Section : constant := 5_000;
 
+   --  [link] the priority of its driver, whatever that works at
+   Link_Driver_Priority : constant := System.Default_Priority + 5;
+
    --  [reception_panel] released by arrivals, no closer than T; it may wait
    --  for T to be over as well. B: supervision in
    --  supervisor.report.mailbox.
@@ -81,23 +84,10 @@ is
    Supervisor_Plan_Budget : constant := 150_000;
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
-   Link_Watch_Panel_Divisor : constant := 1;
-   Link_Watch_Panel_Phase : constant := 0;
-   Supervisor_Ports_Divisor : constant := 1;
-   Supervisor_Ports_Phase : constant := 0;
-   Supervisor_Mission_Divisor : constant := 1;
-   Supervisor_Mission_Phase : constant := 0;
-   Supervisor_Plan_Divisor : constant := 1;
-   Supervisor_Plan_Phase : constant := 0;
+   Supervision_Divisor : constant := 1;
+   Supervision_Phase : constant := 0;
    pragma Compile_Time_Error
-     (Link_Watch_Panel_Divisor /= 1
-      or else Link_Watch_Panel_Phase /= 0
-      or else Supervisor_Ports_Divisor /= 1
-      or else Supervisor_Ports_Phase /= 0
-      or else Supervisor_Mission_Divisor /= 1
-      or else Supervisor_Mission_Phase /= 0
-      or else Supervisor_Plan_Divisor /= 1
-      or else Supervisor_Plan_Phase /= 0,
+     (Supervision_Divisor /= 1 or else Supervision_Phase /= 0,
       "supervision must keep divisors and phases of its rows");
    Supervision_J : constant := 0;
    Supervision_C : constant :=
@@ -147,8 +137,6 @@ is
 
    --  [link.driver_tx.supervisor_order] the driver, released by
    --  supervision. B: supervision in panel.link.transmit.
-   Link_Driver_Tx_Supervisor_Order_Priority : constant :=
-     System.Default_Priority + 5;
    Link_Driver_Tx_Supervisor_Order_Budget : constant := 40_000;
    Link_Driver_Tx_Supervisor_Order_T : constant := 20_000_000;
    Link_Driver_Tx_Supervisor_Order_D : constant := 20_000_000;
@@ -159,8 +147,6 @@ is
 
    --  [link.driver_rx.supervisor_order] the driver, released by
    --  link.supervisor_order. B: control in drive.link.transmit.
-   Link_Driver_Rx_Supervisor_Order_Priority : constant :=
-     System.Default_Priority + 5;
    Link_Driver_Rx_Supervisor_Order_Budget : constant := 40_000;
    Link_Driver_Rx_Supervisor_Order_T : constant := 20_000_000;
    Link_Driver_Rx_Supervisor_Order_D : constant := 20_000_000;
@@ -171,8 +157,6 @@ is
 
    --  [link.driver_tx.servo_report] the driver, released by control. B:
    --  control in drive.link.transmit.
-   Link_Driver_Tx_Servo_Report_Priority : constant :=
-     System.Default_Priority + 5;
    Link_Driver_Tx_Servo_Report_Budget : constant := 40_000;
    Link_Driver_Tx_Servo_Report_T : constant := 20_000_000;
    Link_Driver_Tx_Servo_Report_D : constant := 20_000_000;
@@ -183,8 +167,6 @@ is
 
    --  [link.driver_rx.servo_report] the driver, released by
    --  link.servo_report. B: supervision in panel.link.transmit.
-   Link_Driver_Rx_Servo_Report_Priority : constant :=
-     System.Default_Priority + 5;
    Link_Driver_Rx_Servo_Report_Budget : constant := 40_000;
    Link_Driver_Rx_Servo_Report_T : constant := 20_000_000;
    Link_Driver_Rx_Servo_Report_D : constant := 20_000_000;
@@ -232,11 +214,8 @@ is
    with Static;
 
    pragma Compile_Time_Error
-     (Panel_Probe_Priority <= Link_Driver_Tx_Supervisor_Order_Priority
-      or else Link_Driver_Tx_Supervisor_Order_Priority
-        /= Link_Driver_Rx_Servo_Report_Priority
-      or else Link_Driver_Rx_Servo_Report_Priority
-        <= Reception_Panel_Priority
+     (Panel_Probe_Priority <= Link_Driver_Priority
+      or else Link_Driver_Priority <= Reception_Panel_Priority
       or else Reception_Panel_Priority <= Supervision_Priority,
       "panel must keep the order of its priorities");
 
@@ -259,11 +238,8 @@ is
    with Static;
 
    pragma Compile_Time_Error
-     (Drive_Probe_Priority <= Link_Driver_Rx_Supervisor_Order_Priority
-      or else Link_Driver_Rx_Supervisor_Order_Priority
-        /= Link_Driver_Tx_Servo_Report_Priority
-      or else Link_Driver_Tx_Servo_Report_Priority
-        <= Reception_Drive_Priority
+     (Drive_Probe_Priority <= Link_Driver_Priority
+      or else Link_Driver_Priority <= Reception_Drive_Priority
       or else Reception_Drive_Priority <= Control_Priority,
       "drive must keep the order of its priorities");
 
@@ -271,8 +247,16 @@ is
    --  message waits for the longest frame that goes behind it and has
    --  begun, and for those that go before it. Of a message, Stuffed: bits
    --  that stuffing can lengthen by a quarter; Bits: the longest frame,
-   --  with 10 bits that are not stuffed and 3 to the next frame.
+   --  with 10 bits that are not stuffed and 3 to the next frame; Time_Of:
+   --  how long that takes.
    Link_Bit_Rate : constant := 500_000;
+
+   function Link_Bits (Stuffed : Positive) return Time is
+     (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+   function Link_Time_Of (Stuffed : Positive) return Time is
+     ((Link_Bits (Stuffed) * 10**9 + (Link_Bit_Rate - 1)) / Link_Bit_Rate)
+   with Static;
+
    Link_Bit : constant :=
      (1_000_000_000 + (Link_Bit_Rate - 1)) / Link_Bit_Rate;
 
@@ -282,14 +266,8 @@ is
    Link_Supervisor_Order_Length : constant := 3;
    Link_Supervisor_Order_T : constant := 20_000_000;
    Link_Supervisor_Order_D : constant := 20_000_000;
-   Link_Supervisor_Order_Stuffed : constant :=
-     34 + 8 * Link_Supervisor_Order_Length;
-   Link_Supervisor_Order_Bits : constant :=
-     Link_Supervisor_Order_Stuffed + 13
-     + (Link_Supervisor_Order_Stuffed - 1) / 4;
    Link_Supervisor_Order_C : constant :=
-     (Link_Supervisor_Order_Bits * 10**9 + (Link_Bit_Rate - 1))
-     / Link_Bit_Rate;
+     Link_Time_Of (34 + 8 * Link_Supervisor_Order_Length);
    Link_Supervisor_Order_J : constant := Link_Driver_Tx_Supervisor_Order_R;
 
    --  [link.servo_report] 11-bit identifier Id, Length bytes from
@@ -298,12 +276,8 @@ is
    Link_Servo_Report_Length : constant := 3;
    Link_Servo_Report_T : constant := 20_000_000;
    Link_Servo_Report_D : constant := 20_000_000;
-   Link_Servo_Report_Stuffed : constant :=
-     34 + 8 * Link_Servo_Report_Length;
-   Link_Servo_Report_Bits : constant :=
-     Link_Servo_Report_Stuffed + 13 + (Link_Servo_Report_Stuffed - 1) / 4;
    Link_Servo_Report_C : constant :=
-     (Link_Servo_Report_Bits * 10**9 + (Link_Bit_Rate - 1)) / Link_Bit_Rate;
+     Link_Time_Of (34 + 8 * Link_Servo_Report_Length);
    Link_Servo_Report_J : constant := Link_Driver_Tx_Servo_Report_R;
 
    --  [reception_panel] what delays it
