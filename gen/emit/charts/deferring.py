@@ -72,18 +72,6 @@ def freed_by(shape: RegionShape, state: str) -> tuple[Stmt, ...]:
     return tuple(Assign(f"{FREED}.{ada_case(e)}", COUNT) for e in events)
 
 
-def freed_after_exit(shape: RegionShape, state: str | None) -> Expr:
-    """The claim that the exit of a state freed what it defers; None: nothing has been freed."""
-    events = shape.region.state(state).defers if state is not None else ()
-    if not events:
-        return equal(Ref(FREED), Old(FREED))
-    rows = tuple(
-        Arg(ada_case(e), COUNT if e in events else Old(FREED, f".{ada_case(e)}"))
-        for e in kept_events(shape)
-    )
-    return equal(Ref(FREED), Aggregate(rows))
-
-
 def freed_after(shape: RegionShape, domain: Expr, count: Expr) -> Expr:
     """The claim that all was freed that states in a domain defer."""
     held = Old(f"Self.{shape.place}")

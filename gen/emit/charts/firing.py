@@ -9,6 +9,7 @@ else. The order then follows from the preconditions.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 from ravenchart.gen.emit.ada.syntax import (
     NULL,
@@ -17,6 +18,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Aspect,
     Assign,
+    Comment,
     Decl,
     Do,
     Expr,
@@ -48,16 +50,19 @@ from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import PseudoKind
 
 from .history import Restoring
-from .lasting import Lasting, in_one_word, of_before, terminates
+from .lasting import Lasting, asked, in_one_word, of_before, terminates
 from .moving import Moving
 from .nodes import NODES, Nodes, joined
-from .safety import Safety
+from .safety import Safety, used
 from .shape import START, RegionShape
 
 MANY = 24
 """More transitions than so many are fired by procedures of a few each (`BATCH`)."""
 BATCH = 6
 """So many transitions each of them fires: what the prover must see at a time stays small."""
+
+_AGREED = "Is_Agreed"
+_BEFORE, _CHOSEN = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
 
 _Row = tuple[str, tuple[Stmt, ...]]
 
@@ -95,7 +100,7 @@ class Moves:
         self.lasting = Lasting(shape)
         self.nodes = Nodes(shape)
         self.safety = Safety(shape)
-        self.moving = Moving(shape, self.nodes, self.lasting, self.safety)
+        self.moving = Moving(shape, self.nodes, self.lasting)
         self._effects_given: list[Flow] = []
 
     def chart(self, fire: Subprogram) -> Package:
@@ -106,65 +111,97 @@ class Moves:
 
     def fire(self) -> Subprogram:
         """Exits, effects and entries of one transition; `Target` says where it leads."""
-        shape = self.shape
-        start = (Assign("Self.Started", TRUE), *joined(self._steps(shape.start)))
-        rows = [(f.literal, self._row(f)) for f in shape.firings]
+        start = (Assign("Self.Started", TRUE), *joined(self._steps(self.shape.start)))
+        rows = [(f.literal, self._row(f)) for f in self.shape.firings]
         rows = rows or [("None", (NULL,))]
-        sources = call("In_Source", Ref("Chosen"), Ref(self.held))
-        first, later = self.safety.ready("Chosen")
-        ready = IfExpr(
-            ((equal(Ref("Chosen"), Ref(START)), both(Prefix("not", Ref("Self.Started")), *first)),),
-            both(Ref("Self.Started"), sources, *later),
-        )
-        safe = self.safety.holds()
-        moved = equal(Ref(self.held), shape.target("Chosen"))
-        done = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen"), *safe)
-        agreed = self.nodes.agreed(self.held)
-        ghost = (Aspect("Ghost"),)
-        past: tuple[Object, ...] = ()
-        if self.shape.memories:
-            past = (Object("Past", "Memory", Ref("Self.Past"), constant=True),)
-        procedures = self.moving.procedures()
-        if self.shape.deferring and procedures:
-            kept = Ref("Self.Deferred")
-            past += (Object("Kept", "Deferrals.List", kept, constant=True, aspects=ghost),)
-        procedures = (*self.lasting.frames(), *procedures)
+        agreed: Expr = self.nodes.agreed()
+        batches: tuple[Decl, ...] = ()
         if len(rows) > MANY:
-            before = [equal(o.value, Ref(o.name)) for o in past if o.value is not None]
-            #  said once, and not with each batch
-            agrees = Subprogram("Is_Agreed", (), "Boolean", ghost, expression=agreed)
-            facts = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen", at_once=True))
-            fired: list[Decl] = []
-            known = facts
-            named = of_before(facts)
-            if named != facts:
-                params = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
-                fired = in_one_word("Is_Fired", params, named)
-                known = call("Is_Fired", Old("Self"), Ref("Chosen"))
-            agreeing = Ref(agrees.name)
-            claims = (
-                Aspect("Pre", both(Ref("Self.Started"), sources, *later, *before, agreeing)),
-                Aspect("Post", both(*flat([known, *safe, agreeing]))),
-            )
-            procedures = (agrees, *self.lasting.timing(), *fired, *procedures)
-            batches = [rows[at : at + BATCH] for at in range(0, len(rows), BATCH)]
-            procedures += tuple(d for batch in batches for d in _procedure(batch, claims))
-            rows = [_call(batch) for batch in batches]
+            agrees = Subprogram(_AGREED, (), "Boolean", (Aspect("Ghost"),), expression=agreed)
+            agreed = Ref(_AGREED)
+            past = [equal(Ref("Self.Past"), Ref("Past"))] if self.shape.memories else []
+            claims = self._claims(*past, agreed)
+            by_batch = [rows[at : at + BATCH] for at in range(0, len(rows), BATCH)]
+            batches = (agrees, *(d for batch in by_batch for d in _procedure(batch, claims)))
+            rows = [_call(batch) for batch in by_batch]
         return Subprogram(
             "Fire",
             self.fire_params(),
-            aspects=(Aspect("Pre", ready), Aspect("Post", done)),
+            aspects=self._claims(),
             declarations=(
                 UseType(NODES),
-                *self.nodes.variables(Ref("Self.Started"), self.held),
-                *past,
-                *procedures,
+                *self.nodes.variables(),
+                *self._past(),
+                *self.nodes.moved(),
+                *self.moving.procedures(),
+                *batches,
             ),
             body=(
                 case_of(Ref("Chosen"), [(START, start), *rows]),
                 Pragma("Assert", (agreed,)),
             ),
         )
+
+    def _past(self) -> tuple[Object, ...]:
+        if not self.shape.memories:
+            return ()
+        return (Object("Past", "Memory", Ref("Self.Past"), constant=True),)
+
+    def claims(self) -> list[Decl]:
+        """What Fire asks for, and what it does, each in one word."""
+        lasting: list[Decl] = []
+        if self._lasts is not None:
+            told = "Are time-outs, memory and kept events after it as declared?"
+            lasting = [self._lasts, Comment(told)]
+        return [
+            *in_one_word(self._ready("Chosen"), "May it be fired? At first only the start may."),
+            *lasting,
+            *in_one_word(self._fired, "Is the region after it as declared?"),
+        ]
+
+    def _claims(self, *inside: Expr) -> tuple[Aspect, ...]:
+        """Both of a procedure that fires; ``inside`` holds of what only Fire knows."""
+        return (
+            Aspect("Pre", both(self.ready("Chosen"), *inside)),
+            Aspect("Post", both(asked(self._fired, Before=Old("Self")), *inside[-1:])),
+        )
+
+    def ready(self, chosen: str) -> Expr:
+        """That a transition may be fired."""
+        return asked(self._ready(chosen))
+
+    def _ready(self, chosen: str) -> Subprogram:
+        first, later = self.safety.ready(chosen)
+        sources = call("In_Source", Ref(chosen), Ref(self.held))
+        ready = IfExpr(
+            ((equal(Ref(chosen), Ref(START)), both(Prefix("not", Ref("Self.Started")), *first)),),
+            both(Ref("Self.Started"), sources, *later),
+        )
+        return self._claim_of("Is_Ready", ready, Param(chosen, "in", "Firing"))
+
+    @cached_property
+    def _fired(self) -> Subprogram:
+        done = both(
+            Ref("Self.Started"),
+            of_before(equal(Ref(self.held), self.shape.target("Chosen"))),
+            *([] if self._lasts is None else [asked(self._lasts)]),
+            *self.safety.holds(),
+        )
+        return self._claim_of("Is_Fired", done, _CHOSEN, _BEFORE)
+
+    @cached_property
+    def _lasts(self) -> Subprogram | None:
+        """Apart from the rest, for no caller but the step of a plain region needs it."""
+        facts = self.lasting.fired("Chosen")
+        if not facts:
+            return None
+        return self._claim_of("Is_Lasting", of_before(both(*facts)), _CHOSEN, _BEFORE)
+
+    def _claim_of(self, name: str, claim: Expr, chosen: Param, *before: Param) -> Subprogram:
+        values = (p for p in self.shape.step_params()[1:] if p.name in ("Ins", "Item"))
+        of_region = Param("Self", "in", "Region")
+        params = used([*before, of_region, *values, chosen], claim)
+        return Subprogram(name, params, "Boolean", (Aspect("Ghost"),), expression=claim)
 
     def flows(self) -> list[Flow]:
         """The behaviours given so far: the exit of a state that is never left is not among them."""
@@ -290,7 +327,7 @@ class Moves:
         """Everything in the region that holds the transition has been left, nothing else."""
         inside = [self.shape.lane_of(domain), *self.nodes.lanes_inside(domain)]
         others = [lane for lane in self.shape.lanes if lane not in inside]
-        kept = flat([self.nodes.agreed(self.held, others)]) if others else []
+        kept = flat([self.nodes.agreed(others)]) if others else []
         return both(*self.nodes.empty(domain), *kept)
 
     def _steps(self, steps: tuple[EntryStep, ...]) -> tuple[Stmt, ...]:

@@ -358,11 +358,6 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
     """A transition with the segments that its way passes, and note what fired."""
     held = Ref(f"Self.{shape.place}")
     safe = moves.safety.holds()
-    first, later = moves.safety.ready("T")
-    started = IfExpr(
-        ((equal(Ref("T"), Ref(START)), both(Prefix("not", Ref("Self.Started")), *first)),),
-        both(Ref("Self.Started"), call("In_Source", Ref("T"), held), *later),
-    )
     most = shape.most_segments
     before = shape.most_firings - 1 - most
     room = OperatorChain("<=" if before else "=", (_COUNT, number(before)))
@@ -404,7 +399,7 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
     return Subprogram(
         "Fire_Whole",
         (Param("T", "in", "Firing"),),
-        aspects=(Aspect("Pre", both(started, room)), Aspect("Post", both(*facts))),
+        aspects=(Aspect("Pre", both(moves.ready("T"), room)), Aspect("Post", both(*facts))),
         declarations=declarations,
         body=tuple(body),
     )

@@ -5,25 +5,21 @@ enters (the "transition domain" of SCXML 3.13). Everything active inside it is l
 and what is active inside it afterwards was entered. From the domain and the
 configurations before and after follow the time-outs that are cancelled and started,
 and the leaves that histories remember; `Timer_After` and `Remembered` declare it,
-and the contracts here say it of every exit, entry and firing.
+and the contract of each firing claims it.
 """
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
-    Aspect,
     Call,
     CaseExpr,
     Comment,
     Decl,
     EnumType,
     Expr,
-    ForAll,
     IfExpr,
     Old,
     OperatorChain,
@@ -45,22 +41,21 @@ from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import After, Every
 
-from .deferring import COUNT, freed_after, freed_after_exit, kept_events
+from .deferring import freed_after, kept_events
 from .shape import START, HistoryMemory, RegionShape
 
 _STOPPED = "Ravenchart.Timers.Stopped"
 
-LASTS, KEEPS = "Lasts", "Keeps"
-FEW = 3
-"""Of fewer facts each is written where it holds."""
 
-
-def in_one_word(name: str, params: tuple[Param, ...], fact: Expr) -> list[Decl]:
+def in_one_word(fact: Subprogram, told: str) -> list[Decl]:
     """A function that provers see as what it stands for."""
-    return [
-        Subprogram(name, params, "Boolean", (Aspect("Ghost"),), expression=fact),
-        Pragma("Annotate", (Ref("GNATprove"), Ref("Inline_For_Proof"), Ref(name))),
-    ]
+    inlined = Ref("GNATprove"), Ref("Inline_For_Proof"), Ref(fact.name)
+    return [fact, Comment(told), Pragma("Annotate", inlined)]
+
+
+def asked(fact: Subprogram, **given: Expr) -> Expr:
+    """A call of it where its parameters' names are those of what is given."""
+    return call(fact.name, *(given.get(p.name, Ref(p.name)) for p in fact.params))
 
 
 def of_before(fact: Expr) -> Expr:
@@ -270,16 +265,15 @@ def _active(shape: RegionShape, memory: HistoryMemory) -> Expr:
     return both(*flat([shape.in_state(shape.place, memory.place.owner), *not_left]))
 
 
-# --- The contracts of exits, entries and firings -----------------------------
+# --- The contract of firings --------------------------------------------------
 
 
 class Lasting:
-    """What one region's exits, entries and firings say of what outlasts them."""
+    """What outlasts the exits, entries and firings of one region."""
 
     def __init__(self, shape: RegionShape) -> None:
         self.shape = shape
         self.region = shape.region
-        self._frames: set[str] = set()
 
     def timed(self, state: str) -> list[int]:
         """The numbers of a state's time-outs."""
@@ -298,121 +292,29 @@ class Lasting:
             if m.place in around and self.shape.lane_of(m.place) == lane
         ]
 
-    def exited(self, state: str) -> list[Expr]:
-        """After the exit of a state its time-outs are stopped and its leaf is remembered."""
-        stopped = [(i, Ref(_STOPPED)) for i in self.timed(state)]
-        memory = self.remembered(state)
-        if not (stopped or memory or self.region.state(state).defers):
-            return self._said(LASTS)
-        facts = [*self._times(stopped), *self._memory(memory, state), *self._freed(state)]
-        return [*facts, *self._said(KEEPS)]
-
-    def entered(self, vertex: str) -> list[Expr]:
-        """After the entry of a state its time-outs run."""
-        started = [(i, _fresh(self.shape, i)) for i in self.timed(vertex)]
-        if not started:
-            return self._said(LASTS)
-        facts = [*self._times(started), *self._memory([], vertex), *self._freed()]
-        return [*facts, *self._said(KEEPS)]
-
-    def _frame(self, name: str) -> list[Expr]:
-        """What Lasts or Keeps says: nothing that outlasts a firing has changed, or no more than
-        its time-outs, memory and freed events."""
-        facts = [*self._times([]), *self._memory([], ""), *self._freed()] if name == LASTS else []
-        return [*facts, *self._kept()]
-
-    def _said(self, name: str) -> list[Expr]:
-        """The facts of a frame, in one word where there are several."""
-        facts = self._frame(name)
-        if len(facts) < FEW:
-            return facts
-        self._frames.add(name)
-        return [call(name, Old("Self"))]
-
-    def frames(self) -> list[Decl]:
-        """The functions that exits and entries use, which provers see as what they stand for."""
-        items: list[Decl] = []
-        for name in (LASTS, KEEPS):
-            if name in self._frames:
-                before = Param("Before", "in", "Region")
-                facts = both(*(of_before(fact) for fact in self._frame(name)))
-                items += in_one_word(name, (before,), facts)
-        return items
-
-    def left(self, place: Place) -> list[Expr]:
-        """After all in a region was left, the time-outs of what was active are stopped."""
-        held = f"Self.{self.shape.place}"
-        values: list[tuple[int, Expr]] = []
-        for i, timed in enumerate(self.shape.timers, 1):
-            if place in self.shape.compounds.places(timed.source):
-                was = ((self.shape.in_state(held, timed.source), Ref(_STOPPED)),)
-                values.append((i, IfExpr(was, Old("Self.Timers", f" ({i})"))))
-        facts = self._times(values)
-        if self.shape.memories:
-            facts.append(self._recalled(_inside(place)))
-        if self.shape.deferring:
-            facts.append(freed_after(self.shape, Ref(_inside(place)), COUNT))
-        return [*facts, *self._said(KEEPS)]
-
-    def timing(self) -> list[Subprogram]:
-        """`Is_Timed`: all time-outs are as declared, in one word, inside `Fire`."""
-        if not self.shape.timers:
-            return []
-        held = f"Self.{self.shape.place}"
-        rows = []
-        for i in range(1, len(self.shape.timers) + 1):
-            was = Ref(f"Was ({i})")
-            after = call("Timer_After", number(i), Ref("D"), Ref("Before"), Ref(held), was)
-            rows.append(equal(Ref(f"Self.Timers ({i})"), after))
-        params = (
-            Param("D", "in", "Domain"),
-            Param("Before", "in", self.shape.place_type),
-            Param("Was", "in", "Ravenchart.Timers.Timer_Array"),
-        )
-        bounds = equal(Ref("Was'First"), number(1)), equal(Ref("Was'Last"), number(len(rows)))
-        ghost = (Aspect("Ghost"), Aspect("Pre", both(*bounds)))
-        return [Subprogram("Is_Timed", params, "Boolean", ghost, expression=both(*rows))]
-
-    def fired(self, chosen: str, *, at_once: bool = False) -> list[Expr]:
-        """After a firing: what is declared; ``chosen`` names the transition.
-
-        ``at_once``: with `Is_Timed`.
-        """
+    def fired(self, chosen: str) -> list[Expr]:
+        """After a firing: what is declared; ``chosen`` names the transition."""
         facts: list[Expr] = []
         held = f"Self.{self.shape.place}"
         domain = call("Domain_Of", Ref(chosen))
-        if self.shape.timers:
-            places = (Old(held), Ref(held))
-            if at_once:
-                facts.append(call("Is_Timed", domain, places[0], Old("Self.Timers")))
-            for i in () if at_once else range(1, len(self.shape.timers) + 1):
-                before = Old("Self.Timers", f" ({i})")
-                after = call("Timer_After", number(i), domain, *places, before)
-                facts.append(equal(Ref(f"Self.Timers ({i})"), after))
+        for i in range(1, len(self.shape.timers) + 1):
+            before = Old("Self.Timers", f" ({i})")
+            after = call("Timer_After", number(i), domain, Old(held), Ref(held), before)
+            facts.append(equal(Ref(f"Self.Timers ({i})"), after))
+        ends = any(terminates(self.shape, f) for f in self.shape.firings)
+        goes_on = OperatorChain("/=", (domain, Ref("Ending")))
         if self.shape.memories:
             recalled = call("Remembered", domain, Old(held), Old("Self.Past"))
             known = equal(Ref("Self.Past"), recalled)
             kept = equal(Ref("Self.Past"), Old("Self.Past"))
-            started = Old("Self.Started")
-            starts = Prefix("not", started)
-            #  no `if`: GNAT 14 has an internal error where 'Old stands behind a condition on 'Old
-            if any(terminates(self.shape, f) for f in self.shape.firings):
-                #  where the region ends, nothing will be remembered
-                over = equal(domain, Ref("Ending"))
-                facts.append(OperatorChain("or", (started, kept)))
-                facts.append(OperatorChain("or", (starts, over, known)))
-            else:
-                same = OperatorChain("and", (started, known)), OperatorChain("and", (starts, kept))
-                facts.append(OperatorChain("or", same))
+            #  where the region ends, nothing will be remembered
+            later: Expr = IfExpr(((goes_on, known),), None) if ends else known
+            facts.append(IfExpr(((Old("Self.Started"), later),), kept))
         if self.shape.deferring:
             count = call("Deferrals.Count", Old("Self.Deferred"))
             freed = freed_after(self.shape, domain, count)
-            ends = any(terminates(self.shape, f) for f in self.shape.firings)
-            goes_on = OperatorChain("/=", (domain, Ref("Ending")))
             facts.append(IfExpr(((goes_on, freed),), None) if ends else freed)
         return [*facts, *self._deferred(chosen)]
-
-    # --- parts
 
     def _deferred(self, chosen: str) -> list[Expr]:
         """A deferral keeps its event, or counts it as lost; nothing else touches what is kept."""
@@ -426,59 +328,13 @@ class Lasting:
         names: dict[Ref, list[str]] = {}
         for firing in deferrals:
             names.setdefault(shape.deferred_item(firing), []).append(firing.literal)
+        one = len(names) == 1
         added = tuple(
             (
-                OperatorChain("in", (Ref(chosen), Ref(" | ".join(of)))),
+                call("Is_Deferral", Ref(chosen)) if one else one_of(Ref(chosen), of),
                 both(call("Deferrals.Is_Appended", before, item, kept), lost),
             )
             for item, of in names.items()
         )
         same = both(equal(kept, before), equal(Ref("Self.Lost"), Old("Self.Lost")))
         return [IfExpr(added, same)]
-
-    def _freed(self, left: str | None = None) -> list[Expr]:
-        """What the exit of a state frees; None: nothing."""
-        return [freed_after_exit(self.shape, left)] if self.shape.deferring else []
-
-    def _times(self, values: Sequence[tuple[int, Expr]]) -> list[Expr]:
-        """These time-outs are so; all others are as they were."""
-        if not self.shape.timers:
-            return []
-        if not values:
-            return [equal(Ref("Self.Timers"), Old("Self.Timers"))]
-        facts: list[Expr] = [equal(Ref(f"Self.Timers ({i})"), value) for i, value in values]
-        if len(values) < len(self.shape.timers):
-            numbers = " | ".join(str(i) for i, _ in values)
-            others = OperatorChain("not in" if len(values) > 1 else "/=", (Ref("I"), Ref(numbers)))
-            same = equal(Ref("Self.Timers (I)"), Old("Self.Timers", " (I)"))
-            facts.append(ForAll("I", "Self.Timers'Range", IfExpr(((others, same),), None)))
-        return facts
-
-    def _memory(self, changed: list[tuple[HistoryMemory, bool]], leaf: str) -> list[Expr]:
-        if not self.shape.memories:
-            return []
-        if not changed:
-            return [equal(Ref("Self.Past"), Old("Self.Past"))]
-        rows: list[Arg] = []
-        for memory, goes_on in changed:
-            if goes_on:
-                rows.append(Arg(memory.last, Ref(self.shape.literal(leaf))))
-            rows.append(Arg(memory.known, Ref(str(goes_on))))
-        base = "Self.Past'Old" if len(rows) < 2 * len(self.shape.memories) else None
-        return [equal(Ref("Self.Past"), Aggregate(tuple(rows), base=base))]
-
-    def _recalled(self, domain: str) -> Expr:
-        held = Old(f"Self.{self.shape.place}")
-        return equal(Ref("Self.Past"), call("Remembered", Ref(domain), held, Old("Self.Past")))
-
-    def _kept(self) -> list[Expr]:
-        """Exits and entries do not start the region, and defer nothing."""
-        started = equal(Ref("Self.Started"), Old("Self.Started"))
-        if not self.shape.deferring:
-            return [started]
-        #  by way of one constant: for a prover the equality of lists is no simple thing
-        deferred = "Self.Deferred"
-        was, remains = (equal(one, Ref("Kept")) for one in (Old(deferred), Ref(deferred)))
-        lost = equal(Ref("Self.Lost"), Old("Self.Lost"))
-        length = equal(COUNT, call("Deferrals.Count", Old("Self.Deferred")))
-        return [started, IfExpr(((was, remains),), None), length, lost]

@@ -1,8 +1,8 @@
 """Exits and entries of one region: a procedure for each state where one does something.
 
 A state without actions, time-outs or history is exited and entered in the ghost of the
-active states alone, for which there is no code. When that is done is seen by the
-preconditions of the procedures and by what is claimed before an effect.
+active states alone, for which there is no code. The procedures have neither parameters nor
+contracts: gnatprove inlines them where they are called, and proves the caller with their work.
 """
 
 from __future__ import annotations
@@ -11,13 +11,11 @@ from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import (
     FALSE,
     TRUE,
-    Aspect,
     Assign,
     Decl,
     Do,
     Expr,
     IfStatement,
-    Old,
     Ref,
     Stmt,
     Subprogram,
@@ -30,7 +28,6 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.emit.language.compound import Enter
-from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.emit.language.terms import emit_flow
 from ravenchart.gen.language.terms import Flow
 from ravenchart.gen.model.chart.tree import Place
@@ -39,7 +36,6 @@ from ravenchart.gen.model.statechart import After, Every
 from .deferring import freed_by
 from .lasting import Lasting
 from .nodes import Nodes, joined
-from .safety import Safety
 from .shape import RegionShape
 
 
@@ -50,9 +46,8 @@ def _leave_name(place: Place) -> str:
 class Moving:
     """Gives the statements of exits and entries, and remembers which procedures they need."""
 
-    def __init__(self, shape: RegionShape, nodes: Nodes, lasting: Lasting, safety: Safety) -> None:
+    def __init__(self, shape: RegionShape, nodes: Nodes, lasting: Lasting) -> None:
         self.shape = shape
-        self.safety = safety
         self.region = shape.region
         self.nodes = nodes
         self.lasting = lasting
@@ -83,7 +78,7 @@ class Moving:
     def leave(self, place: Place) -> Stmt:
         """The exits of all that is active in a region."""
         if place.owner is not None and self._is_silent(place):
-            return self.nodes.leave(place.owner, self.held)
+            return self.nodes.leave(place)
         if place not in self._left:
             self._left.add(place)
             for child in self.region.children(place.owner, place.region):
@@ -96,7 +91,7 @@ class Moving:
         """Whether nothing is done there however it is left, and no lane ends there."""
         states = self.region.children(place.owner, place.region)
         return (
-            not (place.owner is None or self.region.state(place.owner).is_orthogonal)
+            place.owner is not None
             and not self.shape.compounds.passed(place)
             and not any(
                 s.is_orthogonal or self._work_of_exit(s.name) or self._noted(s.name, "exit")
@@ -120,33 +115,17 @@ class Moving:
         left = [p for p in places if p in self._left]
         leavings = [self._leaving(p) for p in left]
         entries = [self._entry(s.name) for s in states if s.name in self._entered]
-        data = self.safety.functions(
-            (s.name for s in states if s.name in self._exited),
-            left,
-            (s.name for s in states if s.name in self._entered),
-        )
-        return (*data, *exits, *leavings, *entries)
-
-    def _kept(self) -> Expr:
-        return equal(Ref(self.held), Old(f"{self.held}"))
+        return (*exits, *leavings, *entries)
 
     def _exit(self, state: str) -> Subprogram:
-        after = self.nodes.after_exit(state)
         return Subprogram(
             f"Exit_{ada_case(state)}",
-            aspects=(Aspect("Post", both(self._kept(), after, *self._lasting_exit(state))),),
             body=(
                 *self._noted(state, "exit"),
                 *self._work_of_exit(state),
                 self.nodes.exit(state),
             ),
         )
-
-    def _lasting_exit(self, state: str) -> list[Expr]:
-        return [*self.lasting.exited(state), *self.safety.exited(state)]
-
-    def _lasting_entry(self, state: str) -> list[Expr]:
-        return [*self.lasting.entered(state), *self.safety.entered(state)]
 
     def _noted(self, state: str, what: str) -> tuple[Stmt, ...]:
         return () if self.region.state(state).final else self.shape.note(f"{state}.{what}")
@@ -172,16 +151,10 @@ class Moving:
         return tuple(found)
 
     def _entry(self, vertex: str) -> Subprogram:
-        leaves = self.shape.after((Enter(vertex),))
-        moved = self._kept()
-        if leaves:
-            moved = equal(Ref(self.held), self.shape.configuration(leaves, f"{self.held}'Old"))
-        active = self.nodes.after_entry(vertex)
         first, then = self._work_of_entry(vertex)
         noted = self._noted(vertex, "entry")
         return Subprogram(
             f"Enter_{ada_case(vertex)}",
-            aspects=(Aspect("Post", both(moved, active, *self._lasting_entry(vertex))),),
             body=(*self._place(vertex), *first, self.nodes.enter(vertex), *noted, *then),
         )
 
@@ -255,20 +228,4 @@ class Moving:
         leaf = shape.at(self.held, lane)
         if not self.region.state(place.owner).is_orthogonal:
             leaf = f"{shape.literal(place.owner)}'({leaf})"
-        agrees = self.nodes.agreed(self.held, [lane, *self.nodes.lanes_inside(place)])
-        return Subprogram(
-            _leave_name(place),
-            aspects=(
-                Aspect("Pre", both(*flat([shape.in_state(self.held, place.owner), agrees]))),
-                Aspect(
-                    "Post",
-                    both(
-                        self._kept(),
-                        *self.nodes.empty(place),
-                        *self.lasting.left(place),
-                        *self.safety.left(place),
-                    ),
-                ),
-            ),
-            body=(case_of(Ref(leaf), rows),),
-        )
+        return Subprogram(_leave_name(place), body=(case_of(Ref(leaf), rows),))

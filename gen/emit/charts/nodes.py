@@ -35,6 +35,7 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.emit.language.own_names import node_literal
+from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import Lane
 
@@ -47,15 +48,8 @@ _DISORDER = "Disorder"
 _NONE_ACTIVE = Ref(f"Chart.{_NOWHERE}")
 _NO_ORDER = Ref(f"Chart.{_DISORDER}")
 
-_MOVED = Subprogram(
-    "Moved",
-    tuple(Param(name, "in", "Node") for name in ("Active_Node", "From_Node", "To_Node")),
-    "Node",
-    expression=IfExpr(
-        ((equal(Ref("Active_Node"), Ref("From_Node")), Ref("To_Node")),), Ref(_DISORDER)
-    ),
-)
-"""What an exit or entry does."""
+_MOVED = "Moved"
+_IN_ORDER = "In_Order"
 
 
 def joined(statements: Sequence[Stmt]) -> tuple[Stmt, ...]:
@@ -64,10 +58,10 @@ def joined(statements: Sequence[Stmt]) -> tuple[Stmt, ...]:
     for statement in statements:
         match (found[-1:], statement):
             case (
-                [Assign(one, Call("Chart.Moved", (active, start, via)))],
-                Assign(other, Call("Chart.Moved", (_, then, goal))),
+                [Assign(one, Call("Moved", (active, start, via)))],
+                Assign(other, Call("Moved", (_, then, goal))),
             ) if one == other and via == then:
-                found[-1] = Assign(one, Call("Chart.Moved", (active, start, goal)))
+                found[-1] = Assign(one, Call("Moved", (active, start, goal)))
             case _:
                 found.append(statement)
     return tuple(found)
@@ -84,7 +78,7 @@ class Nodes:
     def __init__(self, shape: RegionShape) -> None:
         self.shape = shape
         self.region = shape.region
-        self._moves = False
+        self._moves = self._asks = False
 
     def chart(self, fire: Subprogram) -> Package:
         """The ghost package: the innermost active vertex of a configuration.
@@ -104,17 +98,34 @@ class Nodes:
             functions.append(self._innermost(lane, before))
             before += len(shape.literals(lane))
         nodes = EnumType("Node", (_NOWHERE, *names, _DISORDER))
-        moved = (_MOVED,) if self._moves else ()
-        return Package("Chart", (nodes, *functions, *moved), (_GHOST,))
+        return Package("Chart", (nodes, *functions), (_GHOST,))
+
+    def moved(self) -> tuple[Subprogram, ...]:
+        """What an exit or entry does, which none does before the region has started.
+
+        As it reads the region, nothing that is set before it counts as unused: an entry may set
+        again what an exit has set.
+        """
+        if not self._moves:
+            return ()
+        ready: list[Expr] = [Ref("Self.Started"), equal(Ref("Active_Node"), Ref("From_Node"))]
+        params = [Param(name, "in", NODES) for name in ("Active_Node", "From_Node", "To_Node")]
+        if self._asks:
+            ready.append(Ref(_IN_ORDER))
+            params.append(Param(_IN_ORDER, "in", "Boolean := True"))
+        goal = IfExpr(((both(*ready), Ref("To_Node")),), _NO_ORDER)
+        return (Subprogram(_MOVED, tuple(params), NODES, (_GHOST,), expression=goal),)
 
     def _innermost(self, lane: Lane, before: int) -> Subprogram:
         """A leaf, which stands among the nodes in the order of its type; a number for provers."""
         shape = self.shape
-        leaf = call(f"{shape.states}.{shape.lane_type(lane)}'Pos", Ref(shape.at(shape.place, lane)))
+        held = f"Self.{shape.place}"
+        leaf = call(f"{shape.states}.{shape.lane_type(lane)}'Pos", Ref(shape.at(held, lane)))
         found: Expr = call("Node'Val", OperatorChain("+", (leaf, number(before))))
-        if lane.owner is not None:
-            found = IfExpr(((shape.in_state(shape.place, lane.owner), found),), Ref(_NOWHERE))
-        params = (Param(shape.place, "in", shape.place_type),)
+        active: list[Expr] = [Ref("Self.Started")]
+        active += [] if lane.owner is None else flat([shape.in_state(held, lane.owner)])
+        found = IfExpr(((both(*active), found),), Ref(_NOWHERE))
+        params = (Param("Self", "in", "Region"),)
         return Subprogram(f"Innermost{self._suffix(lane)}", params, "Node", expression=found)
 
     def _suffix(self, lane: Lane) -> str:
@@ -133,26 +144,26 @@ class Nodes:
         """The innermost active state of a lane."""
         return Ref(f"Active{self._suffix(lane)}")
 
-    def variables(self, started: Expr, held: str) -> list[Decl]:
+    def variables(self) -> list[Decl]:
         """One for each lane, as the configuration says."""
         return [
             Object(
                 self.active(lane).text,
                 NODES,
-                IfExpr(((started, self.innermost(lane, held)),), _NONE_ACTIVE),
+                self.innermost(lane),
                 aspects=(_GHOST,),
             )
             for lane in self.shape.lanes
         ]
 
-    def innermost(self, lane: Lane, held: str) -> Expr:
-        """The innermost active state of a lane in a configuration."""
-        return call(f"Chart.Innermost{self._suffix(lane)}", Ref(held))
+    def innermost(self, lane: Lane) -> Expr:
+        """The innermost active state of a lane by the region's configuration."""
+        return call(f"Chart.Innermost{self._suffix(lane)}", Ref("Self"))
 
-    def agreed(self, held: str, lanes: Sequence[Lane] | None = None) -> Expr:
+    def agreed(self, lanes: Sequence[Lane] | None = None) -> Expr:
         """What is active is as the configuration says, in these lanes or all."""
         among = self.shape.lanes if lanes is None else lanes
-        return both(*(equal(self.active(n), self.innermost(n, held)) for n in among))
+        return both(*(equal(self.active(n), self.innermost(n)) for n in among))
 
     def exit(self, state: str) -> Assign:
         """The exit of a state."""
@@ -162,45 +173,37 @@ class Nodes:
         """The entry of a state."""
         return Assign(self._of(vertex).text, self.entered(vertex))
 
-    def leave(self, owner: str, held: str) -> Assign:
-        """The exits of what is active in a composite state of one lane, all at once."""
-        self._moves = True
-        lane = self.shape.lane_of(self.shape.compounds.place(owner))
-        active, within = self.active(lane), self.shape.in_state(held, owner)
-        moved = call("Chart.Moved", active, self.innermost(lane, held), node(owner))
-        return Assign(active.text, IfExpr(((within, moved),), _NO_ORDER))
+    def leave(self, place: Place) -> Assign:
+        """The exits of what is active in a region of one lane, all at once."""
+        assert place.owner is not None
+        self._moves = self._asks = True
+        active = self.active(self.shape.lane_of(place))
+        within = self.shape.in_state(f"Self.{self.shape.place}", place.owner)
+        start, goal = self.innermost(self.shape.lane_of(place)), self._inside(place)
+        return Assign(active.text, call(_MOVED, active, start, goal, within))
 
     def stands(self, vertex: str) -> Expr:
         """A vertex is the innermost active one of its lane."""
         return equal(self._of(vertex), node(vertex))
 
-    def after_exit(self, state: str) -> Expr:
-        """What the exit of a state has done."""
-        return equal(self._of(state), self.exited(state, "'Old"))
-
-    def after_entry(self, vertex: str) -> Expr:
-        """What the entry of a state has done."""
-        return equal(self._of(vertex), self.entered(vertex, "'Old"))
-
-    def exited(self, state: str, before: str = "") -> Expr:
+    def exited(self, state: str) -> Expr:
         """The state around, where it is the innermost and nothing inside it is active."""
         lanes = self._idle(self.shape.lanes_of(state))
-        return self._moved(state, before, (node(state), self._around(state)), lanes)
+        return self._moved(state, (node(state), self._around(state)), lanes)
 
-    def entered(self, vertex: str, before: str = "") -> Expr:
+    def entered(self, vertex: str) -> Expr:
         """The state itself, where its parent is active and nothing in its own region is."""
         place = self.shape.compounds.place(vertex)
         others = self._idle(self.shape.lanes_of(vertex))
         if place.owner is not None and self.region.state(place.owner).is_orthogonal:
             others = [equal(self._of(place.owner), node(place.owner)), *others]
-        return self._moved(vertex, before, (self._around(vertex), node(vertex)), others)
+        return self._moved(vertex, (self._around(vertex), node(vertex)), others)
 
-    def _moved(
-        self, vertex: str, before: str, way: tuple[Ref, Ref], others: Sequence[Expr]
-    ) -> Expr:
+    def _moved(self, vertex: str, way: tuple[Ref, Ref], others: Sequence[Expr]) -> Expr:
         self._moves = True
-        moved = call("Chart.Moved", Ref(f"{self._of(vertex).text}{before}"), *way)
-        return IfExpr(((both(*others), moved),), _NO_ORDER) if others else moved
+        self._asks |= bool(others)
+        asked = (both(*others),) if others else ()
+        return call(_MOVED, self._of(vertex), *way, *asked)
 
     def _of(self, vertex: str) -> Ref:
         """The variable of the lane that a vertex stands in."""
@@ -217,10 +220,13 @@ class Nodes:
 
     def empty(self, place: Place) -> list[Expr]:
         """Nothing in a region is active."""
-        lane = self.shape.lane_of(place)
-        inside = place.owner if lane.owner != place.owner else None
-        here = _NONE_ACTIVE if inside is None else node(inside)
-        return [equal(self.active(lane), here), *self._idle(self.lanes_inside(place))]
+        active = self.active(self.shape.lane_of(place))
+        return [equal(active, self._inside(place)), *self._idle(self.lanes_inside(place))]
+
+    def _inside(self, place: Place) -> Ref:
+        """The state around a region, in the lane whose leaves it holds."""
+        owner = place.owner if self.shape.lane_of(place).owner != place.owner else None
+        return _NONE_ACTIVE if owner is None else node(owner)
 
     def _idle(self, lanes: Sequence[Lane]) -> list[Expr]:
         return [equal(self.active(n), _NONE_ACTIVE) for n in lanes]

@@ -2,7 +2,7 @@
 
 `Is_Safe` joins the conditions of `never` that are about this region, with the facts without
 which a transition might break one. Each transition and segment keeps it, and so does each step.
-What exits and entries do to data is in their contracts here, so that the proof of `Fire` sees it.
+Exits and entries have no contract: gnatprove inlines them, so the proof of `Fire` sees their work.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from functools import cached_property
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
-    Arg,
     Aspect,
     Call,
     CaseExpr,
@@ -36,11 +35,9 @@ from ravenchart.gen.emit.ada.syntax import (
     names_in,
 )
 from ravenchart.gen.emit.language.compound import Firing
-from ravenchart.gen.emit.language.effects import effect_of
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.emit.language.terms import Scope, emit_expression, operators_in
 from ravenchart.gen.language import terms as m
-from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.component import Invariant
 from ravenchart.gen.model.safety import knows_guards
 from ravenchart.gen.model.statechart import When
@@ -61,7 +58,6 @@ class Safety:
         self.region = shape.region
         self.safe = shape.safe
         self.has_data = bool(shape.region.writes)
-        self._left: dict[Place, Subprogram | None] = {}
 
     def __bool__(self) -> bool:
         return self.safe is not None
@@ -90,9 +86,9 @@ class Safety:
             items += [self._guards, Comment(_GUARDS)]
         return items
 
-    def _place_and_data(self, used: Expr) -> tuple[Param, ...]:
+    def _place_and_data(self, said: Expr) -> tuple[Param, ...]:
         place = Param(self.shape.place, "in", self.shape.place_type)
-        return _used([place, DATA], used)
+        return used([place, DATA], said)
 
     @cached_property
     def _invariants(self) -> tuple[Subprogram, ...]:
@@ -155,7 +151,7 @@ class Safety:
         if not rows:
             return None
         choice = CaseExpr(Ref("T"), (*((name, both(*flat(s))) for name, s in rows), _OTHERS))
-        params = _used([DATA, Param("Ins", "in", "Inputs"), ITEM], choice)
+        params = used([DATA, Param("Ins", "in", "Inputs"), ITEM], choice)
         return Subprogram(
             "Guards_Hold", (Param("T", "in", "Firing"), *params), "Boolean", expression=choice
         )
@@ -262,109 +258,6 @@ class Safety:
             return []
         return [equal(Ref("Self.Data"), Old("Self.Data"))]
 
-    # --- the contracts of exits and entries
-
-    def functions(
-        self, exited: Iterable[str], left: Sequence[Place], entered: Iterable[str]
-    ) -> list[Subprogram]:
-        """What the exits and entries with procedures do to data, callees first."""
-        if self.safe is None or not self.has_data:
-            return []
-        made = [self._effect(f"Exit_{ada_case(s)}", self._exit(s)) for s in exited]
-        made += [self._leaving(place) for place in left]
-        made += [self._effect(f"Enter_{ada_case(s)}", self._entry(s)) for s in entered]
-        return [one for one in made if one is not None]
-
-    def exited(self, state: str) -> list[Expr]:
-        """What the exit of a state has done to data."""
-        return self._done(f"Exit_{ada_case(state)}", self._exit(state) is not None)
-
-    def entered(self, state: str) -> list[Expr]:
-        """What the entry of a state has done to data."""
-        return self._done(f"Enter_{ada_case(state)}", self._entry(state) is not None)
-
-    def left(self, place: Place) -> list[Expr]:
-        """What the exits of all that was active in a region have done to data."""
-        return self._done(_leaves(place), self._leaving(place) is not None)
-
-    def _done(self, procedure: str, changes: bool) -> list[Expr]:
-        if self.safe is None or not self.has_data or not changes:
-            return self.unchanged()
-        return [equal(Ref("Self.Data"), call(f"Data_After_{procedure}", Old("Self.Data")))]
-
-    def _exit(self, state: str) -> Expr | None:
-        return self._data(self.region.state(state).exit)
-
-    def _entry(self, state: str) -> Expr | None:
-        return self._data(self.region.state(state).entry)
-
-    def _data(self, flow: m.Flow) -> Expr | None:
-        """The data after a flow; None where it changes none."""
-        found = effect_of(flow, self.shape.component)
-        if not found:
-            return None
-        scope = self.shape.scope("Data")
-        rows: list[Arg] = []
-        for item in self.shape.component.data:
-            fields = {f: value for (name, f), value in found.items() if name == item.name}
-            target = ada_case(item.name)
-            if None in fields:
-                rows.append(Arg(target, emit_expression(scope, fields[None], _unit(item.type))))
-            elif fields:
-                assert isinstance(item.type, m.RecordType)
-                inner = tuple(
-                    Arg(
-                        ada_case(f or ""),
-                        emit_expression(scope, value, _unit(item.type.field(f or "").type)),
-                    )
-                    for f, value in fields.items()
-                )
-                whole = len(inner) == len(item.type.fields)
-                base = None if whole else f"Data.{target}"
-                rows.append(Arg(target, Aggregate(inner, base=base)))
-        whole = len(rows) == len(self.region.writes)
-        return Aggregate(tuple(rows), base=None if whole else "Data")
-
-    def _effect(self, procedure: str, after: Expr | None) -> Subprogram | None:
-        if after is None:
-            return None
-        params = (DATA,) if _used([DATA], after) else (DATA._replace(name="Unused_Data"),)
-        return Subprogram(
-            f"Data_After_{procedure}", params, "Variables", (_GHOST,), expression=after
-        )
-
-    def _leaving(self, place: Place) -> Subprogram | None:
-        if place not in self._left:
-            self._left[place] = self._made_leaving(place)
-        return self._left[place]
-
-    def _made_leaving(self, place: Place) -> Subprogram | None:
-        assert place.owner is not None
-        shape, held = self.shape, f"Self.{self.shape.place}"
-        rows: list[tuple[str, Expr]] = []
-        for child in self.region.children(place.owner, place.region):
-            after: Expr = Ref("Data")
-            for nested in child.regions:
-                inside = Place(child.name, nested.name)
-                if self._leaving(inside) is not None:
-                    after = call(f"Data_After_{_leaves(inside)}", after)
-            if self._exit(child.name) is not None:
-                after = call(f"Data_After_Exit_{ada_case(child.name)}", after)
-            rows.append((shape.literal(child.name), after))
-        if all(after == Ref("Data") for _, after in rows):
-            return None
-        rows += [(shape.literal(p), Ref("Data")) for p in shape.compounds.passed(place)]
-        leaf = shape.at(held, shape.lane_of(place))
-        if not self.region.state(place.owner).is_orthogonal:
-            leaf = f"{shape.literal(place.owner)}'({leaf})"
-        return Subprogram(
-            f"Data_After_{_leaves(place)}",
-            (DATA,),
-            "Variables",
-            (_GHOST, Aspect("Pre", shape.in_state(held, place.owner))),
-            expression=CaseExpr(Ref(leaf), tuple(rows)),
-        )
-
 
 _SAFE_REGION = f"Region with Predicate => {_KEPT} (Safe_Region)"
 _FACTS = (
@@ -377,15 +270,7 @@ _GUARDS = (
 _OTHERS = ("others", Ref("True"))
 
 
-def _leaves(place: Place) -> str:
-    return f"Leave_{ada_case(place.region or place.owner or '')}"
-
-
-def _unit(of_type: m.Type) -> str | None:
-    return of_type.unit if isinstance(of_type, m.IntegerType) else None
-
-
-def _used(params: Sequence[Param], expression: Expr) -> tuple[Param, ...]:
+def used(params: Sequence[Param], expression: Expr) -> tuple[Param, ...]:
     """The parameters that an expression names."""
     named = {text.partition(".")[0].partition("'")[0] for text in names_in(expression)}
     named |= {

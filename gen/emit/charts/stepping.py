@@ -61,6 +61,7 @@ def body_of(shape: RegionShape) -> tuple[Decl, ...]:
         moves.chart(fire),
         *notice_bodies(shape),
         *_polling(shape),
+        *moves.claims(),
         fire,
         *_sources_hold(shape),
         _step(shape, moves),

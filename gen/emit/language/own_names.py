@@ -20,7 +20,7 @@ freed_events i initial_entry inputs ins item j kept leaf memory none now occurre
 place region released segment selection self t timer top_transition transition variables visit
 """
 _STATES = "leaf configuration"
-_NODES = "active_node disorder from_node leaf moved node nowhere place to_node"
+_NODES = "disorder node nowhere region self"
 
 _EVENTS = "activities event event_lists event_name flows no_event"
 
