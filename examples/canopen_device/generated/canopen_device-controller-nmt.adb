@@ -126,13 +126,9 @@ is
         (Nowhere, Initialisation, Boot_Up_Due, Pre_Operational, Operational,
          Stopped, Ready, Disorder);
 
-      function Innermost (Leaf : Nmt_States.Leaf) return Node is
-        (Node'Val (Nmt_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started then Node'Val (Nmt_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -156,68 +152,67 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Lasting
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Timers (1)
+      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+           Before.Timers (1))) with Ghost;
+   --  Are time-outs, memory and kept events after it as declared?
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started
+      and then Self.Leaf = Target (Chosen)
+      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire (Self : in out Region; Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started
-       and then Self.Leaf = Target (Chosen)
-       and then Self.Timers (1)
-         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (1))
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
-      procedure Exit_Initialisation
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Initialisation, Chart.Nowhere)
-          and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then Self.Started = Self.Started'Old
-      is
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node;
+         In_Order    : Boolean := True)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node and then In_Order
+            then To_Node
+         else Chart.Disorder) with Ghost;
+
+      procedure Exit_Initialisation is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active :=
-           Chart.Moved (Active, Chart.Initialisation, Chart.Nowhere);
+         Active := Moved (Active, Chart.Initialisation, Chart.Nowhere);
       end Exit_Initialisation;
 
-      procedure Enter_Initialisation
-      with
-        Post =>
-          Self.Leaf = Nmt_States.Initialisation
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Initialisation)
-          and then Self.Timers (1) = Ravenchart.Timers.Started (40)
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Initialisation is
       begin
          Self.Leaf := Nmt_States.Initialisation;
          Ravenchart.Timers.Arm (Self.Timers (1), 40);
-         Active :=
-           Chart.Moved (Active, Chart.Nowhere, Chart.Initialisation);
+         Active := Moved (Active, Chart.Nowhere, Chart.Initialisation);
       end Enter_Initialisation;
 
-      procedure Enter_Boot_Up_Due
-      with
-        Post =>
-          Self.Leaf = Nmt_States.Boot_Up_Due
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Boot_Up_Due)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Boot_Up_Due is
       begin
          Self.Leaf := Nmt_States.Boot_Up_Due;
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Boot_Up_Due);
+         Active := Moved (Active, Chart.Nowhere, Chart.Boot_Up_Due);
          Self.Data.Boots :=
            (if Self.Data.Boots = 255 then 0 else Self.Data.Boots + 1);
       end Enter_Boot_Up_Due;
@@ -231,40 +226,31 @@ is
             Enter_Boot_Up_Due;
          when Booted =>
             Active :=
-              Chart.Moved (Active, Chart.Boot_Up_Due, Chart.Pre_Operational);
+              Moved (Active, Chart.Boot_Up_Due, Chart.Pre_Operational);
             Self.Leaf := Nmt_States.Pre_Operational;
          when Start =>
             Active :=
-              (if Self.Leaf in Nmt_States.Ready
-                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                        Chart.Ready)
-               else Chart.Disorder);
-            Active := Chart.Moved (Active, Chart.Ready, Chart.Operational);
+              Moved (Active, Chart.Innermost (Self), Chart.Ready,
+                 Self.Leaf in Nmt_States.Ready);
+            Active := Moved (Active, Chart.Ready, Chart.Operational);
             Self.Leaf := Nmt_States.Operational;
          when Stop =>
             Active :=
-              (if Self.Leaf in Nmt_States.Ready
-                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                        Chart.Ready)
-               else Chart.Disorder);
-            Active := Chart.Moved (Active, Chart.Ready, Chart.Stopped);
+              Moved (Active, Chart.Innermost (Self), Chart.Ready,
+                 Self.Leaf in Nmt_States.Ready);
+            Active := Moved (Active, Chart.Ready, Chart.Stopped);
             Self.Leaf := Nmt_States.Stopped;
          when Prepare =>
             Active :=
-              (if Self.Leaf in Nmt_States.Ready
-                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                        Chart.Ready)
-               else Chart.Disorder);
-            Active :=
-              Chart.Moved (Active, Chart.Ready, Chart.Pre_Operational);
+              Moved (Active, Chart.Innermost (Self), Chart.Ready,
+                 Self.Leaf in Nmt_States.Ready);
+            Active := Moved (Active, Chart.Ready, Chart.Pre_Operational);
             Self.Leaf := Nmt_States.Pre_Operational;
          when Reset_Node =>
             Active :=
-              (if Self.Leaf in Nmt_States.Ready
-                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                        Chart.Ready)
-               else Chart.Disorder);
-            Active := Chart.Moved (Active, Chart.Ready, Chart.Nowhere);
+              Moved (Active, Chart.Innermost (Self), Chart.Ready,
+                 Self.Leaf in Nmt_States.Ready);
+            Active := Moved (Active, Chart.Ready, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Self.Data.Resets :=
               (if Self.Data.Resets = 255 then 0 else Self.Data.Resets + 1);
@@ -272,14 +258,12 @@ is
             Enter_Initialisation;
          when Reset_Communication =>
             Active :=
-              (if Self.Leaf in Nmt_States.Ready
-                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                        Chart.Ready)
-               else Chart.Disorder);
-            Active := Chart.Moved (Active, Chart.Ready, Chart.Nowhere);
+              Moved (Active, Chart.Innermost (Self), Chart.Ready,
+                 Self.Leaf in Nmt_States.Ready);
+            Active := Moved (Active, Chart.Ready, Chart.Nowhere);
             Enter_Initialisation;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

@@ -38,13 +38,10 @@ is
    is
       type Node is (Nowhere, Watching, Alarmed, Disorder);
 
-      function Innermost (Leaf : Monitoring_States.Leaf) return Node is
-        (Node'Val (Monitoring_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Monitoring_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -68,84 +65,91 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Lasting
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Timers (1)
+      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+           Before.Timers (1))) with Ghost;
+   --  Are time-outs, memory and kept events after it as declared?
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started
+      and then Self.Leaf = Target (Chosen)
+      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire
      (Self : in out Region; Box : in out Outbox; Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started
-       and then Self.Leaf = Target (Chosen)
-       and then Self.Timers (1)
-         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (1))
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
-      procedure Exit_Alarmed
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Alarmed, Chart.Nowhere)
-          and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then Self.Started = Self.Started'Old
-      is
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node then To_Node
+         else Chart.Disorder) with Ghost;
+
+      procedure Exit_Alarmed is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Moved (Active, Chart.Alarmed, Chart.Nowhere);
+         Active := Moved (Active, Chart.Alarmed, Chart.Nowhere);
       end Exit_Alarmed;
 
-      procedure Enter_Alarmed
-      with
-        Post =>
-          Self.Leaf = Monitoring_States.Alarmed
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Alarmed)
-          and then Self.Timers (1) = Ravenchart.Timers.Started (50)
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Alarmed is
       begin
          Self.Leaf := Monitoring_States.Alarmed;
          Ravenchart.Timers.Arm (Self.Timers (1), 50);
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Alarmed);
+         Active := Moved (Active, Chart.Nowhere, Chart.Alarmed);
       end Enter_Alarmed;
    begin
       case Chosen is
          when Initial_Entry =>
             Self.Started := True;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Watching);
+            Active := Moved (Active, Chart.Nowhere, Chart.Watching);
             Self.Leaf := Monitoring_States.Watching;
          when Strayed =>
-            Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
+            Active := Moved (Active, Chart.Watching, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Strayed);
             pragma Assert (Active = Chart.Nowhere);
             Enter_Alarmed;
          when Limit_Hit | End_Reached =>
-            Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
+            Active := Moved (Active, Chart.Watching, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Limit_Hit);
             pragma Assert (Active = Chart.Nowhere);
             Enter_Alarmed;
          when Drive_Failed =>
-            Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
+            Active := Moved (Active, Chart.Watching, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Drive_Failed);
             pragma Assert (Active = Chart.Nowhere);
             Enter_Alarmed;
          when Calm =>
             Exit_Alarmed;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Watching);
+            Active := Moved (Active, Chart.Nowhere, Chart.Watching);
             Self.Leaf := Monitoring_States.Watching;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

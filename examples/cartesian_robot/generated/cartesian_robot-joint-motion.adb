@@ -128,13 +128,10 @@ is
         (Nowhere, Idle, Seeking, Backing_Off, Accelerating, Cruising,
          Braking, Limit, Drive, Operational, Homing, Moving, Fault, Disorder);
 
-      function Innermost (Leaf : Motion_States.Leaf) return Node is
-        (Node'Val (Motion_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Motion_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -158,147 +155,105 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Lasting
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Timers (1)
+      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+           Before.Timers (1))) with Ghost;
+   --  Are time-outs, memory and kept events after it as declared?
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started
+      and then Self.Leaf = Target (Chosen)
+      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire (Self : in out Region; Ins : Inputs; Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started
-       and then Self.Leaf = Target (Chosen)
-       and then Self.Timers (1)
-         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (1))
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
-      procedure Exit_Homing
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Homing, Chart.Operational)
-          and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then Self.Started = Self.Started'Old
-      is
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node;
+         In_Order    : Boolean := True)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node and then In_Order
+            then To_Node
+         else Chart.Disorder) with Ghost;
+
+      procedure Exit_Homing is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Moved (Active, Chart.Homing, Chart.Operational);
+         Active := Moved (Active, Chart.Homing, Chart.Operational);
       end Exit_Homing;
 
-      procedure Leave_Operational
-      with
-        Pre =>
-          Self.Leaf in Motion_States.Operational
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Operational
-          and then Self.Timers (1)
-            = (if Self.Leaf in Motion_States.Homing
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (1))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Leave_Operational is
       begin
          case Motion_States.Operational'(Self.Leaf) is
             when Motion_States.Idle =>
-               Active :=
-                 Chart.Moved (Active, Chart.Idle, Chart.Operational);
+               Active := Moved (Active, Chart.Idle, Chart.Operational);
             when Motion_States.Homing =>
                Active :=
-                 (if Self.Leaf in Motion_States.Homing
-                     then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                           Chart.Homing)
-                  else Chart.Disorder);
+                 Moved (Active, Chart.Innermost (Self), Chart.Homing,
+                    Self.Leaf in Motion_States.Homing);
                Exit_Homing;
             when Motion_States.Moving =>
                Active :=
-                 (if Self.Leaf in Motion_States.Moving
-                     then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                           Chart.Moving)
-                  else Chart.Disorder);
-               Active :=
-                 Chart.Moved (Active, Chart.Moving, Chart.Operational);
+                 Moved (Active, Chart.Innermost (Self), Chart.Moving,
+                    Self.Leaf in Motion_States.Moving);
+               Active := Moved (Active, Chart.Moving, Chart.Operational);
          end case;
       end Leave_Operational;
 
-      procedure Enter_Idle
-      with
-        Post =>
-          Self.Leaf = Motion_States.Idle
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Operational, Chart.Idle)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Idle is
       begin
          Self.Leaf := Motion_States.Idle;
-         Active := Chart.Moved (Active, Chart.Operational, Chart.Idle);
+         Active := Moved (Active, Chart.Operational, Chart.Idle);
          Self.Data.Goal.Wanted := Cartesian_Robot.Hold;
       end Enter_Idle;
 
-      procedure Enter_Homing
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Operational, Chart.Homing)
-          and then Self.Timers (1) = Ravenchart.Timers.Started (1_000)
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Homing is
       begin
          Ravenchart.Timers.Arm (Self.Timers (1), 1_000);
-         Active := Chart.Moved (Active, Chart.Operational, Chart.Homing);
+         Active := Moved (Active, Chart.Operational, Chart.Homing);
       end Enter_Homing;
 
-      procedure Enter_Seeking
-      with
-        Post =>
-          Self.Leaf = Motion_States.Seeking
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Homing, Chart.Seeking)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Seeking is
       begin
          Self.Leaf := Motion_States.Seeking;
-         Active := Chart.Moved (Active, Chart.Homing, Chart.Seeking);
+         Active := Moved (Active, Chart.Homing, Chart.Seeking);
          Self.Data.Homed := False;
          Self.Data.Goal.Wanted := Cartesian_Robot.Seek_Low_End;
       end Enter_Seeking;
 
-      procedure Enter_Backing_Off
-      with
-        Post =>
-          Self.Leaf = Motion_States.Backing_Off
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Homing, Chart.Backing_Off)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Backing_Off is
       begin
          Self.Leaf := Motion_States.Backing_Off;
-         Active := Chart.Moved (Active, Chart.Homing, Chart.Backing_Off);
+         Active := Moved (Active, Chart.Homing, Chart.Backing_Off);
          Self.Data.Goal.Wanted := Cartesian_Robot.Leave_Low_End;
       end Enter_Backing_Off;
 
-      procedure Enter_Moving
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Operational, Chart.Moving)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Moving is
       begin
-         Active := Chart.Moved (Active, Chart.Operational, Chart.Moving);
+         Active := Moved (Active, Chart.Operational, Chart.Moving);
          Self.Data.Goal.Target :=
            Cartesian_Robot.Unit_Um'Min
              (Cartesian_Robot.Unit_Um'Max (Ins.Order.Value.Target, 0),
@@ -306,17 +261,9 @@ is
          Self.Data.Goal.Wanted := Cartesian_Robot.Go;
       end Enter_Moving;
 
-      procedure Enter_Fault
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Fault)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Fault is
       begin
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Fault);
+         Active := Moved (Active, Chart.Nowhere, Chart.Fault);
          Self.Data.Goal.Wanted := Cartesian_Robot.Hold;
          Self.Data.Homed := False;
       end Enter_Fault;
@@ -324,89 +271,75 @@ is
       case Chosen is
          when Initial_Entry =>
             Self.Started := True;
-            Active :=
-              Chart.Moved (Active, Chart.Nowhere, Chart.Operational);
+            Active := Moved (Active, Chart.Nowhere, Chart.Operational);
             Enter_Idle;
          when End_Found =>
-            Active := Chart.Moved (Active, Chart.Seeking, Chart.Homing);
+            Active := Moved (Active, Chart.Seeking, Chart.Homing);
             Enter_Backing_Off;
          when End_Left =>
-            Active := Chart.Moved (Active, Chart.Backing_Off, Chart.Homing);
+            Active := Moved (Active, Chart.Backing_Off, Chart.Homing);
             Exit_Homing;
             pragma Assert (Active = Chart.Operational);
             Self.Data.Homed := True;
             pragma Assert (Active = Chart.Operational);
             Enter_Idle;
          when At_Speed =>
-            Active :=
-              Chart.Moved (Active, Chart.Accelerating, Chart.Cruising);
+            Active := Moved (Active, Chart.Accelerating, Chart.Cruising);
             Self.Leaf := Motion_States.Cruising;
          when No_Cruise =>
-            Active :=
-              Chart.Moved (Active, Chart.Accelerating, Chart.Braking);
+            Active := Moved (Active, Chart.Accelerating, Chart.Braking);
             Self.Leaf := Motion_States.Braking;
          when Brake =>
-            Active := Chart.Moved (Active, Chart.Cruising, Chart.Braking);
+            Active := Moved (Active, Chart.Cruising, Chart.Braking);
             Self.Leaf := Motion_States.Braking;
          when Start_Homing =>
-            Active := Chart.Moved (Active, Chart.Idle, Chart.Operational);
+            Active := Moved (Active, Chart.Idle, Chart.Operational);
             Enter_Homing;
             Enter_Seeking;
          when No_End =>
             Active :=
-              (if Self.Leaf in Motion_States.Homing
-                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                        Chart.Homing)
-               else Chart.Disorder);
+              Moved (Active, Chart.Innermost (Self), Chart.Homing,
+                 Self.Leaf in Motion_States.Homing);
             Exit_Homing;
-            Active :=
-              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
+            Active := Moved (Active, Chart.Operational, Chart.Nowhere);
             Enter_Fault;
-            Active := Chart.Moved (Active, Chart.Fault, Chart.Drive);
+            Active := Moved (Active, Chart.Fault, Chart.Drive);
             Self.Leaf := Motion_States.Drive;
          when Start_Move =>
-            Active := Chart.Moved (Active, Chart.Idle, Chart.Operational);
+            Active := Moved (Active, Chart.Idle, Chart.Operational);
             Enter_Moving;
-            Active :=
-              Chart.Moved (Active, Chart.Moving, Chart.Accelerating);
+            Active := Moved (Active, Chart.Moving, Chart.Accelerating);
             Self.Leaf := Motion_States.Accelerating;
          when Arrived =>
             Active :=
-              (if Self.Leaf in Motion_States.Moving
-                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                        Chart.Moving)
-               else Chart.Disorder);
-            Active := Chart.Moved (Active, Chart.Moving, Chart.Operational);
+              Moved (Active, Chart.Innermost (Self), Chart.Moving,
+                 Self.Leaf in Motion_States.Moving);
+            Active := Moved (Active, Chart.Moving, Chart.Operational);
             Enter_Idle;
          when Halt =>
             Leave_Operational;
-            Active :=
-              Chart.Moved (Active, Chart.Operational, Chart.Operational);
+            Active := Moved (Active, Chart.Operational, Chart.Operational);
             Enter_Idle;
          when Lost | Failed | Strayed =>
             Leave_Operational;
-            Active :=
-              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
+            Active := Moved (Active, Chart.Operational, Chart.Nowhere);
             Enter_Fault;
-            Active := Chart.Moved (Active, Chart.Fault, Chart.Drive);
+            Active := Moved (Active, Chart.Fault, Chart.Drive);
             Self.Leaf := Motion_States.Drive;
          when Limit =>
             Leave_Operational;
-            Active :=
-              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
+            Active := Moved (Active, Chart.Operational, Chart.Nowhere);
             Enter_Fault;
-            Active := Chart.Moved (Active, Chart.Fault, Chart.Limit);
+            Active := Moved (Active, Chart.Fault, Chart.Limit);
             Self.Leaf := Motion_States.Limit;
          when Reset =>
             Active :=
-              (if Self.Leaf in Motion_States.Fault
-                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                        Chart.Fault)
-               else Chart.Disorder);
-            Active := Chart.Moved (Active, Chart.Fault, Chart.Operational);
+              Moved (Active, Chart.Innermost (Self), Chart.Fault,
+                 Self.Leaf in Motion_States.Fault);
+            Active := Moved (Active, Chart.Fault, Chart.Operational);
             Enter_Idle;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

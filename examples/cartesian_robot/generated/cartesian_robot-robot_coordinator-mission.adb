@@ -132,13 +132,10 @@ is
         (Nowhere, Waiting, Homing, Ready, Departing, Under_Way, Failed,
          Recovering, Shut_Down, Active, Travelling, Stopped, Disorder);
 
-      function Innermost (Leaf : Mission_States.Leaf) return Node is
-        (Node'Val (Mission_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Mission_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -164,133 +161,96 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Lasting
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Timers (1)
+      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+           Before.Timers (1))
+      and then Self.Timers (2)
+        = Timer_After (2, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+             Before.Timers (2))) with Ghost;
+   --  Are time-outs, memory and kept events after it as declared?
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started
+      and then Self.Leaf = Target (Chosen)
+      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire
      (Self   : in out Region;
       Ins    : Inputs;
       Box    : in out Outbox;
       Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started
-       and then Self.Leaf = Target (Chosen)
-       and then Self.Timers (1)
-         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (1))
-       and then Self.Timers (2)
-         = Timer_After (2, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (2))
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
-      procedure Exit_Departing
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Departing, Chart.Travelling)
-          and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node then To_Node
+         else Chart.Disorder) with Ghost;
+
+      procedure Exit_Departing is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Moved (Active, Chart.Departing, Chart.Travelling);
+         Active := Moved (Active, Chart.Departing, Chart.Travelling);
       end Exit_Departing;
 
-      procedure Exit_Recovering
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Recovering, Chart.Stopped)
-          and then Self.Timers (2) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Exit_Recovering is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active := Chart.Moved (Active, Chart.Recovering, Chart.Stopped);
+         Active := Moved (Active, Chart.Recovering, Chart.Stopped);
       end Exit_Recovering;
 
-      procedure Leave_Travelling
-      with
-        Pre =>
-          Self.Leaf in Mission_States.Travelling
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Travelling
-          and then Self.Timers (1)
-            = (if Self.Leaf = Mission_States.Departing
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (1))
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Leave_Travelling is
       begin
          case Mission_States.Travelling'(Self.Leaf) is
             when Mission_States.Departing =>
                Exit_Departing;
             when Mission_States.Under_Way =>
-               Active :=
-                 Chart.Moved (Active, Chart.Under_Way, Chart.Travelling);
+               Active := Moved (Active, Chart.Under_Way, Chart.Travelling);
          end case;
       end Leave_Travelling;
 
-      procedure Leave_Active
-      with
-        Pre =>
-          Self.Leaf in Mission_States.Active
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Active
-          and then Self.Timers (1)
-            = (if Self.Leaf = Mission_States.Departing
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (1))
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Leave_Active is
       begin
          case Mission_States.Active'(Self.Leaf) is
             when Mission_States.Waiting =>
-               Active := Chart.Moved (Active, Chart.Waiting, Chart.Active);
+               Active := Moved (Active, Chart.Waiting, Chart.Active);
             when Mission_States.Homing =>
-               Active := Chart.Moved (Active, Chart.Homing, Chart.Active);
+               Active := Moved (Active, Chart.Homing, Chart.Active);
             when Mission_States.Ready =>
-               Active := Chart.Moved (Active, Chart.Ready, Chart.Active);
+               Active := Moved (Active, Chart.Ready, Chart.Active);
             when Mission_States.Travelling =>
                Leave_Travelling;
-               Active :=
-                 Chart.Moved (Active, Chart.Travelling, Chart.Active);
+               Active := Moved (Active, Chart.Travelling, Chart.Active);
          end case;
       end Leave_Active;
 
-      procedure Enter_Homing
-      with
-        Post =>
-          Self.Leaf = Mission_States.Homing
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Active, Chart.Homing)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Homing is
       begin
          Self.Leaf := Mission_States.Homing;
-         Active := Chart.Moved (Active, Chart.Active, Chart.Homing);
+         Active := Moved (Active, Chart.Active, Chart.Homing);
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Home,
             Target => 0);
@@ -305,17 +265,9 @@ is
          Box.Order_Z_Sent := True;
       end Enter_Homing;
 
-      procedure Enter_Travelling
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Active, Chart.Travelling)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Travelling is
       begin
-         Active := Chart.Moved (Active, Chart.Active, Chart.Travelling);
+         Active := Moved (Active, Chart.Active, Chart.Travelling);
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Move,
             Target => Ins.Command.Value.X);
@@ -330,34 +282,16 @@ is
          Box.Order_Z_Sent := True;
       end Enter_Travelling;
 
-      procedure Enter_Departing
-      with
-        Post =>
-          Self.Leaf = Mission_States.Departing
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Travelling, Chart.Departing)
-          and then Self.Timers (1) = Ravenchart.Timers.Started (5)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Departing is
       begin
          Self.Leaf := Mission_States.Departing;
          Ravenchart.Timers.Arm (Self.Timers (1), 5);
-         Active := Chart.Moved (Active, Chart.Travelling, Chart.Departing);
+         Active := Moved (Active, Chart.Travelling, Chart.Departing);
       end Enter_Departing;
 
-      procedure Enter_Stopped
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Stopped)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Stopped is
       begin
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Stopped);
+         Active := Moved (Active, Chart.Nowhere, Chart.Stopped);
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Halt,
             Target => 0);
@@ -372,21 +306,11 @@ is
          Box.Order_Z_Sent := True;
       end Enter_Stopped;
 
-      procedure Enter_Recovering
-      with
-        Post =>
-          Self.Leaf = Mission_States.Recovering
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Stopped, Chart.Recovering)
-          and then Self.Timers (2) = Ravenchart.Timers.Started (10)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Recovering is
       begin
          Self.Leaf := Mission_States.Recovering;
          Ravenchart.Timers.Arm (Self.Timers (2), 10);
-         Active := Chart.Moved (Active, Chart.Stopped, Chart.Recovering);
+         Active := Moved (Active, Chart.Stopped, Chart.Recovering);
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
             Target => 0);
@@ -404,72 +328,71 @@ is
       case Chosen is
          when Initial_Entry =>
             Self.Started := True;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Waiting);
+            Active := Moved (Active, Chart.Nowhere, Chart.Waiting);
             Self.Leaf := Mission_States.Waiting;
          when Under_Way =>
             Exit_Departing;
-            Active :=
-              Chart.Moved (Active, Chart.Travelling, Chart.Under_Way);
+            Active := Moved (Active, Chart.Travelling, Chart.Under_Way);
             Self.Leaf := Mission_States.Under_Way;
          when Arrived =>
-            Active := Chart.Moved (Active, Chart.Under_Way, Chart.Ready);
+            Active := Moved (Active, Chart.Under_Way, Chart.Ready);
             Self.Leaf := Mission_States.Ready;
          when Home =>
-            Active := Chart.Moved (Active, Chart.Waiting, Chart.Active);
+            Active := Moved (Active, Chart.Waiting, Chart.Active);
             Enter_Homing;
          when Home_Again =>
-            Active := Chart.Moved (Active, Chart.Ready, Chart.Active);
+            Active := Moved (Active, Chart.Ready, Chart.Active);
             Enter_Homing;
          when Homed =>
-            Active := Chart.Moved (Active, Chart.Homing, Chart.Ready);
+            Active := Moved (Active, Chart.Homing, Chart.Ready);
             Self.Leaf := Mission_States.Ready;
          when Move =>
-            Active := Chart.Moved (Active, Chart.Ready, Chart.Active);
+            Active := Moved (Active, Chart.Ready, Chart.Active);
             Enter_Travelling;
             Enter_Departing;
          when Halt =>
             Leave_Travelling;
-            Active := Chart.Moved (Active, Chart.Travelling, Chart.Nowhere);
+            Active := Moved (Active, Chart.Travelling, Chart.Nowhere);
             Enter_Stopped;
-            Active := Chart.Moved (Active, Chart.Stopped, Chart.Failed);
+            Active := Moved (Active, Chart.Stopped, Chart.Failed);
             Self.Leaf := Mission_States.Failed;
          when Halt_Homing =>
-            Active := Chart.Moved (Active, Chart.Homing, Chart.Nowhere);
+            Active := Moved (Active, Chart.Homing, Chart.Nowhere);
             Enter_Stopped;
-            Active := Chart.Moved (Active, Chart.Stopped, Chart.Failed);
+            Active := Moved (Active, Chart.Stopped, Chart.Failed);
             Self.Leaf := Mission_States.Failed;
          when Shut_Down_Failed =>
-            Active := Chart.Moved (Active, Chart.Failed, Chart.Shut_Down);
+            Active := Moved (Active, Chart.Failed, Chart.Shut_Down);
             Self.Leaf := Mission_States.Shut_Down;
          when Recover =>
-            Active := Chart.Moved (Active, Chart.Failed, Chart.Stopped);
+            Active := Moved (Active, Chart.Failed, Chart.Stopped);
             Enter_Recovering;
          when Recovered =>
             Exit_Recovering;
-            Active := Chart.Moved (Active, Chart.Stopped, Chart.Waiting);
+            Active := Moved (Active, Chart.Stopped, Chart.Waiting);
             Self.Leaf := Mission_States.Waiting;
          when Not_Recovered =>
             Exit_Recovering;
-            Active := Chart.Moved (Active, Chart.Stopped, Chart.Failed);
+            Active := Moved (Active, Chart.Stopped, Chart.Failed);
             Self.Leaf := Mission_States.Failed;
          when Shut_Down_Recovering =>
             Exit_Recovering;
-            Active := Chart.Moved (Active, Chart.Stopped, Chart.Shut_Down);
+            Active := Moved (Active, Chart.Stopped, Chart.Shut_Down);
             Self.Leaf := Mission_States.Shut_Down;
          when Joint_Failed | Joint_Lost =>
             Leave_Active;
-            Active := Chart.Moved (Active, Chart.Active, Chart.Nowhere);
+            Active := Moved (Active, Chart.Active, Chart.Nowhere);
             Enter_Stopped;
-            Active := Chart.Moved (Active, Chart.Stopped, Chart.Failed);
+            Active := Moved (Active, Chart.Stopped, Chart.Failed);
             Self.Leaf := Mission_States.Failed;
          when Shut_Down =>
             Leave_Active;
-            Active := Chart.Moved (Active, Chart.Active, Chart.Nowhere);
+            Active := Moved (Active, Chart.Active, Chart.Nowhere);
             Enter_Stopped;
-            Active := Chart.Moved (Active, Chart.Stopped, Chart.Shut_Down);
+            Active := Moved (Active, Chart.Stopped, Chart.Shut_Down);
             Self.Leaf := Mission_States.Shut_Down;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

@@ -2,9 +2,6 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-pragma Ada_2022;
-pragma Warnings (Off, "*array aggregate using*");
-
 package body Crossing_System.Crossing.Lights
 with SPARK_Mode
 is
@@ -110,30 +107,22 @@ is
          Waiting, Walking, Leaving, Blinking, Working, Red, Green,
          Dont_Walk, On_The_Road, Disorder);
 
-      function Innermost_Cars
-        (Place : Lights_States.Configuration)
-        return Node is
-        (if Place.Top = Lights_States.Working
-            then Node'Val (Lights_States.Cars_Leaf'Pos (Place.In_Cars) + 1)
-         else Nowhere);
-
-      function Innermost_Walkers
-        (Place : Lights_States.Configuration)
-        return Node is
-        (if Place.Top = Lights_States.Working
+      function Innermost_Cars (Self : Region) return Node is
+        (if Self.Started and then Self.Place.Top = Lights_States.Working
             then Node'Val
-                 (Lights_States.Walkers_Leaf'Pos (Place.In_Walkers) + 7)
+                 (Lights_States.Cars_Leaf'Pos (Self.Place.In_Cars) + 1)
          else Nowhere);
 
-      function Innermost_Top
-        (Place : Lights_States.Configuration)
-        return Node is
-        (Node'Val (Lights_States.Leaf'Pos (Place.Top) + 11));
+      function Innermost_Walkers (Self : Region) return Node is
+        (if Self.Started and then Self.Place.Top = Lights_States.Working
+            then Node'Val
+                 (Lights_States.Walkers_Leaf'Pos (Self.Place.In_Walkers) + 7)
+         else Nowhere);
 
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost_Top (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Lights_States.Leaf'Pos (Self.Place.Top) + 11)
+         else Nowhere);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -169,354 +158,154 @@ is
       end if;
    end Poll;
 
+   function Is_Ready
+     (Self : Region; Item : Event; Chosen : Firing)
+     return Boolean is
+     (if Chosen = Initial_Entry
+         then not Self.Started and then Self.Data = Initial_Data
+      else Self.Started
+         and then In_Source (Chosen, Self.Place)
+         and then Is_Safe (Self.Place, Self.Data)
+         and then Guards_Hold (Chosen, Self.Data, Item)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Lasting
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Timers (1)
+      = Timer_After (1, Domain_Of (Chosen), Before.Place, Self.Place,
+           Before.Timers (1))
+      and then Self.Timers (2)
+        = Timer_After (2, Domain_Of (Chosen), Before.Place, Self.Place,
+             Before.Timers (2))
+      and then Self.Timers (3)
+        = Timer_After (3, Domain_Of (Chosen), Before.Place, Self.Place,
+             Before.Timers (3))
+      and then Self.Timers (4)
+        = Timer_After (4, Domain_Of (Chosen), Before.Place, Self.Place,
+             Before.Timers (4))
+      and then Self.Timers (5)
+        = Timer_After (5, Domain_Of (Chosen), Before.Place, Self.Place,
+             Before.Timers (5))
+      and then Self.Timers (6)
+        = Timer_After (6, Domain_Of (Chosen), Before.Place, Self.Place,
+             Before.Timers (6))
+      and then Self.Timers (7)
+        = Timer_After (7, Domain_Of (Chosen), Before.Place, Self.Place,
+             Before.Timers (7))) with Ghost;
+   --  Are time-outs, memory and kept events after it as declared?
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started
+      and then Self.Place = Target (Chosen, Before.Place)
+      and then Is_Lasting (Before, Self, Chosen)
+      and then Is_Safe (Self.Place, Self.Data)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire (Self : in out Region; Item : Event; Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started and then Self.Data = Initial_Data
-        else Self.Started
-           and then In_Source (Chosen, Self.Place)
-           and then Is_Safe (Self.Place, Self.Data)
-           and then Guards_Hold (Chosen, Self.Data, Item)),
-     Post =>
-       Self.Started
-       and then Self.Place = Target (Chosen, Self.Place'Old)
-       and then Self.Timers (1)
-         = Timer_After (1, Domain_Of (Chosen), Self.Place'Old, Self.Place,
-              Self.Timers'Old (1))
-       and then Self.Timers (2)
-         = Timer_After (2, Domain_Of (Chosen), Self.Place'Old, Self.Place,
-              Self.Timers'Old (2))
-       and then Self.Timers (3)
-         = Timer_After (3, Domain_Of (Chosen), Self.Place'Old, Self.Place,
-              Self.Timers'Old (3))
-       and then Self.Timers (4)
-         = Timer_After (4, Domain_Of (Chosen), Self.Place'Old, Self.Place,
-              Self.Timers'Old (4))
-       and then Self.Timers (5)
-         = Timer_After (5, Domain_Of (Chosen), Self.Place'Old, Self.Place,
-              Self.Timers'Old (5))
-       and then Self.Timers (6)
-         = Timer_After (6, Domain_Of (Chosen), Self.Place'Old, Self.Place,
-              Self.Timers'Old (6))
-       and then Self.Timers (7)
-         = Timer_After (7, Domain_Of (Chosen), Self.Place'Old, Self.Place,
-              Self.Timers'Old (7))
-       and then Is_Safe (Self.Place, Self.Data)
+     Pre => Is_Ready (Self, Item, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active_Cars : Chart.Node :=
-        (if Self.Started then Chart.Innermost_Cars (Self.Place)
-         else Chart.Nowhere)
-      with Ghost;
+      Active_Cars : Chart.Node := Chart.Innermost_Cars (Self) with Ghost;
       Active_Walkers : Chart.Node :=
-        (if Self.Started then Chart.Innermost_Walkers (Self.Place)
-         else Chart.Nowhere)
+        Chart.Innermost_Walkers (Self)
       with Ghost;
-      Active_Top : Chart.Node :=
-        (if Self.Started then Chart.Innermost_Top (Self.Place)
-         else Chart.Nowhere)
-      with Ghost;
+      Active_Top : Chart.Node := Chart.Innermost_Top (Self) with Ghost;
 
-      function Data_After_Exit_Held (Data : Variables) return Variables is
-        ((Data with delta Cars_Stopped => False)) with Ghost;
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node;
+         In_Order    : Boolean := True)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node and then In_Order
+            then To_Node
+         else Chart.Disorder) with Ghost;
 
-      function Data_After_Exit_On_The_Road
-        (Data : Variables)
-        return Variables is
-        ((Data with delta Road_Free => True)) with Ghost;
-
-      function Data_After_Leave_Red (Data : Variables) return Variables is
-        (case Lights_States.Red'(Self.Place.In_Cars) is
-           when Lights_States.Stopping => Data,
-           when Lights_States.Held => Data_After_Exit_Held (Data))
-      with
-        Ghost,
-        Pre =>
-          Self.Place.Top = Lights_States.Working
-          and then Self.Place.In_Cars in Lights_States.Red;
-
-      function Data_After_Leave_Cars (Data : Variables) return Variables is
-        (case Self.Place.In_Cars is
-           when Lights_States.Red => Data_After_Leave_Red (Data),
-           when Lights_States.Red_Yellow => Data,
-           when Lights_States.Green => Data,
-           when Lights_States.Yellow => Data)
-      with Ghost, Pre => Self.Place.Top = Lights_States.Working;
-
-      function Data_After_Leave_Walkers (Data : Variables) return Variables is
-        (case Self.Place.In_Walkers is
-           when Lights_States.Dont_Walk => Data,
-           when Lights_States.On_The_Road =>
-              Data_After_Exit_On_The_Road (Data))
-      with Ghost, Pre => Self.Place.Top = Lights_States.Working;
-
-      function Data_After_Enter_Blinking (Data : Variables) return Variables is
-        ((Data with delta
-            Cars_See => Crossing_System.Slow,
-            Walkers_See => Crossing_System.Dark)) with Ghost;
-
-      function Data_After_Enter_Red (Data : Variables) return Variables is
-        ((Data with delta Cars_See => Crossing_System.Stop)) with Ghost;
-
-      function Data_After_Enter_Held (Data : Variables) return Variables is
-        ((Data with delta Cars_Stopped => True)) with Ghost;
-
-      function Data_After_Enter_Red_Yellow
-        (Data : Variables)
-        return Variables is
-        ((Data with delta Cars_See => Crossing_System.Ready)) with Ghost;
-
-      function Data_After_Enter_Green (Data : Variables) return Variables is
-        ((Data with delta Cars_See => Crossing_System.Go)) with Ghost;
-
-      function Data_After_Enter_Yellow (Data : Variables) return Variables is
-        ((Data with delta Cars_See => Crossing_System.Slow)) with Ghost;
-
-      function Data_After_Enter_Dont_Walk
-        (Data : Variables)
-        return Variables is
-        ((Data with delta Walkers_See => Crossing_System.Wait)) with Ghost;
-
-      function Data_After_Enter_Nobody (Data : Variables) return Variables is
-        ((Data with delta Requested => False)) with Ghost;
-
-      function Data_After_Enter_Waiting (Data : Variables) return Variables is
-        ((Data with delta Requested => True)) with Ghost;
-
-      function Data_After_Enter_On_The_Road
-        (Data : Variables)
-        return Variables is
-        ((Data with delta Road_Free => False)) with Ghost;
-
-      function Data_After_Enter_Walking (Data : Variables) return Variables is
-        ((Data with delta Walkers_See => Crossing_System.Walk)) with Ghost;
-
-      function Data_After_Enter_Leaving (Data : Variables) return Variables is
-        ((Data with delta Walkers_See => Crossing_System.Wait)) with Ghost;
-
-      procedure Exit_Blinking
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Blinking, Chart.Nowhere)
-          and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Blinking is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Blinking, Chart.Nowhere);
+         Active_Top := Moved (Active_Top, Chart.Blinking, Chart.Nowhere);
       end Exit_Blinking;
 
-      procedure Exit_Stopping
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Cars
-            = Chart.Moved (Active_Cars'Old, Chart.Stopping, Chart.Red)
-          and then Self.Timers (2) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Stopping is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active_Cars :=
-           Chart.Moved (Active_Cars, Chart.Stopping, Chart.Red);
+         Active_Cars := Moved (Active_Cars, Chart.Stopping, Chart.Red);
       end Exit_Stopping;
 
-      procedure Exit_Held
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Cars
-            = Chart.Moved (Active_Cars'Old, Chart.Held, Chart.Red)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Exit_Held (Self.Data'Old)
-      is
+      procedure Exit_Held is
       begin
          Self.Data.Cars_Stopped := False;
-         Active_Cars := Chart.Moved (Active_Cars, Chart.Held, Chart.Red);
+         Active_Cars := Moved (Active_Cars, Chart.Held, Chart.Red);
       end Exit_Held;
 
-      procedure Exit_Red_Yellow
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Cars
-            = Chart.Moved (Active_Cars'Old, Chart.Red_Yellow, Chart.Nowhere)
-          and then Self.Timers (3) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Red_Yellow is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
          Active_Cars :=
-           Chart.Moved (Active_Cars, Chart.Red_Yellow, Chart.Nowhere);
+           Moved (Active_Cars, Chart.Red_Yellow, Chart.Nowhere);
       end Exit_Red_Yellow;
 
-      procedure Exit_Least
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Cars
-            = Chart.Moved (Active_Cars'Old, Chart.Least, Chart.Green)
-          and then Self.Timers (4) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 4 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Least is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (4));
-         Active_Cars := Chart.Moved (Active_Cars, Chart.Least, Chart.Green);
+         Active_Cars := Moved (Active_Cars, Chart.Least, Chart.Green);
       end Exit_Least;
 
-      procedure Exit_Yellow
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Cars
-            = Chart.Moved (Active_Cars'Old, Chart.Yellow, Chart.Nowhere)
-          and then Self.Timers (5) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 5 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Yellow is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (5));
-         Active_Cars :=
-           Chart.Moved (Active_Cars, Chart.Yellow, Chart.Nowhere);
+         Active_Cars := Moved (Active_Cars, Chart.Yellow, Chart.Nowhere);
       end Exit_Yellow;
 
-      procedure Exit_On_The_Road
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Walkers
-            = Chart.Moved (Active_Walkers'Old, Chart.On_The_Road,
-                 Chart.Nowhere)
-          and then Self.Timers (7) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 7 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Exit_On_The_Road (Self.Data'Old)
-      is
+      procedure Exit_On_The_Road is
       begin
          Self.Data.Road_Free := True;
          Ravenchart.Timers.Disarm (Self.Timers (7));
          Active_Walkers :=
-           Chart.Moved (Active_Walkers, Chart.On_The_Road, Chart.Nowhere);
+           Moved (Active_Walkers, Chart.On_The_Road, Chart.Nowhere);
       end Exit_On_The_Road;
 
-      procedure Exit_Walking
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Walkers
-            = Chart.Moved (Active_Walkers'Old, Chart.Walking,
-                 Chart.On_The_Road)
-          and then Self.Timers (6) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 6 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Walking is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (6));
          Active_Walkers :=
-           Chart.Moved (Active_Walkers, Chart.Walking, Chart.On_The_Road);
+           Moved (Active_Walkers, Chart.Walking, Chart.On_The_Road);
       end Exit_Walking;
 
-      procedure Leave_On_The_Road
-      with
-        Pre =>
-          Self.Place.Top = Lights_States.Working
-          and then Self.Place.In_Walkers in Lights_States.On_The_Road
-          and then Active_Walkers = Chart.Innermost_Walkers (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Walkers = Chart.On_The_Road
-          and then Self.Timers (6)
-            = (if Self.Place.Top = Lights_States.Working
-                  and then Self.Place.In_Walkers = Lights_States.Walking
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (6))
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 6 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Leave_On_The_Road is
       begin
          case Lights_States.On_The_Road'(Self.Place.In_Walkers) is
             when Lights_States.Walking =>
                Exit_Walking;
             when Lights_States.Leaving =>
                Active_Walkers :=
-                 Chart.Moved (Active_Walkers, Chart.Leaving,
-                    Chart.On_The_Road);
+                 Moved (Active_Walkers, Chart.Leaving, Chart.On_The_Road);
          end case;
       end Leave_On_The_Road;
 
-      procedure Leave_Green
-      with
-        Pre =>
-          Self.Place.Top = Lights_States.Working
-          and then Self.Place.In_Cars in Lights_States.Green
-          and then Active_Cars = Chart.Innermost_Cars (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Cars = Chart.Green
-          and then Self.Timers (4)
-            = (if Self.Place.Top = Lights_States.Working
-                  and then Self.Place.In_Cars = Lights_States.Least
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (4))
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 4 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Leave_Green is
       begin
          case Lights_States.Green'(Self.Place.In_Cars) is
             when Lights_States.Least =>
                Exit_Least;
             when Lights_States.Longer =>
                Active_Cars :=
-                 Chart.Moved (Active_Cars, Chart.Longer, Chart.Green);
+                 Moved (Active_Cars, Chart.Longer, Chart.Green);
          end case;
       end Leave_Green;
 
-      procedure Leave_Red
-      with
-        Pre =>
-          Self.Place.Top = Lights_States.Working
-          and then Self.Place.In_Cars in Lights_States.Red
-          and then Active_Cars = Chart.Innermost_Cars (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Cars = Chart.Red
-          and then Self.Timers (2)
-            = (if Self.Place.Top = Lights_States.Working
-                  and then Self.Place.In_Cars = Lights_States.Stopping
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (2))
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Leave_Red (Self.Data'Old)
-      is
+      procedure Leave_Red is
       begin
          case Lights_States.Red'(Self.Place.In_Cars) is
             when Lights_States.Stopping =>
@@ -526,398 +315,154 @@ is
          end case;
       end Leave_Red;
 
-      procedure Leave_Cars
-      with
-        Pre =>
-          Self.Place.Top = Lights_States.Working
-          and then Active_Cars = Chart.Innermost_Cars (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Cars = Chart.Nowhere
-          and then Self.Timers (2)
-            = (if Self.Place.Top = Lights_States.Working
-                  and then Self.Place.In_Cars = Lights_States.Stopping
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (2))
-          and then Self.Timers (3)
-            = (if Self.Place.Top = Lights_States.Working
-                  and then Self.Place.In_Cars = Lights_States.Red_Yellow
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (3))
-          and then Self.Timers (4)
-            = (if Self.Place.Top = Lights_States.Working
-                  and then Self.Place.In_Cars = Lights_States.Least
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (4))
-          and then Self.Timers (5)
-            = (if Self.Place.Top = Lights_States.Working
-                  and then Self.Place.In_Cars = Lights_States.Yellow
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (5))
-          and then (for all I in Self.Timers'Range =>
-                (if I not in 2 | 3 | 4 | 5
-                    then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Leave_Cars (Self.Data'Old)
-      is
+      procedure Leave_Cars is
       begin
          case Self.Place.In_Cars is
             when Lights_States.Red =>
                Leave_Red;
-               Active_Cars :=
-                 Chart.Moved (Active_Cars, Chart.Red, Chart.Nowhere);
+               Active_Cars := Moved (Active_Cars, Chart.Red, Chart.Nowhere);
             when Lights_States.Red_Yellow =>
                Exit_Red_Yellow;
             when Lights_States.Green =>
                Leave_Green;
                Active_Cars :=
-                 Chart.Moved (Active_Cars, Chart.Green, Chart.Nowhere);
+                 Moved (Active_Cars, Chart.Green, Chart.Nowhere);
             when Lights_States.Yellow =>
                Exit_Yellow;
          end case;
       end Leave_Cars;
 
-      procedure Leave_Walkers
-      with
-        Pre =>
-          Self.Place.Top = Lights_States.Working
-          and then Active_Walkers = Chart.Innermost_Walkers (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Walkers = Chart.Nowhere
-          and then Self.Timers (6)
-            = (if Self.Place.Top = Lights_States.Working
-                  and then Self.Place.In_Walkers = Lights_States.Walking
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (6))
-          and then Self.Timers (7)
-            = (if Self.Place.Top = Lights_States.Working
-                  and then Self.Place.In_Walkers
-                    in Lights_States.On_The_Road
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (7))
-          and then (for all I in Self.Timers'Range =>
-                (if I not in 6 | 7
-                    then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Leave_Walkers (Self.Data'Old)
-      is
+      procedure Leave_Walkers is
       begin
          case Self.Place.In_Walkers is
             when Lights_States.Dont_Walk =>
                Active_Walkers :=
-                 (if Self.Place.Top = Lights_States.Working
-                     and then Self.Place.In_Walkers
-                       in Lights_States.Dont_Walk
-                     then Chart.Moved (Active_Walkers,
-                           Chart.Innermost_Walkers (Self.Place),
-                           Chart.Dont_Walk)
-                  else Chart.Disorder);
+                 Moved (Active_Walkers, Chart.Innermost_Walkers (Self),
+                    Chart.Dont_Walk,
+                    Self.Place.Top = Lights_States.Working
+                    and then Self.Place.In_Walkers
+                      in Lights_States.Dont_Walk);
                Active_Walkers :=
-                 Chart.Moved (Active_Walkers, Chart.Dont_Walk,
-                    Chart.Nowhere);
+                 Moved (Active_Walkers, Chart.Dont_Walk, Chart.Nowhere);
             when Lights_States.On_The_Road =>
                Leave_On_The_Road;
                Exit_On_The_Road;
          end case;
       end Leave_Walkers;
 
-      procedure Enter_Blinking
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta Top => Lights_States.Blinking)
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Blinking)
-          and then Self.Timers (1) = Ravenchart.Timers.Started (5, 5)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_Blinking (Self.Data'Old)
-      is
+      procedure Enter_Blinking is
       begin
          Self.Place.Top := Lights_States.Blinking;
          Ravenchart.Timers.Arm (Self.Timers (1), 5, 5);
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Nowhere, Chart.Blinking);
+         Active_Top := Moved (Active_Top, Chart.Nowhere, Chart.Blinking);
          Self.Data.Cars_See := Crossing_System.Slow;
          Self.Data.Walkers_See := Crossing_System.Dark;
       end Enter_Blinking;
 
-      procedure Enter_Red
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Cars
-            = (if Active_Top = Chart.Working
-                  then Chart.Moved (Active_Cars'Old, Chart.Nowhere,
-                        Chart.Red)
-               else Chart.Disorder)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_Red (Self.Data'Old)
-      is
+      procedure Enter_Red is
       begin
          Active_Cars :=
-           (if Active_Top = Chart.Working
-               then Chart.Moved (Active_Cars, Chart.Nowhere, Chart.Red)
-            else Chart.Disorder);
+           Moved (Active_Cars, Chart.Nowhere, Chart.Red,
+              Active_Top = Chart.Working);
          Self.Data.Cars_See := Crossing_System.Stop;
       end Enter_Red;
 
-      procedure Enter_Stopping
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta In_Cars => Lights_States.Stopping)
-          and then Active_Cars
-            = Chart.Moved (Active_Cars'Old, Chart.Red, Chart.Stopping)
-          and then Self.Timers (2) = Ravenchart.Timers.Started (20)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Enter_Stopping is
       begin
          Self.Place.In_Cars := Lights_States.Stopping;
          Ravenchart.Timers.Arm (Self.Timers (2), 20);
-         Active_Cars :=
-           Chart.Moved (Active_Cars, Chart.Red, Chart.Stopping);
+         Active_Cars := Moved (Active_Cars, Chart.Red, Chart.Stopping);
       end Enter_Stopping;
 
-      procedure Enter_Held
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta In_Cars => Lights_States.Held)
-          and then Active_Cars
-            = Chart.Moved (Active_Cars'Old, Chart.Red, Chart.Held)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_Held (Self.Data'Old)
-      is
+      procedure Enter_Held is
       begin
          Self.Place.In_Cars := Lights_States.Held;
-         Active_Cars := Chart.Moved (Active_Cars, Chart.Red, Chart.Held);
+         Active_Cars := Moved (Active_Cars, Chart.Red, Chart.Held);
          Self.Data.Cars_Stopped := True;
       end Enter_Held;
 
-      procedure Enter_Red_Yellow
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta In_Cars => Lights_States.Red_Yellow)
-          and then Active_Cars
-            = (if Active_Top = Chart.Working
-                  then Chart.Moved (Active_Cars'Old, Chart.Nowhere,
-                        Chart.Red_Yellow)
-               else Chart.Disorder)
-          and then Self.Timers (3) = Ravenchart.Timers.Started (10)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_Red_Yellow (Self.Data'Old)
-      is
+      procedure Enter_Red_Yellow is
       begin
          Self.Place.In_Cars := Lights_States.Red_Yellow;
          Ravenchart.Timers.Arm (Self.Timers (3), 10);
          Active_Cars :=
-           (if Active_Top = Chart.Working
-               then Chart.Moved (Active_Cars, Chart.Nowhere,
-                     Chart.Red_Yellow)
-            else Chart.Disorder);
+           Moved (Active_Cars, Chart.Nowhere, Chart.Red_Yellow,
+              Active_Top = Chart.Working);
          Self.Data.Cars_See := Crossing_System.Ready;
       end Enter_Red_Yellow;
 
-      procedure Enter_Green
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Cars
-            = (if Active_Top = Chart.Working
-                  then Chart.Moved (Active_Cars'Old, Chart.Nowhere,
-                        Chart.Green)
-               else Chart.Disorder)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_Green (Self.Data'Old)
-      is
+      procedure Enter_Green is
       begin
          Active_Cars :=
-           (if Active_Top = Chart.Working
-               then Chart.Moved (Active_Cars, Chart.Nowhere, Chart.Green)
-            else Chart.Disorder);
+           Moved (Active_Cars, Chart.Nowhere, Chart.Green,
+              Active_Top = Chart.Working);
          Self.Data.Cars_See := Crossing_System.Go;
       end Enter_Green;
 
-      procedure Enter_Least
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta In_Cars => Lights_States.Least)
-          and then Active_Cars
-            = Chart.Moved (Active_Cars'Old, Chart.Green, Chart.Least)
-          and then Self.Timers (4) = Ravenchart.Timers.Started (100)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 4 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Enter_Least is
       begin
          Self.Place.In_Cars := Lights_States.Least;
          Ravenchart.Timers.Arm (Self.Timers (4), 100);
-         Active_Cars := Chart.Moved (Active_Cars, Chart.Green, Chart.Least);
+         Active_Cars := Moved (Active_Cars, Chart.Green, Chart.Least);
       end Enter_Least;
 
-      procedure Enter_Yellow
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta In_Cars => Lights_States.Yellow)
-          and then Active_Cars
-            = (if Active_Top = Chart.Working
-                  then Chart.Moved (Active_Cars'Old, Chart.Nowhere,
-                        Chart.Yellow)
-               else Chart.Disorder)
-          and then Self.Timers (5) = Ravenchart.Timers.Started (30)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 5 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_Yellow (Self.Data'Old)
-      is
+      procedure Enter_Yellow is
       begin
          Self.Place.In_Cars := Lights_States.Yellow;
          Ravenchart.Timers.Arm (Self.Timers (5), 30);
          Active_Cars :=
-           (if Active_Top = Chart.Working
-               then Chart.Moved (Active_Cars, Chart.Nowhere, Chart.Yellow)
-            else Chart.Disorder);
+           Moved (Active_Cars, Chart.Nowhere, Chart.Yellow,
+              Active_Top = Chart.Working);
          Self.Data.Cars_See := Crossing_System.Slow;
       end Enter_Yellow;
 
-      procedure Enter_Dont_Walk
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Walkers
-            = (if Active_Top = Chart.Working
-                  then Chart.Moved (Active_Walkers'Old, Chart.Nowhere,
-                        Chart.Dont_Walk)
-               else Chart.Disorder)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_Dont_Walk (Self.Data'Old)
-      is
+      procedure Enter_Dont_Walk is
       begin
          Active_Walkers :=
-           (if Active_Top = Chart.Working
-               then Chart.Moved (Active_Walkers, Chart.Nowhere,
-                     Chart.Dont_Walk)
-            else Chart.Disorder);
+           Moved (Active_Walkers, Chart.Nowhere, Chart.Dont_Walk,
+              Active_Top = Chart.Working);
          Self.Data.Walkers_See := Crossing_System.Wait;
       end Enter_Dont_Walk;
 
-      procedure Enter_Nobody
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta In_Walkers => Lights_States.Nobody)
-          and then Active_Walkers
-            = Chart.Moved (Active_Walkers'Old, Chart.Dont_Walk,
-                 Chart.Nobody)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_Nobody (Self.Data'Old)
-      is
+      procedure Enter_Nobody is
       begin
          Self.Place.In_Walkers := Lights_States.Nobody;
          Active_Walkers :=
-           Chart.Moved (Active_Walkers, Chart.Dont_Walk, Chart.Nobody);
+           Moved (Active_Walkers, Chart.Dont_Walk, Chart.Nobody);
          Self.Data.Requested := False;
       end Enter_Nobody;
 
-      procedure Enter_Waiting
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta In_Walkers => Lights_States.Waiting)
-          and then Active_Walkers
-            = Chart.Moved (Active_Walkers'Old, Chart.Dont_Walk,
-                 Chart.Waiting)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_Waiting (Self.Data'Old)
-      is
+      procedure Enter_Waiting is
       begin
          Self.Place.In_Walkers := Lights_States.Waiting;
          Active_Walkers :=
-           Chart.Moved (Active_Walkers, Chart.Dont_Walk, Chart.Waiting);
+           Moved (Active_Walkers, Chart.Dont_Walk, Chart.Waiting);
          Self.Data.Requested := True;
       end Enter_Waiting;
 
-      procedure Enter_On_The_Road
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Walkers
-            = (if Active_Top = Chart.Working
-                  then Chart.Moved (Active_Walkers'Old, Chart.Nowhere,
-                        Chart.On_The_Road)
-               else Chart.Disorder)
-          and then Self.Timers (7) = Ravenchart.Timers.Started (100)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 7 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_On_The_Road (Self.Data'Old)
-      is
+      procedure Enter_On_The_Road is
       begin
          Ravenchart.Timers.Arm (Self.Timers (7), 100);
          Active_Walkers :=
-           (if Active_Top = Chart.Working
-               then Chart.Moved (Active_Walkers, Chart.Nowhere,
-                     Chart.On_The_Road)
-            else Chart.Disorder);
+           Moved (Active_Walkers, Chart.Nowhere, Chart.On_The_Road,
+              Active_Top = Chart.Working);
          Self.Data.Road_Free := False;
       end Enter_On_The_Road;
 
-      procedure Enter_Walking
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta In_Walkers => Lights_States.Walking)
-          and then Active_Walkers
-            = Chart.Moved (Active_Walkers'Old, Chart.On_The_Road,
-                 Chart.Walking)
-          and then Self.Timers (6) = Ravenchart.Timers.Started (60)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 6 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_Walking (Self.Data'Old)
-      is
+      procedure Enter_Walking is
       begin
          Self.Place.In_Walkers := Lights_States.Walking;
          Ravenchart.Timers.Arm (Self.Timers (6), 60);
          Active_Walkers :=
-           Chart.Moved (Active_Walkers, Chart.On_The_Road, Chart.Walking);
+           Moved (Active_Walkers, Chart.On_The_Road, Chart.Walking);
          Self.Data.Walkers_See := Crossing_System.Walk;
       end Enter_Walking;
 
-      procedure Enter_Leaving
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta In_Walkers => Lights_States.Leaving)
-          and then Active_Walkers
-            = Chart.Moved (Active_Walkers'Old, Chart.On_The_Road,
-                 Chart.Leaving)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Data = Data_After_Enter_Leaving (Self.Data'Old)
-      is
+      procedure Enter_Leaving is
       begin
          Self.Place.In_Walkers := Lights_States.Leaving;
          Active_Walkers :=
-           Chart.Moved (Active_Walkers, Chart.On_The_Road, Chart.Leaving);
+           Moved (Active_Walkers, Chart.On_The_Road, Chart.Leaving);
          Self.Data.Walkers_See := Crossing_System.Wait;
       end Enter_Leaving;
    begin
@@ -930,17 +475,14 @@ is
             Enter_Held;
          when Get_Ready =>
             Exit_Held;
-            Active_Cars :=
-              Chart.Moved (Active_Cars, Chart.Red, Chart.Nowhere);
+            Active_Cars := Moved (Active_Cars, Chart.Red, Chart.Nowhere);
             Enter_Red_Yellow;
          when Long_Enough =>
             Exit_Least;
-            Active_Cars :=
-              Chart.Moved (Active_Cars, Chart.Green, Chart.Longer);
+            Active_Cars := Moved (Active_Cars, Chart.Green, Chart.Longer);
             Self.Place.In_Cars := Lights_States.Longer;
          when Slow_Down =>
-            Active_Cars :=
-              Chart.Moved (Active_Cars, Chart.Longer, Chart.Nowhere);
+            Active_Cars := Moved (Active_Cars, Chart.Longer, Chart.Nowhere);
             Enter_Yellow;
          when Start =>
             Exit_Red_Yellow;
@@ -952,11 +494,11 @@ is
             Enter_Stopping;
          when Ask =>
             Active_Walkers :=
-              Chart.Moved (Active_Walkers, Chart.Nobody, Chart.Dont_Walk);
+              Moved (Active_Walkers, Chart.Nobody, Chart.Dont_Walk);
             Enter_Waiting;
          when Walk =>
             Active_Walkers :=
-              Chart.Moved (Active_Walkers, Chart.Waiting, Chart.Nowhere);
+              Moved (Active_Walkers, Chart.Waiting, Chart.Nowhere);
             Enter_On_The_Road;
             Enter_Walking;
          when Last_Call =>
@@ -970,11 +512,9 @@ is
          when Into_Service =>
             Exit_Blinking;
             Active_Top :=
-              (if Active_Cars = Chart.Nowhere
-                  and then Active_Walkers = Chart.Nowhere
-                  then Chart.Moved (Active_Top, Chart.Nowhere,
-                        Chart.Working)
-               else Chart.Disorder);
+              Moved (Active_Top, Chart.Nowhere, Chart.Working,
+                 Active_Cars = Chart.Nowhere
+                 and then Active_Walkers = Chart.Nowhere);
             Self.Place.Top := Lights_States.Working;
             Self.Place.In_Cars := Lights_States.Stopping;
             Self.Place.In_Walkers := Lights_States.Nobody;
@@ -986,11 +526,9 @@ is
             Leave_Cars;
             Leave_Walkers;
             Active_Top :=
-              (if Active_Cars = Chart.Nowhere
-                  and then Active_Walkers = Chart.Nowhere
-                  then Chart.Moved (Active_Top, Chart.Working,
-                        Chart.Nowhere)
-               else Chart.Disorder);
+              Moved (Active_Top, Chart.Working, Chart.Nowhere,
+                 Active_Cars = Chart.Nowhere
+                 and then Active_Walkers = Chart.Nowhere);
             Enter_Blinking;
          when Blink =>
             Self.Data.Cars_See :=
@@ -999,9 +537,9 @@ is
                else Crossing_System.Slow);
       end case;
       pragma Assert
-        (Active_Cars = Chart.Innermost_Cars (Self.Place)
-         and then Active_Walkers = Chart.Innermost_Walkers (Self.Place)
-         and then Active_Top = Chart.Innermost_Top (Self.Place));
+        (Active_Cars = Chart.Innermost_Cars (Self)
+         and then Active_Walkers = Chart.Innermost_Walkers (Self)
+         and then Active_Top = Chart.Innermost_Top (Self));
    end Fire;
 
    procedure Step
@@ -1013,14 +551,7 @@ is
 
       procedure Fire_Whole (T : Firing)
       with
-        Pre =>
-          (if T = Initial_Entry
-              then not Self.Started and then Self.Data = Initial_Data
-           else Self.Started
-              and then In_Source (T, Self.Place)
-              and then Is_Safe (Self.Place, Self.Data)
-              and then Guards_Hold (T, Self.Data, Item))
-          and then Fired.Count <= 2,
+        Pre => Is_Ready (Self, Item, T) and then Fired.Count <= 2,
         Post =>
           Fired.Count = Fired.Count'Old + 1
           and then Self.Started

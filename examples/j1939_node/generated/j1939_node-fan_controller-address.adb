@@ -80,13 +80,10 @@ is
         (Nowhere, Before, Claiming, Claimed, Yielding, Without_Address,
          Contending, Disorder);
 
-      function Innermost (Leaf : Address_States.Leaf) return Node is
-        (Node'Val (Address_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Address_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -114,158 +111,105 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Lasting
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Timers (1)
+      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+           Before.Timers (1))
+      and then Self.Timers (2)
+        = Timer_After (2, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+             Before.Timers (2))
+      and then Self.Timers (3)
+        = Timer_After (3, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+             Before.Timers (3))) with Ghost;
+   --  Are time-outs, memory and kept events after it as declared?
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started
+      and then Self.Leaf = Target (Chosen, Before.Leaf)
+      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire
      (Self   : in out Region;
       Ins    : Inputs;
       Box    : in out Outbox;
       Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started
-       and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
-       and then Self.Timers (1)
-         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (1))
-       and then Self.Timers (2)
-         = Timer_After (2, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (2))
-       and then Self.Timers (3)
-         = Timer_After (3, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (3))
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
-      procedure Exit_Before
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Before, Chart.Nowhere)
-          and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node then To_Node
+         else Chart.Disorder) with Ghost;
+
+      procedure Exit_Before is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Moved (Active, Chart.Before, Chart.Nowhere);
+         Active := Moved (Active, Chart.Before, Chart.Nowhere);
       end Exit_Before;
 
-      procedure Exit_Claiming
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Claiming, Chart.Contending)
-          and then Self.Timers (2) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Exit_Claiming is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active := Chart.Moved (Active, Chart.Claiming, Chart.Contending);
+         Active := Moved (Active, Chart.Claiming, Chart.Contending);
       end Exit_Claiming;
 
-      procedure Exit_Yielding
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Yielding, Chart.Nowhere)
-          and then Self.Timers (3) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Exit_Yielding is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
-         Active := Chart.Moved (Active, Chart.Yielding, Chart.Nowhere);
+         Active := Moved (Active, Chart.Yielding, Chart.Nowhere);
       end Exit_Yielding;
 
-      procedure Leave_Contending
-      with
-        Pre =>
-          Self.Leaf in Address_States.Contending
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Contending
-          and then Self.Timers (2)
-            = (if Self.Leaf = Address_States.Claiming
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (2))
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Leave_Contending is
       begin
          case Address_States.Contending'(Self.Leaf) is
             when Address_States.Claiming =>
                Exit_Claiming;
             when Address_States.Claimed =>
-               Active :=
-                 Chart.Moved (Active, Chart.Claimed, Chart.Contending);
+               Active := Moved (Active, Chart.Claimed, Chart.Contending);
          end case;
       end Leave_Contending;
 
-      procedure Enter_Before
-      with
-        Post =>
-          Self.Leaf = Address_States.Before
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Before)
-          and then Self.Timers (1) = Ravenchart.Timers.Started (20)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Before is
       begin
          Self.Leaf := Address_States.Before;
          Ravenchart.Timers.Arm (Self.Timers (1), 20);
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Before);
+         Active := Moved (Active, Chart.Nowhere, Chart.Before);
       end Enter_Before;
 
-      procedure Enter_Claiming
-      with
-        Post =>
-          Self.Leaf = Address_States.Claiming
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Contending, Chart.Claiming)
-          and then Self.Timers (2) = Ravenchart.Timers.Started (25)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Claiming is
       begin
          Self.Leaf := Address_States.Claiming;
          Ravenchart.Timers.Arm (Self.Timers (2), 25);
-         Active := Chart.Moved (Active, Chart.Contending, Chart.Claiming);
+         Active := Moved (Active, Chart.Contending, Chart.Claiming);
       end Enter_Claiming;
 
-      procedure Enter_Yielding
-      with
-        Post =>
-          Self.Leaf = Address_States.Yielding
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Yielding)
-          and then Self.Timers (3) = Ravenchart.Timers.Started (4)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Yielding is
       begin
          Self.Leaf := Address_States.Yielding;
          Ravenchart.Timers.Arm (Self.Timers (3), 4);
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Yielding);
+         Active := Moved (Active, Chart.Nowhere, Chart.Yielding);
       end Enter_Yielding;
    begin
       case Chosen is
@@ -274,7 +218,7 @@ is
             Enter_Before;
          when Granted =>
             Exit_Claiming;
-            Active := Chart.Moved (Active, Chart.Contending, Chart.Claimed);
+            Active := Moved (Active, Chart.Contending, Chart.Claimed);
             Self.Leaf := Address_States.Claimed;
          when Claim =>
             Exit_Before;
@@ -283,11 +227,11 @@ is
               J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
             Box.Claim_Sent := True;
             pragma Assert (Active = Chart.Nowhere);
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Contending);
+            Active := Moved (Active, Chart.Nowhere, Chart.Contending);
             Enter_Claiming;
          when Yield =>
             Leave_Contending;
-            Active := Chart.Moved (Active, Chart.Contending, Chart.Nowhere);
+            Active := Moved (Active, Chart.Contending, Chart.Nowhere);
             Enter_Yielding;
          when Defend | Tell_All | Tell_Us | Tell_Null =>
             Box.Claim :=
@@ -300,15 +244,13 @@ is
               J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
             Box.Cannot_Claim_Sent := True;
             pragma Assert (Active = Chart.Nowhere);
-            Active :=
-              Chart.Moved (Active, Chart.Nowhere, Chart.Without_Address);
+            Active := Moved (Active, Chart.Nowhere, Chart.Without_Address);
             Self.Leaf := Address_States.Without_Address;
          when Tell_Lost | Tell_Lost_Null =>
-            Active :=
-              Chart.Moved (Active, Chart.Without_Address, Chart.Nowhere);
+            Active := Moved (Active, Chart.Without_Address, Chart.Nowhere);
             Enter_Yielding;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

@@ -44,13 +44,10 @@ is
    is
       type Node is (Nowhere, Silent, Sending, Disorder);
 
-      function Innermost (Leaf : Answers_States.Leaf) return Node is
-        (Node'Val (Answers_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Answers_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -74,69 +71,76 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Lasting
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Timers (1)
+      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+           Before.Timers (1))) with Ghost;
+   --  Are time-outs, memory and kept events after it as declared?
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started
+      and then Self.Leaf = Target (Chosen, Before.Leaf)
+      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire
      (Self   : in out Region;
       Item   : Event;
       Box    : in out Outbox;
       Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started
-       and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
-       and then Self.Timers (1)
-         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (1))
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
-      procedure Exit_Sending
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Sending, Chart.Nowhere)
-          and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then Self.Started = Self.Started'Old
-      is
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node then To_Node
+         else Chart.Disorder) with Ghost;
+
+      procedure Exit_Sending is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Moved (Active, Chart.Sending, Chart.Nowhere);
+         Active := Moved (Active, Chart.Sending, Chart.Nowhere);
       end Exit_Sending;
 
-      procedure Enter_Sending
-      with
-        Post =>
-          Self.Leaf = Answers_States.Sending
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Sending)
-          and then Self.Timers (1) = Ravenchart.Timers.Started (100, 100)
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Sending is
       begin
          Self.Leaf := Answers_States.Sending;
          Ravenchart.Timers.Arm (Self.Timers (1), 100, 100);
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Sending);
+         Active := Moved (Active, Chart.Nowhere, Chart.Sending);
       end Enter_Sending;
    begin
       case Chosen is
          when Initial_Entry =>
             Self.Started := True;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Silent);
+            Active := Moved (Active, Chart.Nowhere, Chart.Silent);
             Self.Leaf := Answers_States.Silent;
          when With_Address =>
-            Active := Chart.Moved (Active, Chart.Silent, Chart.Nowhere);
+            Active := Moved (Active, Chart.Silent, Chart.Nowhere);
             Enter_Sending;
          when Without_Address =>
             Exit_Sending;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Silent);
+            Active := Moved (Active, Chart.Nowhere, Chart.Silent);
             Self.Leaf := Answers_States.Silent;
          when Cyclic | Answer_All | Answer =>
             Self.Data.Due :=
@@ -150,7 +154,7 @@ is
                Pgn => Item.Value_Pgn_Octets.Pgn);
             Box.Acknowledgement_Sent := True;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

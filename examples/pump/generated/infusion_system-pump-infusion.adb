@@ -2,9 +2,6 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-pragma Ada_2022;
-pragma Warnings (Off, "*array aggregate using*");
-
 package body Infusion_System.Pump.Infusion
 with SPARK_Mode
 is
@@ -270,31 +267,22 @@ is
          Where_It_Was, Sounding, Silent, May_Go_On, Infusing, Running,
          Giving, Alarm, Disorder);
 
-      function Innermost_Motor
-        (Place : Infusion_States.Configuration)
-        return Node is
-        (if Place.Top = Infusion_States.Self_Test
+      function Innermost_Motor (Self : Region) return Node is
+        (if Self.Started and then Self.Place.Top = Infusion_States.Self_Test
             then Node'Val
-                 (Infusion_States.Motor_Leaf'Pos (Place.In_Motor) + 1)
+                 (Infusion_States.Motor_Leaf'Pos (Self.Place.In_Motor) + 1)
          else Nowhere);
 
-      function Innermost_Sensor
-        (Place : Infusion_States.Configuration)
-        return Node is
-        (if Place.Top = Infusion_States.Self_Test
+      function Innermost_Sensor (Self : Region) return Node is
+        (if Self.Started and then Self.Place.Top = Infusion_States.Self_Test
             then Node'Val
-                 (Infusion_States.Sensor_Leaf'Pos (Place.In_Sensor) + 3)
+                 (Infusion_States.Sensor_Leaf'Pos (Self.Place.In_Sensor) + 3)
          else Nowhere);
 
-      function Innermost_Top
-        (Place : Infusion_States.Configuration)
-        return Node is
-        (Node'Val (Infusion_States.Leaf'Pos (Place.Top) + 5));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost_Top (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Infusion_States.Leaf'Pos (Self.Place.Top) + 5)
+         else Nowhere);
    end Chart;
 
    procedure Notice_Turning
@@ -387,489 +375,186 @@ is
       end if;
    end Poll;
 
+   function Is_Ready
+     (Self : Region; Ins : Inputs; Item : Event; Chosen : Firing)
+     return Boolean is
+     (if Chosen = Initial_Entry
+         then not Self.Started and then Self.Data = Initial_Data
+      else Self.Started
+         and then In_Source (Chosen, Self.Place)
+         and then Is_Safe (Self.Place, Self.Data)
+         and then Guards_Hold (Chosen, Self.Data, Ins, Item)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Lasting
+     (Before : Region; Self   : Region; Item   : Event; Chosen : Firing)
+     return Boolean is
+     (Self.Timers (1)
+      = Timer_After (1, Domain_Of (Chosen), Before.Place, Self.Place,
+           Before.Timers (1))
+      and then Self.Timers (2)
+        = Timer_After (2, Domain_Of (Chosen), Before.Place, Self.Place,
+             Before.Timers (2))
+      and then Self.Timers (3)
+        = Timer_After (3, Domain_Of (Chosen), Before.Place, Self.Place,
+             Before.Timers (3))
+      and then (if Before.Started
+            then Self.Past
+               = Remembered (Domain_Of (Chosen), Before.Place, Before.Past)
+         else Self.Past = Before.Past)
+      and then Self.Freed
+        = Freed_After (Domain_Of (Chosen), Before.Place,
+             Deferrals.Count (Before.Deferred), Before.Freed)
+      and then (if Is_Deferral (Chosen)
+            then Deferrals.Is_Appended (Before.Deferred, Item,
+                  Self.Deferred)
+               and then Self.Lost
+                 = (Before.Lost or Deferrals.Count (Before.Deferred) = 4)
+         else Self.Deferred = Before.Deferred
+            and then Self.Lost = Before.Lost)) with Ghost;
+   --  Are time-outs, memory and kept events after it as declared?
+
+   function Is_Fired
+     (Before : Region; Self   : Region; Item   : Event; Chosen : Firing)
+     return Boolean is
+     (Self.Started
+      and then Self.Place = Target (Chosen, Before.Place, Before.Past)
+      and then Is_Lasting (Before, Self, Item, Chosen)
+      and then Is_Safe (Self.Place, Self.Data)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire
      (Self   : in out Region;
       Ins    : Inputs;
       Item   : Event;
       Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry
-           then not Self.Started and then Self.Data = Initial_Data
-        else Self.Started
-           and then In_Source (Chosen, Self.Place)
-           and then Is_Safe (Self.Place, Self.Data)
-           and then Guards_Hold (Chosen, Self.Data, Ins, Item)),
-     Post =>
-       Self.Started
-       and then Self.Place = Target (Chosen, Self.Place'Old, Self.Past'Old)
-       and then Self.Timers (1)
-         = Timer_After (1, Domain_Of (Chosen), Self.Place'Old, Self.Place,
-              Self.Timers'Old (1))
-       and then Self.Timers (2)
-         = Timer_After (2, Domain_Of (Chosen), Self.Place'Old, Self.Place,
-              Self.Timers'Old (2))
-       and then Self.Timers (3)
-         = Timer_After (3, Domain_Of (Chosen), Self.Place'Old, Self.Place,
-              Self.Timers'Old (3))
-       and then ((Self.Started'Old
-           and Self.Past
-             = Remembered (Domain_Of (Chosen), Self.Place'Old,
-                  Self.Past'Old))
-          or (not Self.Started'Old and Self.Past = Self.Past'Old))
-       and then Self.Freed
-         = Freed_After (Domain_Of (Chosen), Self.Place'Old,
-              Deferrals.Count (Self.Deferred'Old), Self.Freed'Old)
-       and then (if Chosen
-             in Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
-               | Defer_New_Portion_In_Self_Test
-               | Defer_New_Volume_In_Self_Test | Defer_New_Portion_In_Alarm
-             then Deferrals.Is_Appended (Self.Deferred'Old, Item,
-                   Self.Deferred)
-                and then Self.Lost
-                  = (Self.Lost'Old
-                     or Deferrals.Count (Self.Deferred'Old) = 4)
-          else Self.Deferred = Self.Deferred'Old
-             and then Self.Lost = Self.Lost'Old)
-       and then Is_Safe (Self.Place, Self.Data)
+     Pre => Is_Ready (Self, Ins, Item, Chosen),
+     Post => Is_Fired (Self'Old, Self, Item, Chosen)
    is
       use type Chart.Node;
 
-      Active_Motor : Chart.Node :=
-        (if Self.Started then Chart.Innermost_Motor (Self.Place)
-         else Chart.Nowhere)
-      with Ghost;
+      Active_Motor : Chart.Node := Chart.Innermost_Motor (Self) with Ghost;
       Active_Sensor : Chart.Node :=
-        (if Self.Started then Chart.Innermost_Sensor (Self.Place)
-         else Chart.Nowhere)
+        Chart.Innermost_Sensor (Self)
       with Ghost;
-      Active_Top : Chart.Node :=
-        (if Self.Started then Chart.Innermost_Top (Self.Place)
-         else Chart.Nowhere)
-      with Ghost;
+      Active_Top : Chart.Node := Chart.Innermost_Top (Self) with Ghost;
       Past : constant Memory := Self.Past;
-      Kept : constant Deferrals.List := Self.Deferred with Ghost;
 
-      function Is_Agreed return Boolean is
-        (Active_Motor = Chart.Innermost_Motor (Self.Place)
-         and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
-         and then Active_Top = Chart.Innermost_Top (Self.Place)) with Ghost;
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node;
+         In_Order    : Boolean := True)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node and then In_Order
+            then To_Node
+         else Chart.Disorder) with Ghost;
 
-      function Is_Timed
-        (D      : Domain;
-         Before : Infusion_States.Configuration;
-         Was    : Ravenchart.Timers.Timer_Array)
-        return Boolean is
-        (Self.Timers (1) = Timer_After (1, D, Before, Self.Place, Was (1))
-         and then Self.Timers (2)
-           = Timer_After (2, D, Before, Self.Place, Was (2))
-         and then Self.Timers (3)
-           = Timer_After (3, D, Before, Self.Place, Was (3)))
-      with Ghost, Pre => Was'First = 1 and then Was'Last = 3;
-
-      function Is_Fired (Before : Region; Chosen : Firing) return Boolean is
-        (Self.Started
-         and then Self.Place = Target (Chosen, Before.Place, Before.Past)
-         and then Is_Timed (Domain_Of (Chosen), Before.Place, Before.Timers)
-         and then ((Before.Started
-             and Self.Past
-               = Remembered (Domain_Of (Chosen), Before.Place, Before.Past))
-            or (not Before.Started and Self.Past = Before.Past))
-         and then Self.Freed
-           = Freed_After (Domain_Of (Chosen), Before.Place,
-                Deferrals.Count (Before.Deferred), Before.Freed)
-         and then (if Chosen
-               in Defer_New_Portion_In_Loading
-                 | Defer_New_Portion_In_Filling
-                 | Defer_New_Portion_In_Self_Test
-                 | Defer_New_Volume_In_Self_Test
-                 | Defer_New_Portion_In_Alarm
-               then Deferrals.Is_Appended (Before.Deferred, Item,
-                     Self.Deferred)
-                  and then Self.Lost
-                    = (Before.Lost or Deferrals.Count (Before.Deferred) = 4)
-            else Self.Deferred = Before.Deferred
-               and then Self.Lost = Before.Lost)) with Ghost;
-
-      pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
-
-      function Lasts (Before : Region) return Boolean is
-        (Self.Timers = Before.Timers
-         and then Self.Past = Before.Past
-         and then Self.Freed = Before.Freed
-         and then Self.Started = Before.Started
-         and then (if Before.Deferred = Kept then Self.Deferred = Kept)
-         and then Deferrals.Count (Self.Deferred)
-           = Deferrals.Count (Before.Deferred)
-         and then Self.Lost = Before.Lost) with Ghost;
-
-      pragma Annotate (GNATprove, Inline_For_Proof, Lasts);
-
-      function Keeps (Before : Region) return Boolean is
-        (Self.Started = Before.Started
-         and then (if Before.Deferred = Kept then Self.Deferred = Kept)
-         and then Deferrals.Count (Self.Deferred)
-           = Deferrals.Count (Before.Deferred)
-         and then Self.Lost = Before.Lost) with Ghost;
-
-      pragma Annotate (GNATprove, Inline_For_Proof, Keeps);
-
-      function Data_After_Exit_Turning (Data : Variables) return Variables is
-        ((Data with delta Speed => 0)) with Ghost;
-
-      function Data_After_Exit_Infusing (Data : Variables) return Variables is
-        ((Data with delta Speed => 0)) with Ghost;
-
-      function Data_After_Exit_Alarm (Data : Variables) return Variables is
-        ((Data with delta Buzzer => False)) with Ghost;
-
-      function Data_After_Leave_Motor (Data : Variables) return Variables is
-        (case Self.Place.In_Motor is
-           when Infusion_States.Turning => Data_After_Exit_Turning (Data),
-           when Infusion_States.Motor_Good => Data)
-      with Ghost, Pre => Self.Place.Top = Infusion_States.Self_Test;
-
-      function Data_After_Enter_Self_Test
-        (Data : Variables)
-        return Variables is
-        ((Data with delta Lamp => Infusion_System.Flashing)) with Ghost;
-
-      function Data_After_Enter_Turning (Data : Variables) return Variables is
-        ((Data with delta Speed => 10)) with Ghost;
-
-      function Data_After_Enter_Programming
-        (Data : Variables)
-        return Variables is
-        ((Data with delta Lamp => Infusion_System.Dark)) with Ghost;
-
-      function Data_After_Enter_Infusing (Data : Variables) return Variables is
-        ((Data with delta Lamp => Infusion_System.Steady)) with Ghost;
-
-      function Data_After_Enter_Filling (Data : Variables) return Variables is
-        ((Data with delta Speed => 100)) with Ghost;
-
-      function Data_After_Enter_Loading (Data : Variables) return Variables is
-        ((Data with delta
-            Speed => Infusion_System.Unit_Ul'Min (2 * Data.Portion, 500)))
-      with Ghost;
-
-      function Data_After_Enter_Maintaining
-        (Data : Variables)
-        return Variables is
-        ((Data with delta Speed => Data.Portion)) with Ghost;
-
-      function Data_After_Enter_Trickling
-        (Data : Variables)
-        return Variables is
-        ((Data with delta Speed => Ins.Trickle)) with Ghost;
-
-      function Data_After_Enter_Alarm (Data : Variables) return Variables is
-        ((Data with delta Lamp => Infusion_System.Flashing)) with Ghost;
-
-      function Data_After_Enter_Sounding (Data : Variables) return Variables is
-        ((Data with delta Buzzer => True)) with Ghost;
-
-      function Data_After_Enter_Silent (Data : Variables) return Variables is
-        ((Data with delta Buzzer => False)) with Ghost;
-
-      procedure Exit_Self_Test
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = (if Active_Motor = Chart.Nowhere
-                  and then Active_Sensor = Chart.Nowhere
-                  then Chart.Moved (Active_Top'Old, Chart.Self_Test,
-                        Chart.Nowhere)
-               else Chart.Disorder)
-          and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed
-            = (New_Portion => Deferrals.Count (Self.Deferred),
-               New_Volume => Deferrals.Count (Self.Deferred))
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Self_Test is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Self.Completed_Self_Test := False;
          Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
          Self.Freed.New_Volume := Deferrals.Count (Self.Deferred);
          Active_Top :=
-           (if Active_Motor = Chart.Nowhere
-               and then Active_Sensor = Chart.Nowhere
-               then Chart.Moved (Active_Top, Chart.Self_Test, Chart.Nowhere)
-            else Chart.Disorder);
+           Moved (Active_Top, Chart.Self_Test, Chart.Nowhere,
+              Active_Motor = Chart.Nowhere
+              and then Active_Sensor = Chart.Nowhere);
       end Exit_Self_Test;
 
-      procedure Exit_Turning
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Motor
-            = Chart.Moved (Active_Motor'Old, Chart.Turning, Chart.Nowhere)
-          and then Lasts (Self'Old)
-          and then Self.Data = Data_After_Exit_Turning (Self.Data'Old)
-      is
+      procedure Exit_Turning is
       begin
          Self.Data.Speed := 0;
          Self.Completed_Turning := False;
-         Active_Motor :=
-           Chart.Moved (Active_Motor, Chart.Turning, Chart.Nowhere);
+         Active_Motor := Moved (Active_Motor, Chart.Turning, Chart.Nowhere);
       end Exit_Turning;
 
-      procedure Exit_Infusing
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Infusing, Chart.Nowhere)
-          and then Lasts (Self'Old)
-          and then Self.Data = Data_After_Exit_Infusing (Self.Data'Old)
-      is
+      procedure Exit_Infusing is
       begin
          Self.Data.Speed := 0;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Infusing, Chart.Nowhere);
+         Active_Top := Moved (Active_Top, Chart.Infusing, Chart.Nowhere);
       end Exit_Infusing;
 
-      procedure Exit_Running
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Infusing)
-          and then Lasts (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Running is
       begin
          Self.Completed_Running := False;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Running, Chart.Infusing);
+         Active_Top := Moved (Active_Top, Chart.Running, Chart.Infusing);
       end Exit_Running;
 
-      procedure Exit_Filling
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Filling, Chart.Running)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past
-            = (Last_In_Infusing => Infusion_States.Filling,
-               Known_In_Infusing => True)
-          and then Self.Freed
-            = (New_Portion => Deferrals.Count (Self.Deferred),
-               New_Volume => Self.Freed'Old.New_Volume)
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Filling is
       begin
          Self.Completed_Filling := False;
          Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
          Self.Past.Last_In_Infusing := Infusion_States.Filling;
          Self.Past.Known_In_Infusing := True;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Filling, Chart.Running);
+         Active_Top := Moved (Active_Top, Chart.Filling, Chart.Running);
       end Exit_Filling;
 
-      procedure Exit_Giving
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Running)
-          and then Self.Timers (2) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Giving is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Giving, Chart.Running);
+         Active_Top := Moved (Active_Top, Chart.Giving, Chart.Running);
       end Exit_Giving;
 
-      procedure Exit_Loading
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Loading, Chart.Giving)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past
-            = (Last_In_Infusing => Infusion_States.Loading,
-               Known_In_Infusing => True)
-          and then Self.Freed
-            = (New_Portion => Deferrals.Count (Self.Deferred),
-               New_Volume => Self.Freed'Old.New_Volume)
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Loading is
       begin
          Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
          Self.Past.Last_In_Infusing := Infusion_States.Loading;
          Self.Past.Known_In_Infusing := True;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Loading, Chart.Giving);
+         Active_Top := Moved (Active_Top, Chart.Loading, Chart.Giving);
       end Exit_Loading;
 
-      procedure Exit_Maintaining
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Maintaining, Chart.Giving)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past
-            = (Last_In_Infusing => Infusion_States.Maintaining,
-               Known_In_Infusing => True)
-          and then Self.Freed = Self.Freed'Old
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Maintaining is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Maintaining;
          Self.Past.Known_In_Infusing := True;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Maintaining, Chart.Giving);
+         Active_Top := Moved (Active_Top, Chart.Maintaining, Chart.Giving);
       end Exit_Maintaining;
 
-      procedure Exit_All_Given
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.All_Given, Chart.Running)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past
-            = (Last_In_Infusing => Infusion_States.All_Given,
-               Known_In_Infusing => True)
-          and then Self.Freed = Self.Freed'Old
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_All_Given is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.All_Given;
          Self.Past.Known_In_Infusing := True;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.All_Given, Chart.Running);
+         Active_Top := Moved (Active_Top, Chart.All_Given, Chart.Running);
       end Exit_All_Given;
 
-      procedure Exit_Trickling
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Trickling, Chart.Infusing)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past
-            = (Last_In_Infusing => Infusion_States.Trickling,
-               Known_In_Infusing => True)
-          and then Self.Freed = Self.Freed'Old
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Trickling is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Trickling;
          Self.Past.Known_In_Infusing := True;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Trickling, Chart.Infusing);
+         Active_Top := Moved (Active_Top, Chart.Trickling, Chart.Infusing);
       end Exit_Trickling;
 
-      procedure Exit_Alarm
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Alarm, Chart.Nowhere)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed
-            = (New_Portion => Deferrals.Count (Self.Deferred),
-               New_Volume => Self.Freed'Old.New_Volume)
-          and then Keeps (Self'Old)
-          and then Self.Data = Data_After_Exit_Alarm (Self.Data'Old)
-      is
+      procedure Exit_Alarm is
       begin
          Self.Data.Buzzer := False;
          Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
-         Active_Top := Chart.Moved (Active_Top, Chart.Alarm, Chart.Nowhere);
+         Active_Top := Moved (Active_Top, Chart.Alarm, Chart.Nowhere);
       end Exit_Alarm;
 
-      procedure Exit_Silent
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Silent, Chart.Alarm)
-          and then Self.Timers (3) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Exit_Silent is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
-         Active_Top := Chart.Moved (Active_Top, Chart.Silent, Chart.Alarm);
+         Active_Top := Moved (Active_Top, Chart.Silent, Chart.Alarm);
       end Exit_Silent;
 
-      procedure Leave_Alarm
-      with
-        Pre =>
-          Self.Place.Top in Infusion_States.Alarm
-          and then Active_Top = Chart.Innermost_Top (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Alarm
-          and then Self.Timers (3)
-            = (if Self.Place.Top = Infusion_States.Silent
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (3))
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Past
-            = Remembered (Inside_Alarm, Self.Place'Old, Self.Past'Old)
-          and then Self.Freed
-            = Freed_After (Inside_Alarm, Self.Place'Old,
-                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Leave_Alarm is
       begin
          case Infusion_States.Alarm'(Self.Place.Top) is
             when Infusion_States.Sounding =>
                Active_Top :=
-                 Chart.Moved (Active_Top, Chart.Sounding, Chart.Alarm);
+                 Moved (Active_Top, Chart.Sounding, Chart.Alarm);
             when Infusion_States.Silent =>
                Exit_Silent;
          end case;
       end Leave_Alarm;
 
-      procedure Leave_Giving
-      with
-        Pre =>
-          Self.Place.Top in Infusion_States.Giving
-          and then Active_Top = Chart.Innermost_Top (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Giving
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past
-            = Remembered (Inside_Giving, Self.Place'Old, Self.Past'Old)
-          and then Self.Freed
-            = Freed_After (Inside_Giving, Self.Place'Old,
-                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Leave_Giving is
       begin
          case Infusion_States.Giving'(Self.Place.Top) is
             when Infusion_States.Loading =>
@@ -879,28 +564,7 @@ is
          end case;
       end Leave_Giving;
 
-      procedure Leave_Running
-      with
-        Pre =>
-          Self.Place.Top in Infusion_States.Running
-          and then Active_Top = Chart.Innermost_Top (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Running
-          and then Self.Timers (2)
-            = (if Self.Place.Top in Infusion_States.Giving
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (2))
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Past
-            = Remembered (Inside_Running, Self.Place'Old, Self.Past'Old)
-          and then Self.Freed
-            = Freed_After (Inside_Running, Self.Place'Old,
-                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Leave_Running is
       begin
          case Infusion_States.Running'(Self.Place.Top) is
             when Infusion_States.Filling =>
@@ -913,28 +577,7 @@ is
          end case;
       end Leave_Running;
 
-      procedure Leave_Infusing
-      with
-        Pre =>
-          Self.Place.Top in Infusion_States.Infusing
-          and then Active_Top = Chart.Innermost_Top (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Infusing
-          and then Self.Timers (2)
-            = (if Self.Place.Top in Infusion_States.Giving
-                  then Ravenchart.Timers.Stopped
-               else Self.Timers'Old (2))
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Past
-            = Remembered (Inside_Infusing, Self.Place'Old, Self.Past'Old)
-          and then Self.Freed
-            = Freed_After (Inside_Infusing, Self.Place'Old,
-                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Leave_Infusing is
       begin
          case Infusion_States.Infusing'(Self.Place.Top) is
             when Infusion_States.Running =>
@@ -944,386 +587,159 @@ is
                Exit_Trickling;
             when Infusion_States.Where_It_Was =>
                Active_Top :=
-                 Chart.Moved (Active_Top, Chart.Where_It_Was,
-                    Chart.Infusing);
+                 Moved (Active_Top, Chart.Where_It_Was, Chart.Infusing);
          end case;
       end Leave_Infusing;
 
-      procedure Leave_Motor
-      with
-        Pre =>
-          Self.Place.Top = Infusion_States.Self_Test
-          and then Active_Motor = Chart.Innermost_Motor (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Motor = Chart.Nowhere
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past
-            = Remembered (Inside_Motor, Self.Place'Old, Self.Past'Old)
-          and then Self.Freed
-            = Freed_After (Inside_Motor, Self.Place'Old,
-                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Keeps (Self'Old)
-          and then Self.Data = Data_After_Leave_Motor (Self.Data'Old)
-      is
+      procedure Leave_Motor is
       begin
          case Self.Place.In_Motor is
             when Infusion_States.Turning =>
                Exit_Turning;
             when Infusion_States.Motor_Good =>
                Active_Motor :=
-                 Chart.Moved (Active_Motor, Chart.Motor_Good, Chart.Nowhere);
+                 Moved (Active_Motor, Chart.Motor_Good, Chart.Nowhere);
          end case;
       end Leave_Motor;
 
-      procedure Leave_Sensor
-      with
-        Pre =>
-          Self.Place.Top = Infusion_States.Self_Test
-          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Sensor = Chart.Nowhere
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past
-            = Remembered (Inside_Sensor, Self.Place'Old, Self.Past'Old)
-          and then Self.Freed
-            = Freed_After (Inside_Sensor, Self.Place'Old,
-                 Deferrals.Count (Self.Deferred), Self.Freed'Old)
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
-      begin
-         case Self.Place.In_Sensor is
-            when Infusion_States.Listening =>
-               Active_Sensor :=
-                 Chart.Moved (Active_Sensor, Chart.Listening, Chart.Nowhere);
-            when Infusion_States.Sensor_Good =>
-               Active_Sensor :=
-                 Chart.Moved (Active_Sensor, Chart.Sensor_Good,
-                    Chart.Nowhere);
-         end case;
-      end Leave_Sensor;
-
-      procedure Enter_Self_Test
-      with
-        Post =>
-          Self.Place
-          = (Top => Infusion_States.Self_Test,
-             In_Sensor => Infusion_States.Listening,
-             In_Motor => Infusion_States.Turning)
-          and then Active_Top
-            = (if Active_Motor = Chart.Nowhere
-                  and then Active_Sensor = Chart.Nowhere
-                  then Chart.Moved (Active_Top'Old, Chart.Nowhere,
-                        Chart.Self_Test)
-               else Chart.Disorder)
-          and then Self.Timers (1) = Ravenchart.Timers.Started (100)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Keeps (Self'Old)
-          and then Self.Data = Data_After_Enter_Self_Test (Self.Data'Old)
-      is
+      procedure Enter_Self_Test is
       begin
          Self.Place.Top := Infusion_States.Self_Test;
          Self.Place.In_Motor := Infusion_States.Turning;
          Self.Place.In_Sensor := Infusion_States.Listening;
          Ravenchart.Timers.Arm (Self.Timers (1), 100);
          Active_Top :=
-           (if Active_Motor = Chart.Nowhere
-               and then Active_Sensor = Chart.Nowhere
-               then Chart.Moved (Active_Top, Chart.Nowhere, Chart.Self_Test)
-            else Chart.Disorder);
+           Moved (Active_Top, Chart.Nowhere, Chart.Self_Test,
+              Active_Motor = Chart.Nowhere
+              and then Active_Sensor = Chart.Nowhere);
          Self.Data.Lamp := Infusion_System.Flashing;
       end Enter_Self_Test;
 
-      procedure Enter_Turning
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta In_Motor => Infusion_States.Turning)
-          and then Active_Motor
-            = (if Active_Top = Chart.Self_Test
-                  then Chart.Moved (Active_Motor'Old, Chart.Nowhere,
-                        Chart.Turning)
-               else Chart.Disorder)
-          and then Lasts (Self'Old)
-          and then Self.Data = Data_After_Enter_Turning (Self.Data'Old)
-      is
+      procedure Enter_Turning is
       begin
          Self.Place.In_Motor := Infusion_States.Turning;
          Self.Visits_Turning := Ravenchart.Next (Self.Visits_Turning);
          Self.Done_In.Turning := False;
          Active_Motor :=
-           (if Active_Top = Chart.Self_Test
-               then Chart.Moved (Active_Motor, Chart.Nowhere, Chart.Turning)
-            else Chart.Disorder);
+           Moved (Active_Motor, Chart.Nowhere, Chart.Turning,
+              Active_Top = Chart.Self_Test);
          Self.Data.Speed := 10;
       end Enter_Turning;
 
-      procedure Enter_Motor_Good
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta
-               In_Motor => Infusion_States.Motor_Good)
-          and then Active_Motor
-            = (if Active_Top = Chart.Self_Test
-                  then Chart.Moved (Active_Motor'Old, Chart.Nowhere,
-                        Chart.Motor_Good)
-               else Chart.Disorder)
-          and then Lasts (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Enter_Motor_Good is
       begin
          Self.Place.In_Motor := Infusion_States.Motor_Good;
          Active_Motor :=
-           (if Active_Top = Chart.Self_Test
-               then Chart.Moved (Active_Motor, Chart.Nowhere,
-                     Chart.Motor_Good)
-            else Chart.Disorder);
+           Moved (Active_Motor, Chart.Nowhere, Chart.Motor_Good,
+              Active_Top = Chart.Self_Test);
          if Self.Place.In_Sensor = Infusion_States.Sensor_Good then
             Self.Completed_Self_Test := True;
          end if;
       end Enter_Motor_Good;
 
-      procedure Enter_Sensor_Good
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta
-               In_Sensor => Infusion_States.Sensor_Good)
-          and then Active_Sensor
-            = (if Active_Top = Chart.Self_Test
-                  then Chart.Moved (Active_Sensor'Old, Chart.Nowhere,
-                        Chart.Sensor_Good)
-               else Chart.Disorder)
-          and then Lasts (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Enter_Sensor_Good is
       begin
          Self.Place.In_Sensor := Infusion_States.Sensor_Good;
          Active_Sensor :=
-           (if Active_Top = Chart.Self_Test
-               then Chart.Moved (Active_Sensor, Chart.Nowhere,
-                     Chart.Sensor_Good)
-            else Chart.Disorder);
+           Moved (Active_Sensor, Chart.Nowhere, Chart.Sensor_Good,
+              Active_Top = Chart.Self_Test);
          if Self.Place.In_Motor = Infusion_States.Motor_Good then
             Self.Completed_Self_Test := True;
          end if;
       end Enter_Sensor_Good;
 
-      procedure Enter_Programming
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta Top => Infusion_States.Programming)
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Programming)
-          and then Lasts (Self'Old)
-          and then Self.Data = Data_After_Enter_Programming (Self.Data'Old)
-      is
+      procedure Enter_Programming is
       begin
          Self.Place.Top := Infusion_States.Programming;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Nowhere, Chart.Programming);
+         Active_Top := Moved (Active_Top, Chart.Nowhere, Chart.Programming);
          Self.Data.Lamp := Infusion_System.Dark;
       end Enter_Programming;
 
-      procedure Enter_Infusing
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Infusing)
-          and then Lasts (Self'Old)
-          and then Self.Data = Data_After_Enter_Infusing (Self.Data'Old)
-      is
+      procedure Enter_Infusing is
       begin
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Nowhere, Chart.Infusing);
+         Active_Top := Moved (Active_Top, Chart.Nowhere, Chart.Infusing);
          Self.Data.Lamp := Infusion_System.Steady;
       end Enter_Infusing;
 
-      procedure Enter_Filling
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta Top => Infusion_States.Filling)
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Filling)
-          and then Lasts (Self'Old)
-          and then Self.Data = Data_After_Enter_Filling (Self.Data'Old)
-      is
+      procedure Enter_Filling is
       begin
          Self.Place.Top := Infusion_States.Filling;
          Self.Visits_Filling := Ravenchart.Next (Self.Visits_Filling);
          Self.Done_In.Filling := False;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Running, Chart.Filling);
+         Active_Top := Moved (Active_Top, Chart.Running, Chart.Filling);
          Self.Data.Speed := 100;
       end Enter_Filling;
 
-      procedure Enter_Giving
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Giving)
-          and then Self.Timers (2) = Ravenchart.Timers.Started (20, 20)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Keeps (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Enter_Giving is
       begin
          Ravenchart.Timers.Arm (Self.Timers (2), 20, 20);
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Running, Chart.Giving);
+         Active_Top := Moved (Active_Top, Chart.Running, Chart.Giving);
       end Enter_Giving;
 
-      procedure Enter_Loading
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta Top => Infusion_States.Loading)
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Loading)
-          and then Lasts (Self'Old)
-          and then Self.Data = Data_After_Enter_Loading (Self.Data'Old)
-      is
+      procedure Enter_Loading is
       begin
          Self.Place.Top := Infusion_States.Loading;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Giving, Chart.Loading);
+         Active_Top := Moved (Active_Top, Chart.Giving, Chart.Loading);
          Self.Data.Speed :=
            Infusion_System.Unit_Ul'Min (2 * Self.Data.Portion, 500);
       end Enter_Loading;
 
-      procedure Enter_Maintaining
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta Top => Infusion_States.Maintaining)
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Maintaining)
-          and then Lasts (Self'Old)
-          and then Self.Data = Data_After_Enter_Maintaining (Self.Data'Old)
-      is
+      procedure Enter_Maintaining is
       begin
          Self.Place.Top := Infusion_States.Maintaining;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Giving, Chart.Maintaining);
+         Active_Top := Moved (Active_Top, Chart.Giving, Chart.Maintaining);
          Self.Data.Speed := Self.Data.Portion;
       end Enter_Maintaining;
 
-      procedure Enter_All_Given
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta Top => Infusion_States.All_Given)
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Running, Chart.All_Given)
-          and then Lasts (Self'Old)
-          and then Self.Data = Self.Data'Old
-      is
+      procedure Enter_All_Given is
       begin
          Self.Place.Top := Infusion_States.All_Given;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Running, Chart.All_Given);
+         Active_Top := Moved (Active_Top, Chart.Running, Chart.All_Given);
          Self.Completed_Running := True;
       end Enter_All_Given;
 
-      procedure Enter_Trickling
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta Top => Infusion_States.Trickling)
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Infusing, Chart.Trickling)
-          and then Lasts (Self'Old)
-          and then Self.Data = Data_After_Enter_Trickling (Self.Data'Old)
-      is
+      procedure Enter_Trickling is
       begin
          Self.Place.Top := Infusion_States.Trickling;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Infusing, Chart.Trickling);
+         Active_Top := Moved (Active_Top, Chart.Infusing, Chart.Trickling);
          Self.Data.Speed := Ins.Trickle;
       end Enter_Trickling;
 
-      procedure Enter_Alarm
-      with
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Alarm)
-          and then Lasts (Self'Old)
-          and then Self.Data = Data_After_Enter_Alarm (Self.Data'Old)
-      is
+      procedure Enter_Alarm is
       begin
-         Active_Top := Chart.Moved (Active_Top, Chart.Nowhere, Chart.Alarm);
+         Active_Top := Moved (Active_Top, Chart.Nowhere, Chart.Alarm);
          Self.Data.Lamp := Infusion_System.Flashing;
       end Enter_Alarm;
 
-      procedure Enter_Sounding
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta Top => Infusion_States.Sounding)
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Alarm, Chart.Sounding)
-          and then Lasts (Self'Old)
-          and then Self.Data = Data_After_Enter_Sounding (Self.Data'Old)
-      is
+      procedure Enter_Sounding is
       begin
          Self.Place.Top := Infusion_States.Sounding;
-         Active_Top :=
-           Chart.Moved (Active_Top, Chart.Alarm, Chart.Sounding);
+         Active_Top := Moved (Active_Top, Chart.Alarm, Chart.Sounding);
          Self.Data.Buzzer := True;
       end Enter_Sounding;
 
-      procedure Enter_Silent
-      with
-        Post =>
-          Self.Place
-          = (Self.Place'Old with delta Top => Infusion_States.Silent)
-          and then Active_Top
-            = Chart.Moved (Active_Top'Old, Chart.Alarm, Chart.Silent)
-          and then Self.Timers (3) = Ravenchart.Timers.Started (600)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Past = Self.Past'Old
-          and then Self.Freed = Self.Freed'Old
-          and then Keeps (Self'Old)
-          and then Self.Data = Data_After_Enter_Silent (Self.Data'Old)
-      is
+      procedure Enter_Silent is
       begin
          Self.Place.Top := Infusion_States.Silent;
          Ravenchart.Timers.Arm (Self.Timers (3), 600);
-         Active_Top := Chart.Moved (Active_Top, Chart.Alarm, Chart.Silent);
+         Active_Top := Moved (Active_Top, Chart.Alarm, Chart.Silent);
          Self.Data.Buzzer := False;
       end Enter_Silent;
+
+      function Is_Agreed return Boolean is
+        (Active_Motor = Chart.Innermost_Motor (Self)
+         and then Active_Sensor = Chart.Innermost_Sensor (Self)
+         and then Active_Top = Chart.Innermost_Top (Self)) with Ghost;
 
       subtype From_Turned is Selection range Turned .. Filled_Up;
 
       procedure Fire_From_Turned (Chosen : From_Turned)
       with
         Pre =>
-          Self.Started
-          and then In_Source (Chosen, Self.Place)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Guards_Hold (Chosen, Self.Data, Ins, Item)
+          Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
-          and then Self.Deferred = Kept
           and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
+        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
       is
       begin
          case Chosen is
@@ -1332,7 +748,7 @@ is
                Enter_Motor_Good;
             when Heard =>
                Active_Sensor :=
-                 Chart.Moved (Active_Sensor, Chart.Listening, Chart.Nowhere);
+                 Moved (Active_Sensor, Chart.Listening, Chart.Nowhere);
                Enter_Sensor_Good;
             when Loaded =>
                Exit_Loading;
@@ -1341,15 +757,13 @@ is
                Exit_Maintaining;
                pragma Assert
                  (Active_Top = Chart.Giving
-                  and then Active_Motor = Chart.Innermost_Motor (Self.Place)
-                  and then Active_Sensor
-                    = Chart.Innermost_Sensor (Self.Place));
+                  and then Active_Motor = Chart.Innermost_Motor (Self)
+                  and then Active_Sensor = Chart.Innermost_Sensor (Self));
                Self.Data.Portion := Item.Value_Portion;
                pragma Assert
                  (Active_Top = Chart.Giving
-                  and then Active_Motor = Chart.Innermost_Motor (Self.Place)
-                  and then Active_Sensor
-                    = Chart.Innermost_Sensor (Self.Place));
+                  and then Active_Motor = Chart.Innermost_Motor (Self)
+                  and then Active_Sensor = Chart.Innermost_Sensor (Self));
                Enter_Maintaining;
             when Defer_New_Portion_In_Loading =>
                if Deferrals.Count (Self.Deferred) = 4 then
@@ -1369,17 +783,10 @@ is
       procedure Fire_From_Beat (Chosen : From_Beat)
       with
         Pre =>
-          Self.Started
-          and then In_Source (Chosen, Self.Place)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Guards_Hold (Chosen, Self.Data, Ins, Item)
+          Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
-          and then Self.Deferred = Kept
           and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
+        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
       is
       begin
          case Chosen is
@@ -1403,7 +810,7 @@ is
                Enter_Trickling;
             when Hush =>
                Active_Top :=
-                 Chart.Moved (Active_Top, Chart.Sounding, Chart.Alarm);
+                 Moved (Active_Top, Chart.Sounding, Chart.Alarm);
                Enter_Silent;
             when Remind =>
                Exit_Silent;
@@ -1420,43 +827,32 @@ is
         (Chosen : From_Restore_Where_It_Was)
       with
         Pre =>
-          Self.Started
-          and then In_Source (Chosen, Self.Place)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Guards_Hold (Chosen, Self.Data, Ins, Item)
+          Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
-          and then Self.Deferred = Kept
           and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
+        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
       is
       begin
          case Chosen is
             when Restore_Where_It_Was =>
                Active_Top :=
-                 Chart.Moved (Active_Top, Chart.Where_It_Was,
-                    Chart.Infusing);
+                 Moved (Active_Top, Chart.Where_It_Was, Chart.Infusing);
                if Past.Known_In_Infusing then
                   case Past.Last_In_Infusing is
                      when Infusion_States.Filling
                         | Infusion_States.All_Given
                         | Infusion_States.Where_It_Was =>
                         Active_Top :=
-                          Chart.Moved (Active_Top, Chart.Infusing,
-                             Chart.Running);
+                          Moved (Active_Top, Chart.Infusing, Chart.Running);
                         Enter_Filling;
                      when Infusion_States.Loading =>
                         Active_Top :=
-                          Chart.Moved (Active_Top, Chart.Infusing,
-                             Chart.Running);
+                          Moved (Active_Top, Chart.Infusing, Chart.Running);
                         Enter_Giving;
                         Enter_Loading;
                      when Infusion_States.Maintaining =>
                         Active_Top :=
-                          Chart.Moved (Active_Top, Chart.Infusing,
-                             Chart.Running);
+                          Moved (Active_Top, Chart.Infusing, Chart.Running);
                         Enter_Giving;
                         Enter_Maintaining;
                      when Infusion_States.Trickling =>
@@ -1464,29 +860,33 @@ is
                   end case;
                else
                   Active_Top :=
-                    Chart.Moved (Active_Top, Chart.Infusing, Chart.Running);
+                    Moved (Active_Top, Chart.Infusing, Chart.Running);
                   Enter_Filling;
                end if;
             when Default_Of_Where_It_Was =>
                Active_Top :=
-                 Chart.Moved (Active_Top, Chart.Where_It_Was, Chart.Running);
+                 Moved (Active_Top, Chart.Where_It_Was, Chart.Running);
                Enter_Filling;
             when Ready =>
                Leave_Motor;
-               Leave_Sensor;
+               Active_Sensor :=
+                 Moved (Active_Sensor, Chart.Innermost_Sensor (Self),
+                    Chart.Nowhere,
+                    Self.Place.Top = Infusion_States.Self_Test);
                Exit_Self_Test;
                Enter_Programming;
             when Again =>
                Leave_Motor;
-               Leave_Sensor;
+               Active_Sensor :=
+                 Moved (Active_Sensor, Chart.Innermost_Sensor (Self),
+                    Chart.Nowhere,
+                    Self.Place.Top = Infusion_States.Self_Test);
                Exit_Self_Test;
                Enter_Self_Test;
                Enter_Turning;
                Active_Sensor :=
-                 (if Active_Top = Chart.Self_Test
-                     then Chart.Moved (Active_Sensor, Chart.Nowhere,
-                           Chart.Listening)
-                  else Chart.Disorder);
+                 Moved (Active_Sensor, Chart.Nowhere, Chart.Listening,
+                    Active_Top = Chart.Self_Test);
                Self.Place.In_Sensor := Infusion_States.Listening;
             when Order_Portion =>
                Self.Data.Portion := Item.Value_Portion;
@@ -1500,23 +900,16 @@ is
       procedure Fire_From_Start (Chosen : From_Start)
       with
         Pre =>
-          Self.Started
-          and then In_Source (Chosen, Self.Place)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Guards_Hold (Chosen, Self.Data, Ins, Item)
+          Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
-          and then Self.Deferred = Kept
           and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
+        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
       is
       begin
          case Chosen is
             when Start =>
                Active_Top :=
-                 Chart.Moved (Active_Top, Chart.Programming, Chart.Nowhere);
+                 Moved (Active_Top, Chart.Programming, Chart.Nowhere);
                pragma Assert
                  (Active_Top = Chart.Nowhere
                   and then Active_Motor = Chart.Nowhere
@@ -1528,7 +921,7 @@ is
                   and then Active_Sensor = Chart.Nowhere);
                Enter_Infusing;
                Active_Top :=
-                 Chart.Moved (Active_Top, Chart.Infusing, Chart.Running);
+                 Moved (Active_Top, Chart.Infusing, Chart.Running);
                Enter_Filling;
             when Stop =>
                Leave_Infusing;
@@ -1543,7 +936,7 @@ is
                Leave_Alarm;
                Exit_Alarm;
                Active_Top :=
-                 Chart.Moved (Active_Top, Chart.Nowhere, Chart.May_Go_On);
+                 Moved (Active_Top, Chart.Nowhere, Chart.May_Go_On);
                Self.Place.Top := Infusion_States.May_Go_On;
             when Give_Up =>
                Leave_Alarm;
@@ -1561,17 +954,10 @@ is
         (Chosen : From_Defer_New_Portion_In_Self_Test)
       with
         Pre =>
-          Self.Started
-          and then In_Source (Chosen, Self.Place)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Guards_Hold (Chosen, Self.Data, Ins, Item)
+          Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
-          and then Self.Deferred = Kept
           and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
+        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
       is
       begin
          case Chosen is
@@ -1585,15 +971,14 @@ is
                end if;
             when Go_On =>
                Active_Top :=
-                 Chart.Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
+                 Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
                Enter_Infusing;
                Active_Top :=
-                 Chart.Moved (Active_Top, Chart.Infusing,
-                    Chart.Where_It_Was);
+                 Moved (Active_Top, Chart.Infusing, Chart.Where_It_Was);
                Self.Place.Top := Infusion_States.Where_It_Was;
             when Not_Yet =>
                Active_Top :=
-                 Chart.Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
+                 Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
                Enter_Alarm;
                Enter_Sounding;
          end case;
@@ -1605,10 +990,8 @@ is
             Enter_Self_Test;
             Enter_Turning;
             Active_Sensor :=
-              (if Active_Top = Chart.Self_Test
-                  then Chart.Moved (Active_Sensor, Chart.Nowhere,
-                        Chart.Listening)
-               else Chart.Disorder);
+              Moved (Active_Sensor, Chart.Nowhere, Chart.Listening,
+                 Active_Top = Chart.Self_Test);
             Self.Place.In_Sensor := Infusion_States.Listening;
          when Turned .. Filled_Up =>
             Fire_From_Turned (Chosen);
@@ -1621,10 +1004,7 @@ is
          when Defer_New_Portion_In_Self_Test .. Not_Yet =>
             Fire_From_Defer_New_Portion_In_Self_Test (Chosen);
       end case;
-      pragma Assert
-        (Active_Motor = Chart.Innermost_Motor (Self.Place)
-         and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
-         and then Active_Top = Chart.Innermost_Top (Self.Place));
+      pragma Assert (Is_Agreed);
    end Fire;
 
    procedure Step
@@ -1637,14 +1017,7 @@ is
 
       procedure Fire_Whole (T : Firing)
       with
-        Pre =>
-          (if T = Initial_Entry
-              then not Self.Started and then Self.Data = Initial_Data
-           else Self.Started
-              and then In_Source (T, Self.Place)
-              and then Is_Safe (Self.Place, Self.Data)
-              and then Guards_Hold (T, Self.Data, Ins, Item))
-          and then Fired.Count <= 6,
+        Pre => Is_Ready (Self, Ins, Item, T) and then Fired.Count <= 6,
         Post =>
           Fired.Count in Fired.Count'Old + 1 .. Fired.Count'Old + 3
           and then Self.Started

@@ -103,13 +103,10 @@ is
         (Nowhere, S11, S1_Init, S211, S21_Init, S_Init, S, S1, S2, S21,
          Disorder);
 
-      function Innermost (Leaf : Chart_States.Leaf) return Node is
-        (Node'Val (Chart_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Chart_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is
@@ -121,97 +118,79 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started and then Self.Leaf = Target (Chosen, Before.Leaf))
+   with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire (Self : in out Region; Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
-      procedure Leave_S21
-      with
-        Pre =>
-          Self.Leaf in Chart_States.S21
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.S21
-          and then Self.Started = Self.Started'Old
-      is
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node then To_Node
+         else Chart.Disorder) with Ghost;
+
+      procedure Leave_S21 is
       begin
          case Chart_States.S21'(Self.Leaf) is
             when Chart_States.S211 =>
-               Active := Chart.Moved (Active, Chart.S211, Chart.S21);
+               Active := Moved (Active, Chart.S211, Chart.S21);
             when Chart_States.S21_Init =>
-               Active := Chart.Moved (Active, Chart.S21_Init, Chart.S21);
+               Active := Moved (Active, Chart.S21_Init, Chart.S21);
          end case;
       end Leave_S21;
 
-      procedure Leave_S2
-      with
-        Pre =>
-          Self.Leaf in Chart_States.S2
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.S2
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Leave_S2 is
       begin
          case Chart_States.S2'(Self.Leaf) is
             when Chart_States.S21 =>
                Leave_S21;
-               Active := Chart.Moved (Active, Chart.S21, Chart.S2);
+               Active := Moved (Active, Chart.S21, Chart.S2);
          end case;
       end Leave_S2;
 
-      procedure Leave_S1
-      with
-        Pre =>
-          Self.Leaf in Chart_States.S1
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.S1
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Leave_S1 is
       begin
          case Chart_States.S1'(Self.Leaf) is
             when Chart_States.S11 =>
-               Active := Chart.Moved (Active, Chart.S11, Chart.S1);
+               Active := Moved (Active, Chart.S11, Chart.S1);
             when Chart_States.S1_Init =>
-               Active := Chart.Moved (Active, Chart.S1_Init, Chart.S1);
+               Active := Moved (Active, Chart.S1_Init, Chart.S1);
          end case;
       end Leave_S1;
 
-      procedure Leave_S
-      with
-        Pre =>
-          Self.Leaf in Chart_States.S
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.S
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Leave_S is
       begin
          case Chart_States.S'(Self.Leaf) is
             when Chart_States.S1 =>
                Leave_S1;
-               Active := Chart.Moved (Active, Chart.S1, Chart.S);
+               Active := Moved (Active, Chart.S1, Chart.S);
             when Chart_States.S2 =>
                Leave_S2;
-               Active := Chart.Moved (Active, Chart.S2, Chart.S);
+               Active := Moved (Active, Chart.S2, Chart.S);
             when Chart_States.S_Init =>
-               Active := Chart.Moved (Active, Chart.S_Init, Chart.S);
+               Active := Moved (Active, Chart.S_Init, Chart.S);
          end case;
       end Leave_S;
    begin
@@ -219,116 +198,116 @@ is
          when Initial_Entry =>
             Self.Started := True;
             Self.Data.Foo := False;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.S2);
+            Active := Moved (Active, Chart.Nowhere, Chart.S2);
             pragma Assert (Active = Chart.S2);
             Self.Data.Defaulted := True;
             pragma Assert (Active = Chart.S2);
-            Active := Chart.Moved (Active, Chart.S2, Chart.S211);
+            Active := Moved (Active, Chart.S2, Chart.S211);
             Self.Leaf := Chart_States.S211;
          when S211_D =>
-            Active := Chart.Moved (Active, Chart.S211, Chart.S21_Init);
+            Active := Moved (Active, Chart.S211, Chart.S21_Init);
             Self.Leaf := Chart_States.S21_Init;
          when S211_H =>
-            Active := Chart.Moved (Active, Chart.S211, Chart.S_Init);
+            Active := Moved (Active, Chart.S211, Chart.S_Init);
             Self.Leaf := Chart_States.S_Init;
          when S21_Init =>
-            Active := Chart.Moved (Active, Chart.S21_Init, Chart.S211);
+            Active := Moved (Active, Chart.S21_Init, Chart.S211);
             Self.Leaf := Chart_States.S211;
          when S11_D =>
-            Active := Chart.Moved (Active, Chart.S11, Chart.S1);
+            Active := Moved (Active, Chart.S11, Chart.S1);
             pragma Assert (Active = Chart.S1);
             Self.Data.Foo := False;
             pragma Assert (Active = Chart.S1);
-            Active := Chart.Moved (Active, Chart.S1, Chart.S1_Init);
+            Active := Moved (Active, Chart.S1, Chart.S1_Init);
             Self.Leaf := Chart_States.S1_Init;
          when S11_G =>
-            Active := Chart.Moved (Active, Chart.S11, Chart.S211);
+            Active := Moved (Active, Chart.S11, Chart.S211);
             Self.Leaf := Chart_States.S211;
          when S11_H =>
-            Active := Chart.Moved (Active, Chart.S11, Chart.S_Init);
+            Active := Moved (Active, Chart.S11, Chart.S_Init);
             Self.Leaf := Chart_States.S_Init;
          when S21_A =>
             Leave_S21;
-            Active := Chart.Moved (Active, Chart.S21, Chart.S21);
+            Active := Moved (Active, Chart.S21, Chart.S21);
             pragma Assert (Active = Chart.S21);
             Self.Data.Defaulted := True;
             pragma Assert (Active = Chart.S21);
-            Active := Chart.Moved (Active, Chart.S21, Chart.S211);
+            Active := Moved (Active, Chart.S21, Chart.S211);
             Self.Leaf := Chart_States.S211;
          when S21_B =>
             Leave_S21;
-            Active := Chart.Moved (Active, Chart.S21, Chart.S211);
+            Active := Moved (Active, Chart.S21, Chart.S211);
             Self.Leaf := Chart_States.S211;
          when S21_G =>
             Leave_S21;
-            Active := Chart.Moved (Active, Chart.S21, Chart.S1);
+            Active := Moved (Active, Chart.S21, Chart.S1);
             pragma Assert (Active = Chart.S1);
             Self.Data.Defaulted := True;
             pragma Assert (Active = Chart.S1);
-            Active := Chart.Moved (Active, Chart.S1, Chart.S11);
+            Active := Moved (Active, Chart.S1, Chart.S11);
             Self.Leaf := Chart_States.S11;
          when S1_Init =>
-            Active := Chart.Moved (Active, Chart.S1_Init, Chart.S11);
+            Active := Moved (Active, Chart.S1_Init, Chart.S11);
             Self.Leaf := Chart_States.S11;
          when S1_A =>
             Leave_S1;
-            Active := Chart.Moved (Active, Chart.S1, Chart.S1);
+            Active := Moved (Active, Chart.S1, Chart.S1);
             pragma Assert (Active = Chart.S1);
             Self.Data.Defaulted := True;
             pragma Assert (Active = Chart.S1);
-            Active := Chart.Moved (Active, Chart.S1, Chart.S11);
+            Active := Moved (Active, Chart.S1, Chart.S11);
             Self.Leaf := Chart_States.S11;
          when S1_B =>
             Leave_S1;
-            Active := Chart.Moved (Active, Chart.S1, Chart.S11);
+            Active := Moved (Active, Chart.S1, Chart.S11);
             Self.Leaf := Chart_States.S11;
          when S1_C =>
             Leave_S1;
-            Active := Chart.Moved (Active, Chart.S1, Chart.S2);
+            Active := Moved (Active, Chart.S1, Chart.S2);
             pragma Assert (Active = Chart.S2);
             Self.Data.Defaulted := True;
             pragma Assert (Active = Chart.S2);
-            Active := Chart.Moved (Active, Chart.S2, Chart.S211);
+            Active := Moved (Active, Chart.S2, Chart.S211);
             Self.Leaf := Chart_States.S211;
          when S1_D =>
             Leave_S1;
-            Active := Chart.Moved (Active, Chart.S1, Chart.S);
+            Active := Moved (Active, Chart.S1, Chart.S);
             pragma Assert (Active = Chart.S);
             Self.Data.Foo := True;
             pragma Assert (Active = Chart.S);
-            Active := Chart.Moved (Active, Chart.S, Chart.S_Init);
+            Active := Moved (Active, Chart.S, Chart.S_Init);
             Self.Leaf := Chart_States.S_Init;
          when S1_F =>
             Leave_S1;
-            Active := Chart.Moved (Active, Chart.S1, Chart.S211);
+            Active := Moved (Active, Chart.S1, Chart.S211);
             Self.Leaf := Chart_States.S211;
          when S1_I =>
             null;
          when S2_C =>
             Leave_S2;
-            Active := Chart.Moved (Active, Chart.S2, Chart.S1);
+            Active := Moved (Active, Chart.S2, Chart.S1);
             pragma Assert (Active = Chart.S1);
             Self.Data.Defaulted := True;
             pragma Assert (Active = Chart.S1);
-            Active := Chart.Moved (Active, Chart.S1, Chart.S11);
+            Active := Moved (Active, Chart.S1, Chart.S11);
             Self.Leaf := Chart_States.S11;
          when S2_F =>
             Leave_S2;
-            Active := Chart.Moved (Active, Chart.S2, Chart.S11);
+            Active := Moved (Active, Chart.S2, Chart.S11);
             Self.Leaf := Chart_States.S11;
          when S2_I =>
             Self.Data.Foo := True;
          when S_Init =>
-            Active := Chart.Moved (Active, Chart.S_Init, Chart.S11);
+            Active := Moved (Active, Chart.S_Init, Chart.S11);
             Self.Leaf := Chart_States.S11;
          when S_E =>
             Leave_S;
-            Active := Chart.Moved (Active, Chart.S, Chart.S11);
+            Active := Moved (Active, Chart.S, Chart.S11);
             Self.Leaf := Chart_States.S11;
          when S_I =>
             Self.Data.Foo := False;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step
@@ -337,10 +316,7 @@ is
 
       procedure Fire_Whole (T : Firing)
       with
-        Pre =>
-          (if T = Initial_Entry then not Self.Started
-           else Self.Started and then In_Source (T, Self.Leaf))
-          and then Fired.Count = 0,
+        Pre => Is_Ready (Self, T) and then Fired.Count = 0,
         Post =>
           Fired.Count >= 1
           and then Self.Started

@@ -21,13 +21,10 @@ is
    is
       type Node is (Nowhere, Listening, Disorder);
 
-      function Innermost (Leaf : Keys_States.Leaf) return Node is
-        (Node'Val (Keys_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Keys_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is
@@ -39,29 +36,47 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started and then Self.Leaf = Target (Chosen, Before.Leaf))
+   with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire
      (Self   : in out Region;
       Item   : Event;
       Box    : in out Outbox;
       Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node then To_Node
+         else Chart.Disorder) with Ghost;
    begin
       case Chosen is
          when Initial_Entry =>
             Self.Started := True;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Listening);
+            Active := Moved (Active, Chart.Nowhere, Chart.Listening);
             Self.Leaf := Keys_States.Listening;
          when Pressed =>
             if Item.Value_Key = Qhsm_Test.Key_A then
@@ -101,7 +116,7 @@ is
                   Qhsm.Event'(Name => Qhsm.I, others => <>));
             end if;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

@@ -25,13 +25,10 @@ is
    is
       type Node is (Nowhere, Parked, Reaching, Holding, Gave_Up, Disorder);
 
-      function Innermost (Leaf : Task_Of_Arm_States.Leaf) return Node is
-        (Node'Val (Task_Of_Arm_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Task_Of_Arm_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -57,93 +54,68 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Lasting
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Timers (1)
+      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+           Before.Timers (1))
+      and then Self.Timers (2)
+        = Timer_After (2, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+             Before.Timers (2))) with Ghost;
+   --  Are time-outs, memory and kept events after it as declared?
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started
+      and then Self.Leaf = Target (Chosen)
+      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire
      (Self : in out Region; Box : in out Outbox; Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started
-       and then Self.Leaf = Target (Chosen)
-       and then Self.Timers (1)
-         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (1))
-       and then Self.Timers (2)
-         = Timer_After (2, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (2))
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
-      procedure Exit_Parked
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Parked, Chart.Nowhere)
-          and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Exit_Parked is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Moved (Active, Chart.Parked, Chart.Nowhere);
+         Active := Moved (Active, Chart.Parked, Chart.Nowhere);
       end Exit_Parked;
 
-      procedure Exit_Reaching
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Reaching, Chart.Nowhere)
-          and then Self.Timers (2) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Exit_Reaching is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active := Chart.Moved (Active, Chart.Reaching, Chart.Nowhere);
+         Active := Moved (Active, Chart.Reaching, Chart.Nowhere);
       end Exit_Reaching;
 
-      procedure Enter_Parked
-      with
-        Post =>
-          Self.Leaf = Task_Of_Arm_States.Parked
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Parked)
-          and then Self.Timers (1) = Ravenchart.Timers.Started (5)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Parked is
       begin
          Self.Leaf := Task_Of_Arm_States.Parked;
          Ravenchart.Timers.Arm (Self.Timers (1), 5);
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Parked);
+         Active := Moved (Active, Chart.Nowhere, Chart.Parked);
       end Enter_Parked;
 
-      procedure Enter_Reaching
-      with
-        Post =>
-          Self.Leaf = Task_Of_Arm_States.Reaching
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Reaching)
-          and then Self.Timers (2) = Ravenchart.Timers.Started (100)
-          and then (for all I in Self.Timers'Range =>
-                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Reaching is
       begin
          Self.Leaf := Task_Of_Arm_States.Reaching;
          Ravenchart.Timers.Arm (Self.Timers (2), 100);
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Reaching);
+         Active := Moved (Active, Chart.Nowhere, Chart.Reaching);
          Box.Set_Goal :=
            Surgical_Robot.Angle_X4'(Axis_1 => 300,
             Axis_2 => (-300),
@@ -152,33 +124,17 @@ is
          Box.Set_Goal_Sent := True;
       end Enter_Reaching;
 
-      procedure Enter_Holding
-      with
-        Post =>
-          Self.Leaf = Task_Of_Arm_States.Holding
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Holding)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Holding is
       begin
          Self.Leaf := Task_Of_Arm_States.Holding;
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Holding);
+         Active := Moved (Active, Chart.Nowhere, Chart.Holding);
          Box.Hold_Sent := True;
       end Enter_Holding;
 
-      procedure Enter_Gave_Up
-      with
-        Post =>
-          Self.Leaf = Task_Of_Arm_States.Gave_Up
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Gave_Up)
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Gave_Up is
       begin
          Self.Leaf := Task_Of_Arm_States.Gave_Up;
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Gave_Up);
+         Active := Moved (Active, Chart.Nowhere, Chart.Gave_Up);
          Box.Hold_Sent := True;
       end Enter_Gave_Up;
    begin
@@ -196,7 +152,7 @@ is
             Exit_Reaching;
             Enter_Gave_Up;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

@@ -20,13 +20,10 @@ is
    is
       type Node is (Nowhere, Before, After_Start, Disorder);
 
-      function Innermost (Leaf : Starting_States.Leaf) return Node is
-        (Node'Val (Starting_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Starting_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -50,56 +47,63 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Lasting
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Timers (1)
+      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+           Before.Timers (1))) with Ghost;
+   --  Are time-outs, memory and kept events after it as declared?
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started
+      and then Self.Leaf = Target (Chosen)
+      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire
      (Self   : in out Region;
       Ins    : Inputs;
       Box    : in out Outbox;
       Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started
-       and then Self.Leaf = Target (Chosen)
-       and then Self.Timers (1)
-         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (1))
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
-      procedure Exit_Before
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Before, Chart.Nowhere)
-          and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then Self.Started = Self.Started'Old
-      is
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node then To_Node
+         else Chart.Disorder) with Ghost;
+
+      procedure Exit_Before is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Moved (Active, Chart.Before, Chart.Nowhere);
+         Active := Moved (Active, Chart.Before, Chart.Nowhere);
       end Exit_Before;
 
-      procedure Enter_Before
-      with
-        Post =>
-          Self.Leaf = Starting_States.Before
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Before)
-          and then Self.Timers (1) = Ravenchart.Timers.Started (2)
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Before is
       begin
          Self.Leaf := Starting_States.Before;
          Ravenchart.Timers.Arm (Self.Timers (1), 2);
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Before);
+         Active := Moved (Active, Chart.Nowhere, Chart.Before);
       end Enter_Before;
    begin
       case Chosen is
@@ -112,21 +116,18 @@ is
             Box.Token_Out := 1;
             Box.Token_Out_Sent := True;
             pragma Assert (Active = Chart.Nowhere);
-            Active :=
-              Chart.Moved (Active, Chart.Nowhere, Chart.After_Start);
+            Active := Moved (Active, Chart.Nowhere, Chart.After_Start);
             Self.Leaf := Starting_States.After_Start;
          when Again =>
-            Active :=
-              Chart.Moved (Active, Chart.After_Start, Chart.Nowhere);
+            Active := Moved (Active, Chart.After_Start, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Box.Token_Out := Ins.Token_In.Value;
             Box.Token_Out_Sent := True;
             pragma Assert (Active = Chart.Nowhere);
-            Active :=
-              Chart.Moved (Active, Chart.Nowhere, Chart.After_Start);
+            Active := Moved (Active, Chart.Nowhere, Chart.After_Start);
             Self.Leaf := Starting_States.After_Start;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

@@ -20,13 +20,10 @@ is
    is
       type Node is (Nowhere, Empty, Holding, Disorder);
 
-      function Innermost (Leaf : Handling_States.Leaf) return Node is
-        (Node'Val (Handling_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Handling_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is
@@ -38,42 +35,56 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Fired (Self : Region; Chosen : Firing) return Boolean is
+     (Self.Started and then Self.Leaf = Target (Chosen)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire
      (Self   : in out Region;
       Ins    : Inputs;
       Box    : in out Outbox;
       Chosen : Firing)
-   with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post => Self.Started and then Self.Leaf = Target (Chosen)
+   with Pre => Is_Ready (Self, Chosen), Post => Is_Fired (Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node then To_Node
+         else Chart.Disorder) with Ghost;
    begin
       case Chosen is
          when Initial_Entry =>
             Self.Started := True;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Empty);
+            Active := Moved (Active, Chart.Nowhere, Chart.Empty);
             Self.Leaf := Handling_States.Empty;
          when Take =>
-            Active := Chart.Moved (Active, Chart.Empty, Chart.Holding);
+            Active := Moved (Active, Chart.Empty, Chart.Holding);
             Self.Leaf := Handling_States.Holding;
          when Pass_On =>
-            Active := Chart.Moved (Active, Chart.Holding, Chart.Nowhere);
+            Active := Moved (Active, Chart.Holding, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Box.Token_Out := Ins.Held;
             Box.Token_Out_Sent := True;
             pragma Assert (Active = Chart.Nowhere);
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Empty);
+            Active := Moved (Active, Chart.Nowhere, Chart.Empty);
             Self.Leaf := Handling_States.Empty;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

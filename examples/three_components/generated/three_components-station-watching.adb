@@ -20,13 +20,10 @@ is
    is
       type Node is (Nowhere, Quiet, Busy, Disorder);
 
-      function Innermost (Leaf : Watching_States.Leaf) return Node is
-        (Node'Val (Watching_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Watching_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -50,68 +47,75 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Lasting
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Timers (1)
+      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
+           Before.Timers (1))) with Ghost;
+   --  Are time-outs, memory and kept events after it as declared?
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started
+      and then Self.Leaf = Target (Chosen)
+      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire (Self : in out Region; Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started
-       and then Self.Leaf = Target (Chosen)
-       and then Self.Timers (1)
-         = Timer_After (1, Domain_Of (Chosen), Self.Leaf'Old, Self.Leaf,
-              Self.Timers'Old (1))
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
-      procedure Exit_Busy
-      with
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Busy, Chart.Nowhere)
-          and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then Self.Started = Self.Started'Old
-      is
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node then To_Node
+         else Chart.Disorder) with Ghost;
+
+      procedure Exit_Busy is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Moved (Active, Chart.Busy, Chart.Nowhere);
+         Active := Moved (Active, Chart.Busy, Chart.Nowhere);
       end Exit_Busy;
 
-      procedure Enter_Busy
-      with
-        Post =>
-          Self.Leaf = Watching_States.Busy
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Busy)
-          and then Self.Timers (1) = Ravenchart.Timers.Started (2)
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Busy is
       begin
          Self.Leaf := Watching_States.Busy;
          Ravenchart.Timers.Arm (Self.Timers (1), 2);
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Busy);
+         Active := Moved (Active, Chart.Nowhere, Chart.Busy);
       end Enter_Busy;
    begin
       case Chosen is
          when Initial_Entry =>
             Self.Started := True;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Quiet);
+            Active := Moved (Active, Chart.Nowhere, Chart.Quiet);
             Self.Leaf := Watching_States.Quiet;
          when Seen =>
-            Active := Chart.Moved (Active, Chart.Quiet, Chart.Nowhere);
+            Active := Moved (Active, Chart.Quiet, Chart.Nowhere);
             Enter_Busy;
          when Calm =>
             Exit_Busy;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Quiet);
+            Active := Moved (Active, Chart.Nowhere, Chart.Quiet);
             Self.Leaf := Watching_States.Quiet;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

@@ -39,13 +39,10 @@ is
       type Node is
         (Nowhere, Standing, Following, Safe, Safe_Off_Bus, Disorder);
 
-      function Innermost (Leaf : Drive_States.Leaf) return Node is
-        (Node'Val (Drive_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Drive_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is
@@ -57,59 +54,75 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started and then Self.Leaf = Target (Chosen, Before.Leaf))
+   with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire (Self : in out Region; Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node then To_Node
+         else Chart.Disorder) with Ghost;
    begin
       case Chosen is
          when Initial_Entry =>
             Self.Started := True;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Standing);
+            Active := Moved (Active, Chart.Nowhere, Chart.Standing);
             Self.Leaf := Drive_States.Standing;
          when Go =>
-            Active := Chart.Moved (Active, Chart.Standing, Chart.Following);
+            Active := Moved (Active, Chart.Standing, Chart.Following);
             Self.Leaf := Drive_States.Following;
          when Rest =>
-            Active := Chart.Moved (Active, Chart.Following, Chart.Standing);
+            Active := Moved (Active, Chart.Following, Chart.Standing);
             Self.Leaf := Drive_States.Standing;
          when Lost_At_Rest =>
-            Active := Chart.Moved (Active, Chart.Standing, Chart.Safe);
+            Active := Moved (Active, Chart.Standing, Chart.Safe);
             Self.Leaf := Drive_States.Safe;
          when Lost =>
-            Active := Chart.Moved (Active, Chart.Following, Chart.Safe);
+            Active := Moved (Active, Chart.Following, Chart.Safe);
             Self.Leaf := Drive_States.Safe;
          when Cut_Off_At_Rest =>
-            Active :=
-              Chart.Moved (Active, Chart.Standing, Chart.Safe_Off_Bus);
+            Active := Moved (Active, Chart.Standing, Chart.Safe_Off_Bus);
             Self.Leaf := Drive_States.Safe_Off_Bus;
          when Cut_Off =>
-            Active :=
-              Chart.Moved (Active, Chart.Following, Chart.Safe_Off_Bus);
+            Active := Moved (Active, Chart.Following, Chart.Safe_Off_Bus);
             Self.Leaf := Drive_States.Safe_Off_Bus;
          when Cut_Off_Besides =>
-            Active := Chart.Moved (Active, Chart.Safe, Chart.Safe_Off_Bus);
+            Active := Moved (Active, Chart.Safe, Chart.Safe_Off_Bus);
             Self.Leaf := Drive_States.Safe_Off_Bus;
          when Still_Cut_Off | Told_Off_Bus =>
             null;
          when Connected =>
-            Active := Chart.Moved (Active, Chart.Safe_Off_Bus, Chart.Safe);
+            Active := Moved (Active, Chart.Safe_Off_Bus, Chart.Safe);
             Self.Leaf := Drive_States.Safe;
          when Back =>
-            Active := Chart.Moved (Active, Chart.Safe, Chart.Standing);
+            Active := Moved (Active, Chart.Safe, Chart.Standing);
             Self.Leaf := Drive_States.Standing;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step

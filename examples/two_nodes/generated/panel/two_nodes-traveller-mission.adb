@@ -48,13 +48,10 @@ is
         (Nowhere, Waiting, Outward, Homeward, Safe, Safe_Off_Bus,
          Travelling, Disorder);
 
-      function Innermost (Leaf : Mission_States.Leaf) return Node is
-        (Node'Val (Mission_States.Leaf'Pos (Leaf) + 1));
-
-      function Moved
-        (Active_Node : Node; From_Node : Node; To_Node : Node)
-        return Node is
-        (if Active_Node = From_Node then To_Node else Disorder);
+      function Innermost (Self : Region) return Node is
+        (if Self.Started
+            then Node'Val (Mission_States.Leaf'Pos (Self.Leaf) + 1)
+         else Nowhere);
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is
@@ -66,98 +63,97 @@ is
       end if;
    end Poll;
 
+   function Is_Ready (Self : Region; Chosen : Firing) return Boolean is
+     (if Chosen = Initial_Entry then not Self.Started
+      else Self.Started and then In_Source (Chosen, Self.Leaf)) with Ghost;
+   --  May it be fired? At first only the start may.
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
+
+   function Is_Fired
+     (Before : Region; Self : Region; Chosen : Firing)
+     return Boolean is
+     (Self.Started and then Self.Leaf = Target (Chosen, Before.Leaf))
+   with Ghost;
+   --  Is the region after it as declared?
+
+   pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
+
    procedure Fire (Self : in out Region; Chosen : Firing)
    with
-     Pre =>
-       (if Chosen = Initial_Entry then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post =>
-       Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
+     Pre => Is_Ready (Self, Chosen),
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
-      Active : Chart.Node :=
-        (if Self.Started then Chart.Innermost (Self.Leaf)
-         else Chart.Nowhere)
-      with Ghost;
+      Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
-      procedure Enter_Outward
-      with
-        Post =>
-          Self.Leaf = Mission_States.Outward
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Travelling, Chart.Outward)
-          and then Self.Started = Self.Started'Old
-      is
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node;
+         In_Order    : Boolean := True)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node and then In_Order
+            then To_Node
+         else Chart.Disorder) with Ghost;
+
+      procedure Enter_Outward is
       begin
          Self.Leaf := Mission_States.Outward;
-         Active := Chart.Moved (Active, Chart.Travelling, Chart.Outward);
+         Active := Moved (Active, Chart.Travelling, Chart.Outward);
          Self.Data.Goal := 20_000;
       end Enter_Outward;
 
-      procedure Enter_Homeward
-      with
-        Post =>
-          Self.Leaf = Mission_States.Homeward
-          and then Active
-            = Chart.Moved (Active'Old, Chart.Travelling, Chart.Homeward)
-          and then Self.Started = Self.Started'Old
-      is
+      procedure Enter_Homeward is
       begin
          Self.Leaf := Mission_States.Homeward;
-         Active := Chart.Moved (Active, Chart.Travelling, Chart.Homeward);
+         Active := Moved (Active, Chart.Travelling, Chart.Homeward);
          Self.Data.Goal := 0;
       end Enter_Homeward;
    begin
       case Chosen is
          when Initial_Entry =>
             Self.Started := True;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Waiting);
+            Active := Moved (Active, Chart.Nowhere, Chart.Waiting);
             Self.Leaf := Mission_States.Waiting;
          when There =>
-            Active := Chart.Moved (Active, Chart.Outward, Chart.Travelling);
+            Active := Moved (Active, Chart.Outward, Chart.Travelling);
             Enter_Homeward;
          when Home =>
-            Active :=
-              Chart.Moved (Active, Chart.Homeward, Chart.Travelling);
+            Active := Moved (Active, Chart.Homeward, Chart.Travelling);
             Enter_Outward;
          when Go =>
-            Active := Chart.Moved (Active, Chart.Waiting, Chart.Travelling);
+            Active := Moved (Active, Chart.Waiting, Chart.Travelling);
             Enter_Outward;
          when Lost =>
             Active :=
-              (if Self.Leaf in Mission_States.Travelling
-                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                        Chart.Travelling)
-               else Chart.Disorder);
-            Active := Chart.Moved (Active, Chart.Travelling, Chart.Safe);
+              Moved (Active, Chart.Innermost (Self), Chart.Travelling,
+                 Self.Leaf in Mission_States.Travelling);
+            Active := Moved (Active, Chart.Travelling, Chart.Safe);
             Self.Leaf := Mission_States.Safe;
          when Cut_Off_Early =>
-            Active :=
-              Chart.Moved (Active, Chart.Waiting, Chart.Safe_Off_Bus);
+            Active := Moved (Active, Chart.Waiting, Chart.Safe_Off_Bus);
             Self.Leaf := Mission_States.Safe_Off_Bus;
          when Cut_Off =>
             Active :=
-              (if Self.Leaf in Mission_States.Travelling
-                  then Chart.Moved (Active, Chart.Innermost (Self.Leaf),
-                        Chart.Travelling)
-               else Chart.Disorder);
-            Active :=
-              Chart.Moved (Active, Chart.Travelling, Chart.Safe_Off_Bus);
+              Moved (Active, Chart.Innermost (Self), Chart.Travelling,
+                 Self.Leaf in Mission_States.Travelling);
+            Active := Moved (Active, Chart.Travelling, Chart.Safe_Off_Bus);
             Self.Leaf := Mission_States.Safe_Off_Bus;
          when Cut_Off_Besides =>
-            Active := Chart.Moved (Active, Chart.Safe, Chart.Safe_Off_Bus);
+            Active := Moved (Active, Chart.Safe, Chart.Safe_Off_Bus);
             Self.Leaf := Mission_States.Safe_Off_Bus;
          when Still_Cut_Off =>
             null;
          when Connected =>
-            Active := Chart.Moved (Active, Chart.Safe_Off_Bus, Chart.Safe);
+            Active := Moved (Active, Chart.Safe_Off_Bus, Chart.Safe);
             Self.Leaf := Mission_States.Safe;
          when Again =>
-            Active := Chart.Moved (Active, Chart.Safe, Chart.Waiting);
+            Active := Moved (Active, Chart.Safe, Chart.Waiting);
             Self.Leaf := Mission_States.Waiting;
       end case;
-      pragma Assert (Active = Chart.Innermost (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step
