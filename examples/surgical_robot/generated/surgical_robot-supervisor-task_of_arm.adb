@@ -92,6 +92,14 @@ is
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
 
+      function Moved
+        (Active_Node : Chart.Node;
+         From_Node   : Chart.Node;
+         To_Node     : Chart.Node)
+        return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node then To_Node
+         else Chart.Disorder) with Ghost;
+
       procedure Exit_Parked is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
