@@ -202,8 +202,7 @@ is
      return Boolean is
      (Self.Started
       and then Self.Place = Target (Chosen, Before.Place)
-      and then Is_Lasting (Before, Self, Chosen)
-      and then Is_Safe (Self.Place, Self.Data)) with Ghost;
+      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
    --  Is the region after it as declared?
 
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
@@ -211,7 +210,9 @@ is
    procedure Fire (Self : in out Region; Item : Event; Chosen : Firing)
    with
      Pre => Is_Ready (Self, Item, Chosen),
-     Post => Is_Fired (Self'Old, Self, Chosen)
+     Post =>
+       Is_Fired (Self'Old, Self, Chosen)
+       and then Is_Safe (Self.Place, Self.Data)
    is
       use type Chart.Node;
 

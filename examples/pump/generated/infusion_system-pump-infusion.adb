@@ -421,8 +421,7 @@ is
      return Boolean is
      (Self.Started
       and then Self.Place = Target (Chosen, Before.Place, Before.Past)
-      and then Is_Lasting (Before, Self, Item, Chosen)
-      and then Is_Safe (Self.Place, Self.Data)) with Ghost;
+      and then Is_Lasting (Before, Self, Item, Chosen)) with Ghost;
    --  Is the region after it as declared?
 
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
@@ -434,7 +433,9 @@ is
       Chosen : Firing)
    with
      Pre => Is_Ready (Self, Ins, Item, Chosen),
-     Post => Is_Fired (Self'Old, Self, Item, Chosen)
+     Post =>
+       Is_Fired (Self'Old, Self, Item, Chosen)
+       and then Is_Safe (Self.Place, Self.Data)
    is
       use type Chart.Node;
 
@@ -739,7 +740,10 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Item, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is
@@ -786,7 +790,10 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Item, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is
@@ -830,7 +837,10 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Item, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is
@@ -903,7 +913,10 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Item, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is
@@ -957,7 +970,10 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Item, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is

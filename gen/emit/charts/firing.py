@@ -114,7 +114,6 @@ class Moves:
         start = (Assign("Self.Started", TRUE), *joined(self._steps(self.shape.start)))
         rows = [(f.literal, self._row(f)) for f in self.shape.firings]
         rows = rows or [("None", (NULL,))]
-        procedures = self.moving.procedures()
         agreed: Expr = self.nodes.agreed()
         batches: tuple[Decl, ...] = ()
         if len(rows) > MANY:
@@ -125,6 +124,7 @@ class Moves:
             by_batch = [rows[at : at + BATCH] for at in range(0, len(rows), BATCH)]
             batches = (agrees, *(d for batch in by_batch for d in _procedure(batch, claims)))
             rows = [_call(batch) for batch in by_batch]
+        procedures = self.moving.procedures()
         return Subprogram(
             "Fire",
             self.fire_params(),
@@ -162,9 +162,10 @@ class Moves:
 
     def _claims(self, *inside: Expr) -> tuple[Aspect, ...]:
         """Both of a procedure that fires; ``inside`` holds of what only Fire knows."""
+        fired = asked(self._fired, Before=Old("Self"))
         return (
             Aspect("Pre", both(self.ready("Chosen"), *inside)),
-            Aspect("Post", both(asked(self._fired, Before=Old("Self")), *inside[-1:])),
+            Aspect("Post", both(fired, *self.safety.holds(), *inside[-1:])),
         )
 
     def ready(self, chosen: str) -> Expr:
@@ -186,7 +187,6 @@ class Moves:
             Ref("Self.Started"),
             of_before(equal(Ref(self.held), self.shape.target("Chosen"))),
             *([] if self._lasts is None else [asked(self._lasts)]),
-            *self.safety.holds(),
         )
         return self._claim_of("Is_Fired", done, _CHOSEN, _BEFORE)
 
