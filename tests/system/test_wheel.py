@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.paths import ROOT
+from tests.support.progress import without_progress
 
 SOURCES = (
     *("ravenchart", "gen", "analysis", "behaviour", "hw_can", "spark_runtime", "proofs"),
@@ -77,7 +78,7 @@ def _called(away: Path, *words: str, status: int = 0) -> str:
         check=False,
     )
     assert done.returncode == status, done.stdout + done.stderr
-    return done.stdout + done.stderr
+    return done.stdout + without_progress(done.stderr)
 
 
 def test_a_wheel_has_one_import_package_and_all_that_a_program_needs(wheel: Path) -> None:
