@@ -17,11 +17,9 @@ from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.names import meant
 from ravenchart.gen.origins import Origin
 
-from .located import Map, Seq, scalar
+from .located import FormPath, Map, Seq, scalar
 from .schema import ModelFile
 from .schema_base import REQUIREMENTS
-
-FormPath = tuple[str | int, ...]
 
 ELSEWHERE: dict[str, str] = (
     {

@@ -28,6 +28,9 @@ from yaml.events import (
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.origins import Origin
 
+FormPath = tuple[int | str, ...]
+"""Keys and numbers of items, from the root of a file."""
+
 DEEPEST = 64
 """Most mappings and lists inside each other."""
 

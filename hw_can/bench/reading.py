@@ -9,12 +9,9 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from ravenchart.gen.diagnostics import Diagnostic, error, in_order, render_all
-from ravenchart.gen.files.located import Map, Seq, lines_of
+from ravenchart.gen.files.located import FormPath, Map, Seq, lines_of
 from ravenchart.gen.language.names import REQUIREMENT
 from ravenchart.gen.origins import Origin
-
-FormPath = tuple[int | str, ...]
-"""Keys and numbers of items, from the root of a file."""
 
 KEYS, VALUES, UNKNOWN, MISFIT = "RV-1302", "RV-1303", "RV-1304", "RV-1306"
 """Codes: wrong keys, a wrong value, a name that does not exist, parts that do not fit together."""

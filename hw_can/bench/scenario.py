@@ -15,14 +15,14 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict, Field
 
 from ravenchart.gen.diagnostics import error, render
-from ravenchart.gen.files.located import grow
+from ravenchart.gen.files.located import FormPath, grow
 from ravenchart.gen.language.names import LONGEST_REQUIREMENT, REQUIREMENT
 from ravenchart.gen.origins import Origin
 
 from .plant import Axis
 from .protection import Wrong
 from .quantities import Length, Scalar, Speed, Time
-from .reading import KEYS, MISFIT, UNKNOWN, VALUES, FormPath, Source, rendered
+from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, rendered
 from .replay import fault_of_log
 
 

@@ -15,12 +15,13 @@ from cantools.database.can import Signal as DbcSignal
 from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.emit.tables.trace_map import CONTROLLER_STATES, elements
+from ravenchart.gen.files.located import FormPath
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
 from ravenchart.hw_can.bench.peer import BenchError, Value
-from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, FormPath, Source, rendered
+from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
 from ravenchart.hw_can.bench.replay import from_outside, read_log
 from ravenchart.hw_can.bench.scenario import (
     Cut,
