@@ -69,9 +69,8 @@ package body Supervised is
       Observe (Item, Seen);
       case Item is
          when Watch_Healthy =>
-            --  The machine may be busy: half a second is no silence here.
             Is_Silent := Ravenchart.Liveness.Is_Silent
-              ((0, Period, 500_000_000), Seen, Elapsed);
+              ((0, Period, Limit_Of_Healthy), Seen, Elapsed);
          when Watch_Stuck =>
             Is_Silent := Ravenchart.Liveness.Is_Silent
               ((2_000_000, Period, Limit), Seen, Elapsed);
