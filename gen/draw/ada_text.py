@@ -1,8 +1,8 @@
 """The declared form of a chart, read from generated Ada text.
 
 Of the specs of a component and of one of its regions this reads the types of the
-states and the functions `Enabled` and `Target`, and nothing else: what the proof
-rests on. Guards stay text.
+states and the functions `In_Source`, `Enabled` and `Target`, and nothing else: what
+the proof rests on. Guards stay text.
 """
 
 from __future__ import annotations
@@ -20,13 +20,15 @@ GRAMMAR = r"""
 enumeration: "type" NAME "is" "(" NAME ("," NAME)* ")"
 composite: "subtype" NAME "is" NAME "range" NAME ".." NAME
 lane: NAME ":" NAME ":=" NAME
-conditions: _HEAD _profile "(" "case" NAME "is" condition ("," condition)* ")"
+sources: _HEAD _profile _cases
+conditions: _HEAD _profile "(" NAME _group _AND_THEN _cases ")"
+_cases: "(" "case" NAME "is" condition ("," condition)* ")"
 moves: _HEAD _profile "(" "case" NAME "is" move ("," move)* ")"
 
 _HEAD: /function\s+\w+/
 _profile: "(" _parameter (";" _parameter)* ")" "return" NAME "is"
 _parameter: NAME ":" NAME
-condition: "when" NAME _ARROW conjunct (_AND_THEN conjunct)*
+condition: "when" NAME ("|" NAME)* _ARROW conjunct (_AND_THEN conjunct)*
 move: "when" NAME ("|" NAME)* _ARROW (conjunct | configuration)
 configuration: "(" [NAME _DELTA] leaf ("," leaf)* ")"
 leaf: NAME _ARROW conjunct
@@ -109,9 +111,10 @@ class _Reader(Transformer[Token, object]):
         """A component of a configuration."""
         return DrawnLane(*map(str, names))
 
-    def condition(self, _: Meta, parts: Sequence[str]) -> tuple[str, tuple[str, ...]]:
-        """A transition and its conjuncts."""
-        return str(parts[0]), tuple(parts[1:])
+    def condition(self, _: Meta, parts: Sequence[str]) -> dict[str, tuple[str, ...]]:
+        """Transitions and their conjuncts."""
+        said = tuple(part for part in parts if not isinstance(part, Token))
+        return {str(part): said for part in parts if isinstance(part, Token)}
 
     def leaf(self, _: Meta, parts: Sequence[str]) -> tuple[str, str]:
         """A component and its leaf."""
@@ -125,14 +128,23 @@ class _Reader(Transformer[Token, object]):
         """Transitions and where they lead."""
         return {str(name): parts[-1] for name in parts[:-1]}
 
+    def sources(self, _: Meta, parts: Sequence[object]) -> dict[str, object]:
+        """`In_Source`."""
+        return _rows(parts)
+
     def conditions(self, _: Meta, parts: Sequence[object]) -> dict[str, object]:
         """`Enabled`."""
-        return dict(part for part in parts if isinstance(part, tuple))
+        return _rows(parts)
 
     def moves(self, _: Meta, parts: Sequence[object]) -> dict[str, object]:
         """`Target`."""
-        rows = [part for part in parts if isinstance(part, dict)]
-        return {name: where for row in rows for name, where in row.items()}
+        return _rows(parts)
+
+
+def _rows(parts: Sequence[object]) -> dict[str, object]:
+    """What the alternatives of a case say of each transition."""
+    rows = [part for part in parts if isinstance(part, dict)]
+    return {name: said for row in rows for name, said in row.items()}
 
 
 _ENUMERATION = re.compile(r"type \w+ is \(")
@@ -142,7 +154,7 @@ _RECORD = re.compile(r"type \w+ is record ")
 _PARSER = Lark(
     GRAMMAR,
     parser="lalr",
-    start=["enumeration", "composite", "lane", "conditions", "moves"],
+    start=["enumeration", "composite", "lane", "sources", "conditions", "moves"],
     propagate_positions=True,
 )
 
@@ -151,21 +163,27 @@ def declared(spec: str, component: str) -> Declared:
     """The declared form in the specs of a region and of its component."""
     spec, component = _plain(spec), _plain(component)
     package = re.search(r"\bpackage ([\w.]+) with", spec)
-    enabled = re.search(r"\bfunction Enabled .*", spec)
-    target = re.search(r"\bfunction Target .*", spec)
+    functions = [_function(name, spec) for name in ("In_Source", "Enabled", "Target")]
     states = re.search(r": (\w+_States)\.", spec)
     inside = states and re.search(rf"\bpackage {states[1]} is (.*) end {states[1]};", component)
-    if not (package and enabled and target and inside):
+    if not (package and all(functions) and inside):
         raise NotDeclaredError("no functions Enabled and Target over the states of a region")
+    sources, conditions, moves = map(_read, ("sources", "conditions", "moves"), functions)
     parts = [_RECORD.sub("", part) for part in _declarations(inside[1])]
     return Declared(
         ".".join(package[1].split(".")[-2:]),
         dict(_read("enumeration", part) for part in parts if _ENUMERATION.match(part)),
         tuple(_read("composite", part) for part in parts if _COMPOSITE.match(part)),
         tuple(_read("lane", part) for part in parts if _LANE.match(part)),
-        _read("conditions", next(_declarations(enabled[0]))),
-        _read("moves", next(_declarations(target[0]))),
+        {name: (*sources.get(name, ()), *said) for name, said in conditions.items()},
+        moves,
     )
+
+
+def _function(name: str, spec: str) -> str:
+    """The declaration of a function; its parameter `Self`, the region, says nothing more."""
+    found = re.search(rf"\bfunction {name} .*", spec)
+    return next(_declarations(found[0])).replace("Self.", "") if found else ""
 
 
 def _plain(text: str) -> str:

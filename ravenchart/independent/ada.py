@@ -364,7 +364,15 @@ def enumeration(items: Sequence[Token], name: str) -> list[Token]:
 
 
 def cases(items: Sequence[Token], function: str) -> dict[str, tuple[Token, list[Token]]]:
-    """The alternatives of ``function NAME (...) return ... is (case X is when ...)``, by choice."""
+    """The alternatives of ``function NAME (...) return ... is (... case X is when ...)``, by
+    choice."""
+    return alternatives(items, function)[1]
+
+
+def alternatives(
+    items: Sequence[Token], function: str
+) -> tuple[list[Token], dict[str, tuple[Token, list[Token]]]]:
+    """What stands before the case of an expression function, and its alternatives by choice."""
     for place, token in enumerate(items):
         if token.low != "function" or items[place + 1].low != function.lower():
             continue
@@ -373,11 +381,12 @@ def cases(items: Sequence[Token], function: str) -> dict[str, tuple[Token, list[
             at = closing(items, at)
         while items[at].low != "is":
             at += 1
-        last = closing(items, at + 1)
+        begin, last = at + 1, closing(items, at + 1)
         while at < last and [t.low for t in items[at + 1 : at + 3]] != ["(", "case"]:
             at += 1
         if at == last:
-            return {}
+            return [], {}
+        before = list(items[begin : at + 1])
         body = items[at + 5 : closing(items, at + 1)]
         found: dict[str, tuple[Token, list[Token]]] = {}
         for part in split(body, ","):
@@ -386,5 +395,5 @@ def cases(items: Sequence[Token], function: str) -> dict[str, tuple[Token, list[
                 for choice in split(part[1:arrow], "|"):
                     again = " again" if choice[0].low in found else ""
                     found[f"{choice[0].low}{again}"] = choice[0], part[arrow + 1 :]
-        return found
-    return {}
+        return before, found
+    return [], {}

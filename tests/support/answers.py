@@ -38,6 +38,6 @@ def answered(capsys: pytest.CaptureFixture[str], *words: object, status: int = 0
         ended = wrong.code
     out, errors = capsys.readouterr()
     answer = valid(out)
-    assert (ended, answer["status"]) == (status, status), errors
+    assert (ended, answer["status"]) == (status, status), errors + out
     assert answer["format"] == 1
     return answer

@@ -9,26 +9,22 @@ is
    pragma Warnings (Off, "*can never be *");
 
    function Select_Transition
-     (Leaf : Inbox_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs;
-      Item : Event)
-     return Selection is
-     (case Leaf is
-        when Inbox_States.Open =>
-           (if Now = On_Asked
-               and then (Ins.Nmt = Nmt_States.Pre_Operational
-                  or else Ins.Nmt = Nmt_States.Operational)
-               and then Item.Value_Sdo.Command /= 128
-               then Ask
-            elsif Now = On_Ordered and then Ins.Nmt = Nmt_States.Operational
-               then Order
-            elsif Now = On_Sync_Came
-               and then Ins.Nmt = Nmt_States.Operational
-               then Synchronise
-            else None))
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection
    with
-     Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins, Item);
+     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now, Ins, Item)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    package Chart
    with Ghost
@@ -118,7 +114,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self.Leaf, Now, Ins, Item);
+         Fired := Select_Transition (Self, Now, Ins, Item);
       end if;
       if Fired /= None then
          Fire (Self, Item, Fired);

@@ -48,36 +48,33 @@ is
       Data    : Variables;
    end record;
 
-   function Enabled
-     (T    : Transition;
-      Leaf : Inbox_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs;
-      Item : Event)
-     return Boolean is
-     (case T is
-        when Ask =>
-           Leaf = Inbox_States.Open
-           and then Now = On_Asked
-           and then (Ins.Nmt = Nmt_States.Pre_Operational
-              or else Ins.Nmt = Nmt_States.Operational)
-           and then Item.Value_Sdo.Command /= 128,
-        when Order =>
-           Leaf = Inbox_States.Open
-           and then Now = On_Ordered
-           and then Ins.Nmt = Nmt_States.Operational,
-        when Synchronise =>
-           Leaf = Inbox_States.Open
-           and then Now = On_Sync_Came
-           and then Ins.Nmt = Nmt_States.Operational);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Inbox_States.Leaf)
      return Boolean is
      (case T is
         when Ask | Order | Synchronise => Leaf = Inbox_States.Open);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition;
+      Self : Region;
+      Now  : Occurrence;
+      Ins  : Inputs;
+      Item : Event)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Ask =>
+              Now = On_Asked
+              and then (Ins.Nmt = Nmt_States.Pre_Operational
+                 or else Ins.Nmt = Nmt_States.Operational)
+              and then Item.Value_Sdo.Command /= 128,
+           when Order =>
+              Now = On_Ordered and then Ins.Nmt = Nmt_States.Operational,
+           when Synchronise =>
+              Now = On_Sync_Came and then Ins.Nmt = Nmt_States.Operational));
+   --  The trigger and the guard of each transition.
 
    function Target
      (T : Firing; Leaf : Inbox_States.Leaf)
@@ -89,16 +86,16 @@ is
 
    function Is_Selection
      (Chosen : Selection;
-      Leaf   : Inbox_States.Leaf;
+      Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs;
       Item   : Event)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
-          and then Enabled (Chosen, Leaf, Now, Ins, Item)))
+          and then Enabled (Chosen, Self, Now, Ins, Item)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now, Ins, Item))))
+            (if T < Chosen then not Enabled (T, Self, Now, Ins, Item))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
@@ -128,7 +125,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now, Ins, Item))
+          else Is_Selection (Fired, Self'Old, Now, Ins, Item))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old));
    --  One run-to-completion step.

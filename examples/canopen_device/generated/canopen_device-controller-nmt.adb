@@ -9,115 +9,22 @@ is
    pragma Warnings (Off, "*can never be *");
 
    function Select_Transition
-     (Leaf : Nmt_States.Leaf;
-      Now  : Occurrence;
-      Data : Variables;
-      Ins  : Inputs;
-      Item : Event)
-     return Selection is
-     (case Leaf is
-        when Nmt_States.Initialisation =>
-           (if Now = Expiry_Of_Initialised then Initialised else None),
-        when Nmt_States.Boot_Up_Due =>
-           (if Now = Conditions and then Ins.Beat.Boots = Data.Boots
-               then Booted
-            else None),
-        when Nmt_States.Pre_Operational =>
-           (if Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Start
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Start
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service = Canopen_Device.Stop
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Stop
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Enter_Pre_Operational
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Prepare
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Reset_Node
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Reset_Node
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Reset_Communication
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Reset_Communication
-            else None),
-        when Nmt_States.Operational =>
-           (if Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Start
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Start
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service = Canopen_Device.Stop
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Stop
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Enter_Pre_Operational
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Prepare
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Reset_Node
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Reset_Node
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Reset_Communication
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Reset_Communication
-            else None),
-        when Nmt_States.Stopped =>
-           (if Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Start
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Start
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service = Canopen_Device.Stop
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Stop
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Enter_Pre_Operational
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Prepare
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Reset_Node
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Reset_Node
-            elsif Now = On_Commanded
-               and then Item.Value_Nmt_Command.Service
-                 = Canopen_Device.Reset_Communication
-               and then (Item.Value_Nmt_Command.Node = 0
-                  or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-               then Reset_Communication
-            else None))
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection
    with
-     Post =>
-       Is_Selection (Select_Transition'Result, Leaf, Now, Data, Ins, Item);
+     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now, Ins, Item)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    package Chart
    with Ghost
@@ -276,7 +183,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self.Leaf, Now, Self.Data, Ins, Item);
+         Fired := Select_Transition (Self, Now, Ins, Item);
       end if;
       if Fired /= None then
          Fire (Self, Fired);

@@ -55,57 +55,6 @@ is
       Data    : Variables;
    end record;
 
-   function Enabled
-     (T    : Transition;
-      Leaf : Nmt_States.Leaf;
-      Now  : Occurrence;
-      Data : Variables;
-      Ins  : Inputs;
-      Item : Event)
-     return Boolean is
-     (case T is
-        when Initialised =>
-           Leaf = Nmt_States.Initialisation
-           and then Now = Expiry_Of_Initialised,
-        when Booted =>
-           Leaf = Nmt_States.Boot_Up_Due
-           and then Now = Conditions
-           and then Ins.Beat.Boots = Data.Boots,
-        when Start =>
-           Leaf in Nmt_States.Ready
-           and then Now = On_Commanded
-           and then Item.Value_Nmt_Command.Service = Canopen_Device.Start
-           and then (Item.Value_Nmt_Command.Node = 0
-              or else Item.Value_Nmt_Command.Node = Ins.Node_Id),
-        when Stop =>
-           Leaf in Nmt_States.Ready
-           and then Now = On_Commanded
-           and then Item.Value_Nmt_Command.Service = Canopen_Device.Stop
-           and then (Item.Value_Nmt_Command.Node = 0
-              or else Item.Value_Nmt_Command.Node = Ins.Node_Id),
-        when Prepare =>
-           Leaf in Nmt_States.Ready
-           and then Now = On_Commanded
-           and then Item.Value_Nmt_Command.Service
-             = Canopen_Device.Enter_Pre_Operational
-           and then (Item.Value_Nmt_Command.Node = 0
-              or else Item.Value_Nmt_Command.Node = Ins.Node_Id),
-        when Reset_Node =>
-           Leaf in Nmt_States.Ready
-           and then Now = On_Commanded
-           and then Item.Value_Nmt_Command.Service
-             = Canopen_Device.Reset_Node
-           and then (Item.Value_Nmt_Command.Node = 0
-              or else Item.Value_Nmt_Command.Node = Ins.Node_Id),
-        when Reset_Communication =>
-           Leaf in Nmt_States.Ready
-           and then Now = On_Commanded
-           and then Item.Value_Nmt_Command.Service
-             = Canopen_Device.Reset_Communication
-           and then (Item.Value_Nmt_Command.Node = 0
-              or else Item.Value_Nmt_Command.Node = Ins.Node_Id));
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Nmt_States.Leaf)
      return Boolean is
@@ -114,7 +63,50 @@ is
         when Booted => Leaf = Nmt_States.Boot_Up_Due,
         when Start | Stop | Prepare | Reset_Node | Reset_Communication =>
            Leaf in Nmt_States.Ready);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition;
+      Self : Region;
+      Now  : Occurrence;
+      Ins  : Inputs;
+      Item : Event)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Initialised => Now = Expiry_Of_Initialised,
+           when Booted =>
+              Now = Conditions and then Ins.Beat.Boots = Self.Data.Boots,
+           when Start =>
+              Now = On_Commanded
+              and then Item.Value_Nmt_Command.Service = Canopen_Device.Start
+              and then (Item.Value_Nmt_Command.Node = 0
+                 or else Item.Value_Nmt_Command.Node = Ins.Node_Id),
+           when Stop =>
+              Now = On_Commanded
+              and then Item.Value_Nmt_Command.Service = Canopen_Device.Stop
+              and then (Item.Value_Nmt_Command.Node = 0
+                 or else Item.Value_Nmt_Command.Node = Ins.Node_Id),
+           when Prepare =>
+              Now = On_Commanded
+              and then Item.Value_Nmt_Command.Service
+                = Canopen_Device.Enter_Pre_Operational
+              and then (Item.Value_Nmt_Command.Node = 0
+                 or else Item.Value_Nmt_Command.Node = Ins.Node_Id),
+           when Reset_Node =>
+              Now = On_Commanded
+              and then Item.Value_Nmt_Command.Service
+                = Canopen_Device.Reset_Node
+              and then (Item.Value_Nmt_Command.Node = 0
+                 or else Item.Value_Nmt_Command.Node = Ins.Node_Id),
+           when Reset_Communication =>
+              Now = On_Commanded
+              and then Item.Value_Nmt_Command.Service
+                = Canopen_Device.Reset_Communication
+              and then (Item.Value_Nmt_Command.Node = 0
+                 or else Item.Value_Nmt_Command.Node = Ins.Node_Id)));
+   --  The trigger and the guard of each transition.
 
    function Target (T : Firing) return Nmt_States.Leaf is
      (case T is
@@ -158,17 +150,16 @@ is
 
    function Is_Selection
      (Chosen : Selection;
-      Leaf   : Nmt_States.Leaf;
+      Self   : Region;
       Now    : Occurrence;
-      Data   : Variables;
       Ins    : Inputs;
       Item   : Event)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
-          and then Enabled (Chosen, Leaf, Now, Data, Ins, Item)))
+          and then Enabled (Chosen, Self, Now, Ins, Item)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now, Data, Ins, Item))))
+            (if T < Chosen then not Enabled (T, Self, Now, Ins, Item))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
@@ -214,8 +205,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now, Self.Data'Old, Ins,
-                Item))
+          else Is_Selection (Fired, Self'Old, Now, Ins, Item))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)

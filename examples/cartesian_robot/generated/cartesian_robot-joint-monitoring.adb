@@ -6,32 +6,21 @@ package body Cartesian_Robot.Joint.Monitoring
 with SPARK_Mode
 is
    function Select_Transition
-     (Leaf : Monitoring_States.Leaf; Now  : Occurrence; Ins  : Inputs)
-     return Selection is
-     (case Leaf is
-        when Monitoring_States.Watching =>
-           (if Now = Conditions
-               and then Ins.Homed
-               and then abs Ins.Measured.Error > 20_000
-               then Strayed
-            elsif Now = Conditions
-               and then Ins.Motion in Motion_States.Moving
-               and then Ins.Feedback.Value.Limit /= Cartesian_Robot.Clear
-               then Limit_Hit
-            elsif Now = Conditions
-               and then Ins.Motion in Motion_States.Homing
-               and then Ins.Feedback.Value.Limit = Cartesian_Robot.High_End
-               then End_Reached
-            elsif Now = Conditions
-               and then Ins.Feedback.State = Ravenchart.Fresh
-               and then Ins.Feedback.Value.Condition
-                 = Cartesian_Robot.Faulted
-               and then Ins.Motion in Motion_States.Operational
-               then Drive_Failed
-            else None),
-        when Monitoring_States.Alarmed =>
-           (if Now = Expiry_Of_Calm then Calm else None))
-   with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins);
+     (Self : Region; Now : Occurrence; Ins : Inputs)
+     return Selection
+   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    package Chart
    with Ghost
@@ -162,7 +151,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self.Leaf, Now, Ins);
+         Fired := Select_Transition (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Box, Fired);

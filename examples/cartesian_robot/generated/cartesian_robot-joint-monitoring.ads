@@ -49,38 +49,6 @@ is
       Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
    end record;
 
-   function Enabled
-     (T    : Transition;
-      Leaf : Monitoring_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs)
-     return Boolean is
-     (case T is
-        when Strayed =>
-           Leaf = Monitoring_States.Watching
-           and then Now = Conditions
-           and then Ins.Homed
-           and then abs Ins.Measured.Error > 20_000,
-        when Limit_Hit =>
-           Leaf = Monitoring_States.Watching
-           and then Now = Conditions
-           and then Ins.Motion in Motion_States.Moving
-           and then Ins.Feedback.Value.Limit /= Cartesian_Robot.Clear,
-        when End_Reached =>
-           Leaf = Monitoring_States.Watching
-           and then Now = Conditions
-           and then Ins.Motion in Motion_States.Homing
-           and then Ins.Feedback.Value.Limit = Cartesian_Robot.High_End,
-        when Drive_Failed =>
-           Leaf = Monitoring_States.Watching
-           and then Now = Conditions
-           and then Ins.Feedback.State = Ravenchart.Fresh
-           and then Ins.Feedback.Value.Condition = Cartesian_Robot.Faulted
-           and then Ins.Motion in Motion_States.Operational,
-        when Calm =>
-           Leaf = Monitoring_States.Alarmed and then Now = Expiry_Of_Calm);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Monitoring_States.Leaf)
      return Boolean is
@@ -88,7 +56,34 @@ is
         when Strayed | Limit_Hit | End_Reached | Drive_Failed =>
            Leaf = Monitoring_States.Watching,
         when Calm => Leaf = Monitoring_States.Alarmed);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Strayed =>
+              Now = Conditions
+              and then Ins.Homed
+              and then abs Ins.Measured.Error > 20_000,
+           when Limit_Hit =>
+              Now = Conditions
+              and then Ins.Motion in Motion_States.Moving
+              and then Ins.Feedback.Value.Limit /= Cartesian_Robot.Clear,
+           when End_Reached =>
+              Now = Conditions
+              and then Ins.Motion in Motion_States.Homing
+              and then Ins.Feedback.Value.Limit = Cartesian_Robot.High_End,
+           when Drive_Failed =>
+              Now = Conditions
+              and then Ins.Feedback.State = Ravenchart.Fresh
+              and then Ins.Feedback.Value.Condition
+                = Cartesian_Robot.Faulted
+              and then Ins.Motion in Motion_States.Operational,
+           when Calm => Now = Expiry_Of_Calm));
+   --  The trigger and the guard of each transition.
 
    function Target (T : Firing) return Monitoring_States.Leaf is
      (case T is
@@ -128,15 +123,15 @@ is
 
    function Is_Selection
      (Chosen : Selection;
-      Leaf   : Monitoring_States.Leaf;
+      Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
-          and then Enabled (Chosen, Leaf, Now, Ins)))
+          and then Enabled (Chosen, Self, Now, Ins)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
+            (if T < Chosen then not Enabled (T, Self, Now, Ins))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
@@ -177,7 +172,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
+          else Is_Selection (Fired, Self'Old, Now, Ins))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)

@@ -6,120 +6,21 @@ package body Cartesian_Robot.Joint.Motion
 with SPARK_Mode
 is
    function Select_Transition
-     (Leaf : Motion_States.Leaf;
-      Now  : Occurrence;
-      Data : Variables;
-      Ins  : Inputs)
-     return Selection is
-     (case Leaf is
-        when Motion_States.Idle =>
-           (if Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Home
-               and then Ins.Feedback.State = Ravenchart.Fresh
-               then Start_Homing
-            elsif Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Move
-               and then Data.Homed
-               then Start_Move
-            elsif Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-               then Halt
-            elsif Now = On_Feedback_Lost then Lost
-            elsif Now = On_Drive_Failed then Failed
-            elsif Now = On_Strayed then Strayed
-            elsif Now = On_Limit_Hit then Limit
-            else None),
-        when Motion_States.Seeking =>
-           (if Now = Conditions
-               and then Ins.Feedback.Value.Limit = Cartesian_Robot.Low_End
-               then End_Found
-            elsif Now = Expiry_Of_No_End then No_End
-            elsif Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-               then Halt
-            elsif Now = On_Feedback_Lost then Lost
-            elsif Now = On_Drive_Failed then Failed
-            elsif Now = On_Strayed then Strayed
-            elsif Now = On_Limit_Hit then Limit
-            else None),
-        when Motion_States.Backing_Off =>
-           (if Now = Conditions
-               and then Ins.Feedback.Value.Limit = Cartesian_Robot.Clear
-               then End_Left
-            elsif Now = Expiry_Of_No_End then No_End
-            elsif Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-               then Halt
-            elsif Now = On_Feedback_Lost then Lost
-            elsif Now = On_Drive_Failed then Failed
-            elsif Now = On_Strayed then Strayed
-            elsif Now = On_Limit_Hit then Limit
-            else None),
-        when Motion_States.Accelerating =>
-           (if Now = Conditions
-               and then Ins.Profile.Phase = Cartesian_Robot.At_Speed
-               then At_Speed
-            elsif Now = Conditions
-               and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down
-               then No_Cruise
-            elsif Now = Conditions
-               and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
-               and then Ins.Profile.Position = Data.Goal.Target
-               and then abs Ins.Measured.Error < 2_000
-               then Arrived
-            elsif Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-               then Halt
-            elsif Now = On_Feedback_Lost then Lost
-            elsif Now = On_Drive_Failed then Failed
-            elsif Now = On_Strayed then Strayed
-            elsif Now = On_Limit_Hit then Limit
-            else None),
-        when Motion_States.Cruising =>
-           (if Now = Conditions
-               and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down
-               then Brake
-            elsif Now = Conditions
-               and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
-               and then Ins.Profile.Position = Data.Goal.Target
-               and then abs Ins.Measured.Error < 2_000
-               then Arrived
-            elsif Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-               then Halt
-            elsif Now = On_Feedback_Lost then Lost
-            elsif Now = On_Drive_Failed then Failed
-            elsif Now = On_Strayed then Strayed
-            elsif Now = On_Limit_Hit then Limit
-            else None),
-        when Motion_States.Braking =>
-           (if Now = Conditions
-               and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
-               and then Ins.Profile.Position = Data.Goal.Target
-               and then abs Ins.Measured.Error < 2_000
-               then Arrived
-            elsif Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-               then Halt
-            elsif Now = On_Feedback_Lost then Lost
-            elsif Now = On_Drive_Failed then Failed
-            elsif Now = On_Strayed then Strayed
-            elsif Now = On_Limit_Hit then Limit
-            else None),
-        when Motion_States.Limit =>
-           (if Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
-               and then Ins.Feedback.State = Ravenchart.Fresh
-               then Reset
-            else None),
-        when Motion_States.Drive =>
-           (if Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
-               and then Ins.Feedback.State = Ravenchart.Fresh
-               then Reset
-            else None))
-   with
-     Post => Is_Selection (Select_Transition'Result, Leaf, Now, Data, Ins);
+     (Self : Region; Now : Occurrence; Ins : Inputs)
+     return Selection
+   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    package Chart
    with Ghost
@@ -351,7 +252,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self.Leaf, Now, Self.Data, Ins);
+         Fired := Select_Transition (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Ins, Fired);

@@ -65,71 +65,6 @@ is
       Data    : Variables;
    end record;
 
-   function Enabled
-     (T    : Transition;
-      Leaf : Motion_States.Leaf;
-      Now  : Occurrence;
-      Data : Variables;
-      Ins  : Inputs)
-     return Boolean is
-     (case T is
-        when End_Found =>
-           Leaf = Motion_States.Seeking
-           and then Now = Conditions
-           and then Ins.Feedback.Value.Limit = Cartesian_Robot.Low_End,
-        when End_Left =>
-           Leaf = Motion_States.Backing_Off
-           and then Now = Conditions
-           and then Ins.Feedback.Value.Limit = Cartesian_Robot.Clear,
-        when At_Speed =>
-           Leaf = Motion_States.Accelerating
-           and then Now = Conditions
-           and then Ins.Profile.Phase = Cartesian_Robot.At_Speed,
-        when No_Cruise =>
-           Leaf = Motion_States.Accelerating
-           and then Now = Conditions
-           and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down,
-        when Brake =>
-           Leaf = Motion_States.Cruising
-           and then Now = Conditions
-           and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down,
-        when Start_Homing =>
-           Leaf = Motion_States.Idle
-           and then Now = On_Ordered
-           and then Ins.Order.Value.Kind = Cartesian_Robot.Home
-           and then Ins.Feedback.State = Ravenchart.Fresh,
-        when No_End =>
-           Leaf in Motion_States.Homing and then Now = Expiry_Of_No_End,
-        when Start_Move =>
-           Leaf = Motion_States.Idle
-           and then Now = On_Ordered
-           and then Ins.Order.Value.Kind = Cartesian_Robot.Move
-           and then Data.Homed,
-        when Arrived =>
-           Leaf in Motion_States.Moving
-           and then Now = Conditions
-           and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
-           and then Ins.Profile.Position = Data.Goal.Target
-           and then abs Ins.Measured.Error < 2_000,
-        when Halt =>
-           Leaf in Motion_States.Operational
-           and then Now = On_Ordered
-           and then Ins.Order.Value.Kind = Cartesian_Robot.Halt,
-        when Lost =>
-           Leaf in Motion_States.Operational and then Now = On_Feedback_Lost,
-        when Failed =>
-           Leaf in Motion_States.Operational and then Now = On_Drive_Failed,
-        when Strayed =>
-           Leaf in Motion_States.Operational and then Now = On_Strayed,
-        when Limit =>
-           Leaf in Motion_States.Operational and then Now = On_Limit_Hit,
-        when Reset =>
-           Leaf in Motion_States.Fault
-           and then Now = On_Ordered
-           and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
-           and then Ins.Feedback.State = Ravenchart.Fresh);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Motion_States.Leaf)
      return Boolean is
@@ -144,7 +79,55 @@ is
         when Halt | Lost | Failed | Strayed | Limit =>
            Leaf in Motion_States.Operational,
         when Reset => Leaf in Motion_States.Fault);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when End_Found =>
+              Now = Conditions
+              and then Ins.Feedback.Value.Limit = Cartesian_Robot.Low_End,
+           when End_Left =>
+              Now = Conditions
+              and then Ins.Feedback.Value.Limit = Cartesian_Robot.Clear,
+           when At_Speed =>
+              Now = Conditions
+              and then Ins.Profile.Phase = Cartesian_Robot.At_Speed,
+           when No_Cruise =>
+              Now = Conditions
+              and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down,
+           when Brake =>
+              Now = Conditions
+              and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down,
+           when Start_Homing =>
+              Now = On_Ordered
+              and then Ins.Order.Value.Kind = Cartesian_Robot.Home
+              and then Ins.Feedback.State = Ravenchart.Fresh,
+           when No_End => Now = Expiry_Of_No_End,
+           when Start_Move =>
+              Now = On_Ordered
+              and then Ins.Order.Value.Kind = Cartesian_Robot.Move
+              and then Self.Data.Homed,
+           when Arrived =>
+              Now = Conditions
+              and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
+              and then Ins.Profile.Position = Self.Data.Goal.Target
+              and then abs Ins.Measured.Error < 2_000,
+           when Halt =>
+              Now = On_Ordered
+              and then Ins.Order.Value.Kind = Cartesian_Robot.Halt,
+           when Lost => Now = On_Feedback_Lost,
+           when Failed => Now = On_Drive_Failed,
+           when Strayed => Now = On_Strayed,
+           when Limit => Now = On_Limit_Hit,
+           when Reset =>
+              Now = On_Ordered
+              and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
+              and then Ins.Feedback.State = Ravenchart.Fresh));
+   --  The trigger and the guard of each transition.
 
    function Target (T : Firing) return Motion_States.Leaf is
      (case T is
@@ -197,16 +180,15 @@ is
 
    function Is_Selection
      (Chosen : Selection;
-      Leaf   : Motion_States.Leaf;
+      Self   : Region;
       Now    : Occurrence;
-      Data   : Variables;
       Ins    : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
-          and then Enabled (Chosen, Leaf, Now, Data, Ins)))
+          and then Enabled (Chosen, Self, Now, Ins)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now, Data, Ins))))
+            (if T < Chosen then not Enabled (T, Self, Now, Ins))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
@@ -254,7 +236,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now, Self.Data'Old, Ins))
+          else Is_Selection (Fired, Self'Old, Now, Ins))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)

@@ -69,77 +69,6 @@ is
       Timers  : Ravenchart.Timers.Timer_Array (1 .. 2);
    end record;
 
-   function Enabled
-     (T    : Transition;
-      Leaf : Mission_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs)
-     return Boolean is
-     (case T is
-        when Under_Way =>
-           Leaf = Mission_States.Departing
-           and then Now = Expiry_Of_Under_Way,
-        when Arrived =>
-           Leaf = Mission_States.Under_Way
-           and then Now = Conditions
-           and then Ins.Report_X.Value.Condition = Cartesian_Robot.Standing
-           and then Ins.Report_Y.Value.Condition = Cartesian_Robot.Standing
-           and then Ins.Report_Z.Value.Condition = Cartesian_Robot.Standing,
-        when Home =>
-           Leaf = Mission_States.Waiting
-           and then Now = On_Commanded
-           and then Ins.Command.Value.Kind = Cartesian_Robot.Home,
-        when Home_Again =>
-           Leaf = Mission_States.Ready
-           and then Now = On_Commanded
-           and then Ins.Command.Value.Kind = Cartesian_Robot.Home,
-        when Homed =>
-           Leaf = Mission_States.Homing
-           and then Now = Conditions
-           and then Ins.Report_X.Value.Condition = Cartesian_Robot.Standing
-           and then Ins.Report_Y.Value.Condition = Cartesian_Robot.Standing
-           and then Ins.Report_Z.Value.Condition = Cartesian_Robot.Standing,
-        when Move =>
-           Leaf = Mission_States.Ready
-           and then Now = On_Commanded
-           and then Ins.Command.Value.Kind = Cartesian_Robot.Move,
-        when Halt =>
-           Leaf in Mission_States.Travelling
-           and then Now = On_Commanded
-           and then Ins.Command.Value.Kind = Cartesian_Robot.Halt,
-        when Halt_Homing =>
-           Leaf = Mission_States.Homing
-           and then Now = On_Commanded
-           and then Ins.Command.Value.Kind = Cartesian_Robot.Halt,
-        when Shut_Down_Failed =>
-           Leaf = Mission_States.Failed and then Now = On_Shutdown,
-        when Recover =>
-           Leaf = Mission_States.Failed
-           and then Now = On_Commanded
-           and then Ins.Command.Value.Kind = Cartesian_Robot.Reset,
-        when Recovered =>
-           Leaf = Mission_States.Recovering
-           and then Now = Conditions
-           and then Ins.Report_X.Value.Condition /= Cartesian_Robot.Failed
-           and then Ins.Report_Y.Value.Condition /= Cartesian_Robot.Failed
-           and then Ins.Report_Z.Value.Condition /= Cartesian_Robot.Failed,
-        when Not_Recovered =>
-           Leaf = Mission_States.Recovering
-           and then Now = Expiry_Of_Not_Recovered,
-        when Shut_Down_Recovering =>
-           Leaf = Mission_States.Recovering and then Now = On_Shutdown,
-        when Joint_Failed =>
-           Leaf in Mission_States.Active
-           and then Now = Conditions
-           and then ((Ins.Report_X.Value.Condition = Cartesian_Robot.Failed
-               or else Ins.Report_Y.Value.Condition = Cartesian_Robot.Failed)
-              or else Ins.Report_Z.Value.Condition = Cartesian_Robot.Failed),
-        when Joint_Lost =>
-           Leaf in Mission_States.Active and then Now = On_Joint_Lost,
-        when Shut_Down =>
-           Leaf in Mission_States.Active and then Now = On_Shutdown);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Mission_States.Leaf)
      return Boolean is
@@ -155,7 +84,71 @@ is
            Leaf = Mission_States.Recovering,
         when Joint_Failed | Joint_Lost | Shut_Down =>
            Leaf in Mission_States.Active);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Under_Way => Now = Expiry_Of_Under_Way,
+           when Arrived =>
+              Now = Conditions
+              and then Ins.Report_X.Value.Condition
+                = Cartesian_Robot.Standing
+              and then Ins.Report_Y.Value.Condition
+                = Cartesian_Robot.Standing
+              and then Ins.Report_Z.Value.Condition
+                = Cartesian_Robot.Standing,
+           when Home =>
+              Now = On_Commanded
+              and then Ins.Command.Value.Kind = Cartesian_Robot.Home,
+           when Home_Again =>
+              Now = On_Commanded
+              and then Ins.Command.Value.Kind = Cartesian_Robot.Home,
+           when Homed =>
+              Now = Conditions
+              and then Ins.Report_X.Value.Condition
+                = Cartesian_Robot.Standing
+              and then Ins.Report_Y.Value.Condition
+                = Cartesian_Robot.Standing
+              and then Ins.Report_Z.Value.Condition
+                = Cartesian_Robot.Standing,
+           when Move =>
+              Now = On_Commanded
+              and then Ins.Command.Value.Kind = Cartesian_Robot.Move,
+           when Halt =>
+              Now = On_Commanded
+              and then Ins.Command.Value.Kind = Cartesian_Robot.Halt,
+           when Halt_Homing =>
+              Now = On_Commanded
+              and then Ins.Command.Value.Kind = Cartesian_Robot.Halt,
+           when Shut_Down_Failed => Now = On_Shutdown,
+           when Recover =>
+              Now = On_Commanded
+              and then Ins.Command.Value.Kind = Cartesian_Robot.Reset,
+           when Recovered =>
+              Now = Conditions
+              and then Ins.Report_X.Value.Condition
+                /= Cartesian_Robot.Failed
+              and then Ins.Report_Y.Value.Condition
+                /= Cartesian_Robot.Failed
+              and then Ins.Report_Z.Value.Condition
+                /= Cartesian_Robot.Failed,
+           when Not_Recovered => Now = Expiry_Of_Not_Recovered,
+           when Shut_Down_Recovering => Now = On_Shutdown,
+           when Joint_Failed =>
+              Now = Conditions
+              and then ((Ins.Report_X.Value.Condition
+                  = Cartesian_Robot.Failed
+                  or else Ins.Report_Y.Value.Condition
+                    = Cartesian_Robot.Failed)
+                 or else Ins.Report_Z.Value.Condition
+                   = Cartesian_Robot.Failed),
+           when Joint_Lost => Now = On_Joint_Lost,
+           when Shut_Down => Now = On_Shutdown));
+   --  The trigger and the guard of each transition.
 
    function Target (T : Firing) return Mission_States.Leaf is
      (case T is
@@ -219,15 +212,15 @@ is
 
    function Is_Selection
      (Chosen : Selection;
-      Leaf   : Mission_States.Leaf;
+      Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
-          and then Enabled (Chosen, Leaf, Now, Ins)))
+          and then Enabled (Chosen, Self, Now, Ins)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
+            (if T < Chosen then not Enabled (T, Self, Now, Ins))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
@@ -277,7 +270,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
+          else Is_Selection (Fired, Self'Old, Now, Ins))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)

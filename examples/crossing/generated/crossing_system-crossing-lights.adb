@@ -8,93 +8,43 @@ is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
 
-   function Select_Cars
-     (Place : Lights_States.Configuration;
+   function Select_Transition
+     (First : Transition;
+      Last  : Transition;
+      Self  : Region;
       Now   : Occurrence;
-      Data  : Variables;
       Item  : Event)
-     return Selection is
-     (if Place.Top = Lights_States.Working
-         then (case Place.In_Cars is
-               when Lights_States.Stopping =>
-                  (if Now = Expiry_Of_Stopped then Stopped else None),
-               when Lights_States.Held =>
-                  (if Now = Conditions
-                      and then Data.Road_Free
-                      and then not Data.Requested
-                      then Get_Ready
-                   else None),
-               when Lights_States.Red_Yellow =>
-                  (if Now = Expiry_Of_Start then Start else None),
-               when Lights_States.Least =>
-                  (if Now = Expiry_Of_Long_Enough then Long_Enough
-                   else None),
-               when Lights_States.Longer =>
-                  (if Now = Conditions and then Data.Requested
-                      then Slow_Down
-                   else None),
-               when Lights_States.Yellow =>
-                  (if Now = Expiry_Of_Stop then Stop else None))
-      else None)
-   with
-     Post => Is_Cars_Selection (Select_Cars'Result, Place, Now, Data, Item);
-
-   function Select_Walkers
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Place.Top = Lights_States.Working
-         then (case Place.In_Walkers is
-               when Lights_States.Nobody =>
-                  (if Now = On_Wish then Ask else None),
-               when Lights_States.Waiting =>
-                  (if Now = Conditions and then Data.Cars_Stopped then Walk
-                   else None),
-               when Lights_States.Walking =>
-                  (if Now = Expiry_Of_Last_Call then Last_Call
-                   elsif Now = Expiry_Of_Gone then Gone
-                   else None),
-               when Lights_States.Leaving =>
-                  (if Now = Expiry_Of_Gone then Gone else None))
-      else None)
+     return Selection
    with
      Post =>
-       Is_Walkers_Selection (Select_Walkers'Result, Place, Now, Data, Item);
-
-   function Select_Top
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (case Place.Top is
-        when Lights_States.Blinking =>
-           (if Now = On_Ordered
-               and then Item.Value_Order = Crossing_System.Work
-               then Into_Service
-            elsif Now = Expiry_Of_Blink then Blink
-            else None),
-        when Lights_States.Working =>
-           (if Now = On_Ordered
-               and then Item.Value_Order = Crossing_System.Blink
-               then Out_Of_Service
-            else None))
-   with Post => Is_Top_Selection (Select_Top'Result, Place, Now, Data, Item);
+       Is_Selection (Select_Transition'Result, First, Last, Self, Now, Item)
+   is
+   begin
+      for T in First .. Last loop
+         if Enabled (T, Self, Now, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in First .. T => not Enabled (E, Self, Now, Item)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    function Choose
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
+     (Self : Region; Now : Occurrence; Item : Event)
      return Choice is
       C : Choice;
    begin
-      C.Cars := Select_Cars (Place, Now, Data, Item);
-      C.Walkers := Select_Walkers (Place, Now, Data, Item);
+      C.Cars :=
+        Select_Transition (Cars_Transition'First, Cars_Transition'Last,
+           Self, Now, Item);
+      C.Walkers :=
+        Select_Transition (Walkers_Transition'First,
+           Walkers_Transition'Last, Self, Now, Item);
       if C.Cars = None and then C.Walkers = None then
-         C.Top := Select_Top (Place, Now, Data, Item);
+         C.Top :=
+           Select_Transition (Top_Transition'First, Top_Transition'Last,
+              Self, Now, Item);
       end if;
       return C;
    end Choose;
@@ -202,17 +152,16 @@ is
      return Boolean is
      (Self.Started
       and then Self.Place = Target (Chosen, Before.Place)
-      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
-   --  Is the region after it as declared?
+      and then Is_Lasting (Before, Self, Chosen)
+      and then Is_Safe (Self.Place, Self.Data)) with Ghost;
+   --  Is the region after it as declared, and safe?
 
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
 
    procedure Fire (Self : in out Region; Item : Event; Chosen : Firing)
    with
      Pre => Is_Ready (Self, Item, Chosen),
-     Post =>
-       Is_Fired (Self'Old, Self, Chosen)
-       and then Is_Safe (Self.Place, Self.Data)
+     Post => Is_Fired (Self'Old, Self, Chosen)
    is
       use type Chart.Node;
 
@@ -572,39 +521,28 @@ is
       if Now = Start_Of_Region then
          Fire_Whole (Initial_Entry);
       else
-         C := Choose (Self.Place, Now, Self.Data, Item);
+         C := Choose (Self, Now, Item);
          pragma Assert ((if C.Walkers = Walk then C.Cars = None));
          if C.Cars /= None then
             Fire_Whole (C.Cars);
          end if;
          pragma Assert
            (Fired.Count <= 1
-            and then (for all I in 1 .. Fired.Count =>
-                  Fired.Items (I) <= Cars_Transition'Last
-                  and then Fired.Items (I) = C.Cars)
-            and then Is_Ordered (Fired)
+            and then Is_Of_Choice (Fired, C, Cars_Transition'Last)
             and then (if C.Cars /= None then Has (Fired, C.Cars)));
          if C.Walkers /= None then
             Fire_Whole (C.Walkers);
          end if;
          pragma Assert
            (Fired.Count <= 2
-            and then (for all I in 1 .. Fired.Count =>
-                  Fired.Items (I) <= Walkers_Transition'Last
-                  and then (Fired.Items (I) = C.Cars
-                     or else Fired.Items (I) = C.Walkers))
-            and then Is_Ordered (Fired)
+            and then Is_Of_Choice (Fired, C, Walkers_Transition'Last)
             and then (if C.Cars /= None then Has (Fired, C.Cars))
             and then (if C.Walkers /= None then Has (Fired, C.Walkers)));
          if C.Top /= None then
             Fire_Whole (C.Top);
          end if;
          pragma Assert
-           ((for all I in 1 .. Fired.Count =>
-                Fired.Items (I) = C.Cars
-                or else Fired.Items (I) = C.Walkers
-                or else Fired.Items (I) = C.Top)
-            and then Is_Ordered (Fired)
+           (Is_Of_Choice (Fired, C, Top_Transition'Last)
             and then (if C.Cars /= None then Has (Fired, C.Cars))
             and then (if C.Walkers /= None then Has (Fired, C.Walkers))
             and then (if C.Top /= None then Has (Fired, C.Top)));

@@ -83,70 +83,6 @@ is
       Data    : Variables;
    end record;
 
-   function Enabled
-     (T     : Transition;
-      Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Boolean is
-     (case T is
-        when Stopped =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Stopping
-           and then Now = Expiry_Of_Stopped,
-        when Get_Ready =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Held
-           and then Now = Conditions
-           and then Data.Road_Free
-           and then not Data.Requested,
-        when Long_Enough =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Least
-           and then Now = Expiry_Of_Long_Enough,
-        when Slow_Down =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Longer
-           and then Now = Conditions
-           and then Data.Requested,
-        when Start =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Red_Yellow
-           and then Now = Expiry_Of_Start,
-        when Stop =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Yellow
-           and then Now = Expiry_Of_Stop,
-        when Ask =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Walkers = Lights_States.Nobody
-           and then Now = On_Wish,
-        when Walk =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Walkers = Lights_States.Waiting
-           and then Now = Conditions
-           and then Data.Cars_Stopped,
-        when Last_Call =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Walkers = Lights_States.Walking
-           and then Now = Expiry_Of_Last_Call,
-        when Gone =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Walkers in Lights_States.On_The_Road
-           and then Now = Expiry_Of_Gone,
-        when Into_Service =>
-           Place.Top = Lights_States.Blinking
-           and then Now = On_Ordered
-           and then Item.Value_Order = Crossing_System.Work,
-        when Out_Of_Service =>
-           Place.Top = Lights_States.Working
-           and then Now = On_Ordered
-           and then Item.Value_Order = Crossing_System.Blink,
-        when Blink =>
-           Place.Top = Lights_States.Blinking and then Now = Expiry_Of_Blink);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Place : Lights_States.Configuration)
      return Boolean is
@@ -183,7 +119,35 @@ is
            and then Place.In_Walkers in Lights_States.On_The_Road,
         when Into_Service | Blink => Place.Top = Lights_States.Blinking,
         when Out_Of_Service => Place.Top = Lights_States.Working);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition; Self : Region; Now  : Occurrence; Item : Event)
+     return Boolean is
+     (In_Source (T, Self.Place)
+      and then (case T is
+           when Stopped => Now = Expiry_Of_Stopped,
+           when Get_Ready =>
+              Now = Conditions
+              and then Self.Data.Road_Free
+              and then not Self.Data.Requested,
+           when Long_Enough => Now = Expiry_Of_Long_Enough,
+           when Slow_Down => Now = Conditions and then Self.Data.Requested,
+           when Start => Now = Expiry_Of_Start,
+           when Stop => Now = Expiry_Of_Stop,
+           when Ask => Now = On_Wish,
+           when Walk => Now = Conditions and then Self.Data.Cars_Stopped,
+           when Last_Call => Now = Expiry_Of_Last_Call,
+           when Gone => Now = Expiry_Of_Gone,
+           when Into_Service =>
+              Now = On_Ordered
+              and then Item.Value_Order = Crossing_System.Work,
+           when Out_Of_Service =>
+              Now = On_Ordered
+              and then Item.Value_Order = Crossing_System.Blink,
+           when Blink => Now = Expiry_Of_Blink));
+   --  The trigger and the guard of each transition.
 
    function Target
      (T : Firing; Place : Lights_States.Configuration)
@@ -304,61 +268,32 @@ is
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
-   function Is_Cars_Selection
+   function Is_Selection
      (Chosen : Selection;
-      Place  : Lights_States.Configuration;
+      First  : Transition;
+      Last   : Transition;
+      Self   : Region;
       Now    : Occurrence;
-      Data   : Variables;
       Item   : Event)
      return Boolean is
      ((Chosen = None
-       or else (Chosen in Cars_Transition
-          and then Enabled (Chosen, Place, Now, Data, Item)))
-      and then (for all T in Cars_Transition =>
-            (if T < Chosen then not Enabled (T, Place, Now, Data, Item))))
+       or else (Chosen in First .. Last
+          and then Enabled (Chosen, Self, Now, Item)))
+      and then (for all T in First .. Last =>
+            (if T < Chosen then not Enabled (T, Self, Now, Item))))
    with Ghost;
-
-   function Is_Walkers_Selection
-     (Chosen : Selection;
-      Place  : Lights_States.Configuration;
-      Now    : Occurrence;
-      Data   : Variables;
-      Item   : Event)
-     return Boolean is
-     ((Chosen = None
-       or else (Chosen in Walkers_Transition
-          and then Enabled (Chosen, Place, Now, Data, Item)))
-      and then (for all T in Walkers_Transition =>
-            (if T < Chosen then not Enabled (T, Place, Now, Data, Item))))
-   with Ghost;
-
-   function Is_Top_Selection
-     (Chosen : Selection;
-      Place  : Lights_States.Configuration;
-      Now    : Occurrence;
-      Data   : Variables;
-      Item   : Event)
-     return Boolean is
-     ((Chosen = None
-       or else (Chosen in Top_Transition
-          and then Enabled (Chosen, Place, Now, Data, Item)))
-      and then (for all T in Top_Transition =>
-            (if T < Chosen then not Enabled (T, Place, Now, Data, Item))))
-   with Ghost;
-   --  The first transition of the lane that is enabled, or None when none
-   --  is.
+   --  The first transition that is enabled, or None when none is.
 
    function Is_Choice
-     (C     : Choice;
-      Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
+     (C : Choice; Self : Region; Now : Occurrence; Item : Event)
      return Boolean is
-     (Is_Cars_Selection (C.Cars, Place, Now, Data, Item)
-      and then Is_Walkers_Selection (C.Walkers, Place, Now, Data, Item)
+     (Is_Selection (C.Cars, Cars_Transition'First, Cars_Transition'Last,
+         Self, Now, Item)
+      and then Is_Selection (C.Walkers, Walkers_Transition'First,
+           Walkers_Transition'Last, Self, Now, Item)
       and then (if C.Cars = None and then C.Walkers = None
-            then Is_Top_Selection (C.Top, Place, Now, Data, Item)
+            then Is_Selection (C.Top, Top_Transition'First,
+                  Top_Transition'Last, Self, Now, Item)
          else C.Top = None)) with Ghost;
    --  Each lane's first; none where a lane inside it has one.
 
@@ -367,29 +302,27 @@ is
    --  Is that fired, with the segments of its way, and nothing else?
 
    function Choose
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
+     (Self : Region; Now : Occurrence; Item : Event)
      return Choice
-   with Post => Is_Choice (Choose'Result, Place, Now, Data, Item);
+   with Post => Is_Choice (Choose'Result, Self, Now, Item);
    --  The transitions that one occurrence asks for.
 
    function Has (Fired : Firing_List; T : Selection) return Boolean is
      (for some I in 1 .. Fired.Count => Fired.Items (I) = T) with Ghost;
 
-   function Is_Ordered (Fired : Firing_List) return Boolean is
+   function Is_Of_Choice
+     (Fired : Firing_List; C : Choice; Last : Selection)
+     return Boolean is
      (for all I in 1 .. Fired.Count =>
-         (for all J in 1 .. I - 1 => Fired.Items (J) < Fired.Items (I)))
-   with Ghost;
-   --  Do the lanes fire in their order?
+         Fired.Items (I) <= Last
+         and then Fired.Items (I) in C.Cars | C.Walkers | C.Top
+         and then (for all J in 1 .. I - 1 =>
+               Fired.Items (J) < Fired.Items (I))) with Ghost;
+   --  Is what has fired chosen, in the order of the lanes, and not after
+   --  Last?
 
    function Follows (Fired : Firing_List; C : Choice) return Boolean is
-     ((for all I in 1 .. Fired.Count =>
-          Fired.Items (I) = C.Cars
-          or else Fired.Items (I) = C.Walkers
-          or else Fired.Items (I) = C.Top)
-      and then Is_Ordered (Fired)
+     (Is_Of_Choice (Fired, C, Top_Transition'Last)
       and then (if C.Cars /= None then Has (Fired, C.Cars))
       and then (if C.Walkers /= None then Has (Fired, C.Walkers))
       and then (if C.Top /= None then Has (Fired, C.Top))) with Ghost;
@@ -556,7 +489,6 @@ is
        and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
        and then ((Now = Start_Of_Region and Is_Only (Fired, Initial_Entry))
           or (Now /= Start_Of_Region
-             and Follows (Fired,
-                  Choose (Self.Place'Old, Now, Self.Data'Old, Item))));
+             and Follows (Fired, Choose (Self'Old, Now, Item))));
    --  One run-to-completion step.
 end Crossing_System.Crossing.Lights;

@@ -9,69 +9,22 @@ is
    pragma Warnings (Off, "*can never be *");
 
    function Select_Transition
-     (Leaf : Address_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs;
-      Item : Event)
-     return Selection is
-     (case Leaf is
-        when Address_States.Before =>
-           (if Now = Expiry_Of_Claim then Claim else None),
-        when Address_States.Claiming =>
-           (if Now = Expiry_Of_Granted then Granted
-            elsif Now = On_Claimed_Too
-               and then (Item.Value_Name.High < Ins.Name_High
-                  or else (Item.Value_Name.High = Ins.Name_High
-                     and then Item.Value_Name.Low < Ins.Name_Low))
-               then Yield
-            elsif Now = On_Claimed_Too
-               and then (Item.Value_Name.High > Ins.Name_High
-                  or else (Item.Value_Name.High = Ins.Name_High
-                     and then Item.Value_Name.Low > Ins.Name_Low))
-               then Defend
-            elsif Now = On_Asked_All
-               and then Item.Value_Pgn_Octets.Pgn = 60_928
-               then Tell_All
-            elsif Now = On_Asked_Us
-               and then Item.Value_Pgn_Octets.Pgn = 60_928
-               then Tell_Us
-            elsif Now = On_Asked_By_Null
-               and then Item.Value_Pgn_Octets.Pgn = 60_928
-               then Tell_Null
-            else None),
-        when Address_States.Claimed =>
-           (if Now = On_Claimed_Too
-               and then (Item.Value_Name.High < Ins.Name_High
-                  or else (Item.Value_Name.High = Ins.Name_High
-                     and then Item.Value_Name.Low < Ins.Name_Low))
-               then Yield
-            elsif Now = On_Claimed_Too
-               and then (Item.Value_Name.High > Ins.Name_High
-                  or else (Item.Value_Name.High = Ins.Name_High
-                     and then Item.Value_Name.Low > Ins.Name_Low))
-               then Defend
-            elsif Now = On_Asked_All
-               and then Item.Value_Pgn_Octets.Pgn = 60_928
-               then Tell_All
-            elsif Now = On_Asked_Us
-               and then Item.Value_Pgn_Octets.Pgn = 60_928
-               then Tell_Us
-            elsif Now = On_Asked_By_Null
-               and then Item.Value_Pgn_Octets.Pgn = 60_928
-               then Tell_Null
-            else None),
-        when Address_States.Yielding =>
-           (if Now = Expiry_Of_Give_Up then Give_Up else None),
-        when Address_States.Without_Address =>
-           (if Now = On_Asked_All
-               and then Item.Value_Pgn_Octets.Pgn = 60_928
-               then Tell_Lost
-            elsif Now = On_Asked_By_Null
-               and then Item.Value_Pgn_Octets.Pgn = 60_928
-               then Tell_Lost_Null
-            else None))
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection
    with
-     Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins, Item);
+     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now, Ins, Item)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    package Chart
    with Ghost
@@ -264,7 +217,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self.Leaf, Now, Ins, Item);
+         Fired := Select_Transition (Self, Now, Ins, Item);
       end if;
       if Fired /= None then
          Fire (Self, Ins, Box, Fired);

@@ -61,54 +61,6 @@ is
       Timers  : Ravenchart.Timers.Timer_Array (1 .. 3);
    end record;
 
-   function Enabled
-     (T    : Transition;
-      Leaf : Address_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs;
-      Item : Event)
-     return Boolean is
-     (case T is
-        when Granted =>
-           Leaf = Address_States.Claiming and then Now = Expiry_Of_Granted,
-        when Claim =>
-           Leaf = Address_States.Before and then Now = Expiry_Of_Claim,
-        when Yield =>
-           Leaf in Address_States.Contending
-           and then Now = On_Claimed_Too
-           and then (Item.Value_Name.High < Ins.Name_High
-              or else (Item.Value_Name.High = Ins.Name_High
-                 and then Item.Value_Name.Low < Ins.Name_Low)),
-        when Defend =>
-           Leaf in Address_States.Contending
-           and then Now = On_Claimed_Too
-           and then (Item.Value_Name.High > Ins.Name_High
-              or else (Item.Value_Name.High = Ins.Name_High
-                 and then Item.Value_Name.Low > Ins.Name_Low)),
-        when Give_Up =>
-           Leaf = Address_States.Yielding and then Now = Expiry_Of_Give_Up,
-        when Tell_All =>
-           Leaf in Address_States.Contending
-           and then Now = On_Asked_All
-           and then Item.Value_Pgn_Octets.Pgn = 60_928,
-        when Tell_Us =>
-           Leaf in Address_States.Contending
-           and then Now = On_Asked_Us
-           and then Item.Value_Pgn_Octets.Pgn = 60_928,
-        when Tell_Null =>
-           Leaf in Address_States.Contending
-           and then Now = On_Asked_By_Null
-           and then Item.Value_Pgn_Octets.Pgn = 60_928,
-        when Tell_Lost =>
-           Leaf = Address_States.Without_Address
-           and then Now = On_Asked_All
-           and then Item.Value_Pgn_Octets.Pgn = 60_928,
-        when Tell_Lost_Null =>
-           Leaf = Address_States.Without_Address
-           and then Now = On_Asked_By_Null
-           and then Item.Value_Pgn_Octets.Pgn = 60_928);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Address_States.Leaf)
      return Boolean is
@@ -120,7 +72,44 @@ is
         when Give_Up => Leaf = Address_States.Yielding,
         when Tell_Lost | Tell_Lost_Null =>
            Leaf = Address_States.Without_Address);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition;
+      Self : Region;
+      Now  : Occurrence;
+      Ins  : Inputs;
+      Item : Event)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Granted => Now = Expiry_Of_Granted,
+           when Claim => Now = Expiry_Of_Claim,
+           when Yield =>
+              Now = On_Claimed_Too
+              and then (Item.Value_Name.High < Ins.Name_High
+                 or else (Item.Value_Name.High = Ins.Name_High
+                    and then Item.Value_Name.Low < Ins.Name_Low)),
+           when Defend =>
+              Now = On_Claimed_Too
+              and then (Item.Value_Name.High > Ins.Name_High
+                 or else (Item.Value_Name.High = Ins.Name_High
+                    and then Item.Value_Name.Low > Ins.Name_Low)),
+           when Give_Up => Now = Expiry_Of_Give_Up,
+           when Tell_All =>
+              Now = On_Asked_All and then Item.Value_Pgn_Octets.Pgn = 60_928,
+           when Tell_Us =>
+              Now = On_Asked_Us and then Item.Value_Pgn_Octets.Pgn = 60_928,
+           when Tell_Null =>
+              Now = On_Asked_By_Null
+              and then Item.Value_Pgn_Octets.Pgn = 60_928,
+           when Tell_Lost =>
+              Now = On_Asked_All and then Item.Value_Pgn_Octets.Pgn = 60_928,
+           when Tell_Lost_Null =>
+              Now = On_Asked_By_Null
+              and then Item.Value_Pgn_Octets.Pgn = 60_928));
+   --  The trigger and the guard of each transition.
 
    function Target
      (T : Firing; Leaf : Address_States.Leaf)
@@ -177,16 +166,16 @@ is
 
    function Is_Selection
      (Chosen : Selection;
-      Leaf   : Address_States.Leaf;
+      Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs;
       Item   : Event)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
-          and then Enabled (Chosen, Leaf, Now, Ins, Item)))
+          and then Enabled (Chosen, Self, Now, Ins, Item)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now, Ins, Item))))
+            (if T < Chosen then not Enabled (T, Self, Now, Ins, Item))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
@@ -239,7 +228,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now, Ins, Item))
+          else Is_Selection (Fired, Self'Old, Now, Ins, Item))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old)
              and then Self.Timers (1)

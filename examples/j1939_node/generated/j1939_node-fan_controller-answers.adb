@@ -9,35 +9,22 @@ is
    pragma Warnings (Off, "*can never be *");
 
    function Select_Transition
-     (Leaf : Answers_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs;
-      Item : Event)
-     return Selection is
-     (case Leaf is
-        when Answers_States.Silent =>
-           (if Now = Conditions
-               and then Ins.Address = Address_States.Claimed
-               then With_Address
-            else None),
-        when Answers_States.Sending =>
-           (if Now = Conditions
-               and then not (Ins.Address = Address_States.Claimed)
-               then Without_Address
-            elsif Now = Expiry_Of_Cyclic then Cyclic
-            elsif Now = On_Asked_All
-               and then Item.Value_Pgn_Octets.Pgn = 65_213
-               then Answer_All
-            elsif Now = On_Asked_Us
-               and then Item.Value_Pgn_Octets.Pgn = 65_213
-               then Answer
-            elsif Now = On_Asked_Us
-               and then Item.Value_Pgn_Octets.Pgn /= 65_213
-               and then Item.Value_Pgn_Octets.Pgn /= 60_928
-               then Refuse
-            else None))
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection
    with
-     Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins, Item);
+     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now, Ins, Item)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    package Chart
    with Ghost
@@ -168,7 +155,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self.Leaf, Now, Ins, Item);
+         Fired := Select_Transition (Self, Now, Ins, Item);
       end if;
       if Fired /= None then
          Fire (Self, Item, Box, Fired);

@@ -61,39 +61,6 @@ is
       Data    : Variables;
    end record;
 
-   function Enabled
-     (T    : Transition;
-      Leaf : Answers_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs;
-      Item : Event)
-     return Boolean is
-     (case T is
-        when With_Address =>
-           Leaf = Answers_States.Silent
-           and then Now = Conditions
-           and then Ins.Address = Address_States.Claimed,
-        when Without_Address =>
-           Leaf = Answers_States.Sending
-           and then Now = Conditions
-           and then not (Ins.Address = Address_States.Claimed),
-        when Cyclic =>
-           Leaf = Answers_States.Sending and then Now = Expiry_Of_Cyclic,
-        when Answer_All =>
-           Leaf = Answers_States.Sending
-           and then Now = On_Asked_All
-           and then Item.Value_Pgn_Octets.Pgn = 65_213,
-        when Answer =>
-           Leaf = Answers_States.Sending
-           and then Now = On_Asked_Us
-           and then Item.Value_Pgn_Octets.Pgn = 65_213,
-        when Refuse =>
-           Leaf = Answers_States.Sending
-           and then Now = On_Asked_Us
-           and then Item.Value_Pgn_Octets.Pgn /= 65_213
-           and then Item.Value_Pgn_Octets.Pgn /= 60_928);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Answers_States.Leaf)
      return Boolean is
@@ -101,7 +68,33 @@ is
         when With_Address => Leaf = Answers_States.Silent,
         when Without_Address | Cyclic | Answer_All | Answer | Refuse =>
            Leaf = Answers_States.Sending);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition;
+      Self : Region;
+      Now  : Occurrence;
+      Ins  : Inputs;
+      Item : Event)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when With_Address =>
+              Now = Conditions and then Ins.Address = Address_States.Claimed,
+           when Without_Address =>
+              Now = Conditions
+              and then not (Ins.Address = Address_States.Claimed),
+           when Cyclic => Now = Expiry_Of_Cyclic,
+           when Answer_All =>
+              Now = On_Asked_All and then Item.Value_Pgn_Octets.Pgn = 65_213,
+           when Answer =>
+              Now = On_Asked_Us and then Item.Value_Pgn_Octets.Pgn = 65_213,
+           when Refuse =>
+              Now = On_Asked_Us
+              and then Item.Value_Pgn_Octets.Pgn /= 65_213
+              and then Item.Value_Pgn_Octets.Pgn /= 60_928));
+   --  The trigger and the guard of each transition.
 
    function Target
      (T : Firing; Leaf : Answers_States.Leaf)
@@ -143,16 +136,16 @@ is
 
    function Is_Selection
      (Chosen : Selection;
-      Leaf   : Answers_States.Leaf;
+      Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs;
       Item   : Event)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
-          and then Enabled (Chosen, Leaf, Now, Ins, Item)))
+          and then Enabled (Chosen, Self, Now, Ins, Item)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now, Ins, Item))))
+            (if T < Chosen then not Enabled (T, Self, Now, Ins, Item))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
@@ -200,7 +193,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now, Ins, Item))
+          else Is_Selection (Fired, Self'Old, Now, Ins, Item))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old)
              and then Self.Timers (1)

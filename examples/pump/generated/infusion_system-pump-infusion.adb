@@ -10,250 +10,68 @@ is
 
    use type Ravenchart.Event_Count;
 
-   function Select_Motor
-     (Place : Infusion_States.Configuration;
+   function Select_Transition
+     (First : Transition;
+      Last  : Transition;
+      Self  : Region;
       Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
       Ins   : Inputs;
       Item  : Event)
-     return Selection is
-     (if Place.Top = Infusion_States.Self_Test
-         then (case Place.In_Motor is
-               when Infusion_States.Turning =>
-                  (if Now = Completion_Of_Turning then Turned else None),
-               when Infusion_States.Motor_Good => None)
-      else None)
+     return Selection
    with
      Post =>
-       Is_Motor_Selection (Select_Motor'Result, Place, Now, Past, Data, Ins,
-          Item);
-
-   function Select_Sensor
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Place.Top = Infusion_States.Self_Test
-         then (case Place.In_Sensor is
-               when Infusion_States.Listening =>
-                  (if Now = Conditions
-                      and then Ins.Line.State = Ravenchart.Fresh
-                      then Heard
-                   else None),
-               when Infusion_States.Sensor_Good => None)
-      else None)
-   with
-     Post =>
-       Is_Sensor_Selection (Select_Sensor'Result, Place, Now, Past, Data,
-          Ins, Item);
-
-   function In_Where_It_Was
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = Passing and then Past.Known_In_Infusing
-         then Restore_Where_It_Was
-      elsif Now = Passing then Default_Of_Where_It_Was
-      elsif Now = On_Stop then Stop
-      elsif Now = On_Sensor_Lost then Lost
-      elsif Now = Conditions
-         and then Ins.Line.Value /= Infusion_System.Clear
-         then Trouble
-      else None)
-   with
-     Pre => Place.Top = Infusion_States.Where_It_Was,
-     Post =>
-       Is_Top_Selection (In_Where_It_Was'Result, Place, Now, Past, Data,
-          Ins, Item);
-
-   function In_Infusing
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (case Infusion_States.Infusing'(Place.Top) is
-        when Infusion_States.Filling =>
-           (if Now = Completion_Of_Filling then Filled_Up
-            elsif Now = On_New_Portion then Defer_New_Portion_In_Filling
-            elsif Now = Completion_Of_Running then Finished
-            elsif Now = On_Stop then Stop
-            elsif Now = On_Sensor_Lost then Lost
-            elsif Now = Conditions
-               and then Ins.Line.Value /= Infusion_System.Clear
-               then Trouble
-            else None),
-        when Infusion_States.Loading =>
-           (if Now = Conditions and then Data.Given >= Ins.Loading
-               then Loaded
-            elsif Now = On_New_Portion then Defer_New_Portion_In_Loading
-            elsif Now = Expiry_Of_Beat then Beat
-            elsif Now = Conditions and then Data.Given >= Data.Volume
-               then Enough
-            elsif Now = Completion_Of_Running then Finished
-            elsif Now = On_Stop then Stop
-            elsif Now = On_Sensor_Lost then Lost
-            elsif Now = Conditions
-               and then Ins.Line.Value /= Infusion_System.Clear
-               then Trouble
-            else None),
-        when Infusion_States.Maintaining =>
-           (if Now = On_New_Portion and then Item.Value_Portion > 0
-               then Change
-            elsif Now = Expiry_Of_Beat then Beat
-            elsif Now = Conditions and then Data.Given >= Data.Volume
-               then Enough
-            elsif Now = Completion_Of_Running then Finished
-            elsif Now = On_Stop then Stop
-            elsif Now = On_Sensor_Lost then Lost
-            elsif Now = Conditions
-               and then Ins.Line.Value /= Infusion_System.Clear
-               then Trouble
-            else None),
-        when Infusion_States.All_Given =>
-           (if Now = Completion_Of_Running then Finished
-            elsif Now = On_Stop then Stop
-            elsif Now = On_Sensor_Lost then Lost
-            elsif Now = Conditions
-               and then Ins.Line.Value /= Infusion_System.Clear
-               then Trouble
-            else None),
-        when Infusion_States.Trickling =>
-           (if Now = On_Stop then Stop
-            elsif Now = On_Sensor_Lost then Lost
-            elsif Now = Conditions
-               and then Ins.Line.Value /= Infusion_System.Clear
-               then Trouble
-            else None),
-        when Infusion_States.Where_It_Was =>
-           In_Where_It_Was (Place, Now, Past, Data, Ins, Item))
-   with
-     Pre => Place.Top in Infusion_States.Infusing,
-     Post =>
-       Is_Top_Selection (In_Infusing'Result, Place, Now, Past, Data, Ins,
-          Item);
-
-   function In_Alarm
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (case Infusion_States.Alarm'(Place.Top) is
-        when Infusion_States.Sounding =>
-           (if Now = On_Silence then Hush
-            elsif Now = On_Resume then Resume
-            elsif Now = On_Stop then Give_Up
-            elsif Now = On_New_Portion then Defer_New_Portion_In_Alarm
-            else None),
-        when Infusion_States.Silent =>
-           (if Now = Expiry_Of_Remind then Remind
-            elsif Now = On_Resume then Resume
-            elsif Now = On_Stop then Give_Up
-            elsif Now = On_New_Portion then Defer_New_Portion_In_Alarm
-            else None))
-   with
-     Pre => Place.Top in Infusion_States.Alarm,
-     Post =>
-       Is_Top_Selection (In_Alarm'Result, Place, Now, Past, Data, Ins, Item);
-
-   function In_May_Go_On
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = Passing
-         and then Ins.Line.State = Ravenchart.Fresh
-         and then Ins.Line.Value = Infusion_System.Clear
-         then Go_On
-      elsif Now = Passing then Not_Yet
-      else None)
-   with
-     Pre => Place.Top = Infusion_States.May_Go_On,
-     Post =>
-       Is_Top_Selection (In_May_Go_On'Result, Place, Now, Past, Data, Ins,
-          Item);
-
-   function Select_Top
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (case Place.Top is
-        when Infusion_States.Self_Test =>
-           (if Now = Completion_Of_Self_Test then Ready
-            elsif Now = Expiry_Of_Again then Again
-            elsif Now = On_New_Portion then Defer_New_Portion_In_Self_Test
-            elsif Now = On_New_Volume then Defer_New_Volume_In_Self_Test
-            else None),
-        when Infusion_States.Programming =>
-           (if Now = On_New_Portion then Order_Portion
-            elsif Now = On_New_Volume then Order_Volume
-            elsif Now = On_Start
-               and then Data.Portion > 0
-               and then Data.Volume > 0
-               then Start
-            else None),
-        when Infusion_States.Infusing =>
-           In_Infusing (Place, Now, Past, Data, Ins, Item),
-        when Infusion_States.Alarm =>
-           In_Alarm (Place, Now, Past, Data, Ins, Item),
-        when Infusion_States.May_Go_On =>
-           In_May_Go_On (Place, Now, Past, Data, Ins, Item))
-   with
-     Post =>
-       Is_Top_Selection (Select_Top'Result, Place, Now, Past, Data, Ins,
-          Item);
+       Is_Selection (Select_Transition'Result, First, Last, Self, Now, Ins,
+          Item)
+   is
+   begin
+      for T in First .. Last loop
+         if Enabled (T, Self, Now, Ins, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in First .. T =>
+                not Enabled (E, Self, Now, Ins, Item)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    function Select_Segment
-     (Place : Infusion_States.Configuration;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Transition is
-     (if Place.Top = Infusion_States.Where_It_Was
-         then In_Where_It_Was (Place, Passing, Past, Data, Ins, Item)
-      else In_May_Go_On (Place, Passing, Past, Data, Ins, Item))
+     (Self : Region; Ins : Inputs; Item : Event)
+     return Transition
    with
-     Pre => Segments_Left (Place) > 0,
+     Pre => Segments_Left (Self.Place) > 0,
      Post =>
-       Enabled (Select_Segment'Result, Place, Passing, Past, Data, Ins,
-          Item)
-       and then Is_Segment (Select_Segment'Result);
+       Enabled (Select_Segment'Result, Self, Passing, Ins, Item)
+       and then Is_Segment (Select_Segment'Result)
+   is
+   begin
+      pragma Assert
+        ((if Self.Place.Top = Infusion_States.Where_It_Was
+             then Enabled (Restore_Where_It_Was, Self, Passing, Ins, Item)
+                or else Enabled (Default_Of_Where_It_Was, Self, Passing,
+                     Ins, Item)
+          else Enabled (Go_On, Self, Passing, Ins, Item)
+             or else Enabled (Not_Yet, Self, Passing, Ins, Item)));
+      return
+        Select_Transition (Transition'First, Transition'Last, Self, Passing,
+           Ins, Item);
+   end Select_Segment;
 
    function Choose
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
      return Choice is
       C : Choice;
    begin
-      C.Motor := Select_Motor (Place, Now, Past, Data, Ins, Item);
-      C.Sensor := Select_Sensor (Place, Now, Past, Data, Ins, Item);
+      C.Motor :=
+        Select_Transition (Motor_Transition'First, Motor_Transition'Last,
+           Self, Now, Ins, Item);
+      C.Sensor :=
+        Select_Transition (Sensor_Transition'First, Sensor_Transition'Last,
+           Self, Now, Ins, Item);
       if C.Motor = None and then C.Sensor = None then
-         C.Top := Select_Top (Place, Now, Past, Data, Ins, Item);
+         C.Top :=
+           Select_Transition (Top_Transition'First, Top_Transition'Last,
+              Self, Now, Ins, Item);
       end if;
       return C;
    end Choose;
@@ -421,8 +239,9 @@ is
      return Boolean is
      (Self.Started
       and then Self.Place = Target (Chosen, Before.Place, Before.Past)
-      and then Is_Lasting (Before, Self, Item, Chosen)) with Ghost;
-   --  Is the region after it as declared?
+      and then Is_Lasting (Before, Self, Item, Chosen)
+      and then Is_Safe (Self.Place, Self.Data)) with Ghost;
+   --  Is the region after it as declared, and safe?
 
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
 
@@ -433,9 +252,7 @@ is
       Chosen : Firing)
    with
      Pre => Is_Ready (Self, Ins, Item, Chosen),
-     Post =>
-       Is_Fired (Self'Old, Self, Item, Chosen)
-       and then Is_Safe (Self.Place, Self.Data)
+     Post => Is_Fired (Self'Old, Self, Item, Chosen)
    is
       use type Chart.Node;
 
@@ -740,10 +557,7 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Item, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
+        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
       is
       begin
          case Chosen is
@@ -790,10 +604,7 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Item, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
+        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
       is
       begin
          case Chosen is
@@ -837,10 +648,7 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Item, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
+        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
       is
       begin
          case Chosen is
@@ -913,10 +721,7 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Item, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
+        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
       is
       begin
          case Chosen is
@@ -970,10 +775,7 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Item, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
+        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
       is
       begin
          case Chosen is
@@ -1065,8 +867,7 @@ is
             if Segments_Left (Self.Place) = 0 then
                exit;
             end if;
-            Segment :=
-              Select_Segment (Self.Place, Self.Past, Self.Data, Ins, Item);
+            Segment := Select_Segment (Self, Ins, Item);
             Fire (Self, Ins, Item, Segment);
             Fired.Count := Fired.Count + 1;
             Fired.Items (Fired.Count) := Segment;
@@ -1077,12 +878,8 @@ is
       if Now = Start_Of_Region then
          Fire_Whole (Initial_Entry);
       else
-         C := Choose (Self.Place, Now, Self.Past, Self.Data, Ins, Item);
-         if Is_Deferral (C.Motor) then
-            Fire_Whole (C.Motor);
-         elsif Is_Deferral (C.Sensor) then
-            Fire_Whole (C.Sensor);
-         elsif Is_Deferral (C.Top) then
+         C := Choose (Self, Now, Ins, Item);
+         if Is_Deferral (C.Top) then
             Fire_Whole (C.Top);
          else
             if C.Motor /= None then
@@ -1090,11 +887,7 @@ is
             end if;
             pragma Assert
               (Fired.Count <= 3
-               and then (for all I in 1 .. Fired.Count =>
-                     Is_Segment (Fired.Items (I))
-                     or else (Fired.Items (I) <= Motor_Transition'Last
-                        and then Fired.Items (I) = C.Motor))
-               and then Is_Ordered (Fired)
+               and then Is_Of_Choice (Fired, C, Motor_Transition'Last)
                and then (if C.Motor /= None then Has (Fired, C.Motor)));
             if C.Sensor /= None and then In_Source (C.Sensor, Self.Place)
             then
@@ -1102,24 +895,14 @@ is
             end if;
             pragma Assert
               (Fired.Count <= 6
-               and then (for all I in 1 .. Fired.Count =>
-                     Is_Segment (Fired.Items (I))
-                     or else (Fired.Items (I) <= Sensor_Transition'Last
-                        and then (Fired.Items (I) = C.Motor
-                           or else Fired.Items (I) = C.Sensor)))
-               and then Is_Ordered (Fired)
+               and then Is_Of_Choice (Fired, C, Sensor_Transition'Last)
                and then (if C.Motor /= None then Has (Fired, C.Motor)
                   elsif C.Sensor /= None then Has (Fired, C.Sensor)));
             if C.Top /= None and then In_Source (C.Top, Self.Place) then
                Fire_Whole (C.Top);
             end if;
             pragma Assert
-              ((for all I in 1 .. Fired.Count =>
-                   Is_Segment (Fired.Items (I))
-                   or else (Fired.Items (I) = C.Motor
-                      or else Fired.Items (I) = C.Sensor
-                      or else Fired.Items (I) = C.Top))
-               and then Is_Ordered (Fired)
+              (Is_Of_Choice (Fired, C, Top_Transition'Last)
                and then (if C.Motor /= None then Has (Fired, C.Motor)
                   elsif C.Sensor /= None then Has (Fired, C.Sensor)
                   elsif C.Top /= None then Has (Fired, C.Top)));

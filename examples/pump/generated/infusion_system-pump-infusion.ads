@@ -38,20 +38,16 @@ is
       Heard,                           --  [heard] model.yaml:119
       Loaded,                          --  [loaded] model.yaml:134
       Change,                          --  [change] model.yaml:137
-      --  [Defer_New_Portion_In_Loading] model.yaml:97
-      Defer_New_Portion_In_Loading,
+      Defer_New_Portion_In_Loading,    --  [Loading] model.yaml:97
       Filled_Up,                       --  [filled_up] model.yaml:132
       Beat,                            --  [beat] model.yaml:133
       Enough,                          --  [enough] model.yaml:135
-      --  [Defer_New_Portion_In_Filling] model.yaml:91
-      Defer_New_Portion_In_Filling,
+      Defer_New_Portion_In_Filling,    --  [Filling] model.yaml:91
       Finished,                        --  [finished] model.yaml:136
       Hush,                            --  [hush] model.yaml:148
       Remind,                          --  [remind] model.yaml:149
-      --  [Restore_Where_It_Was] model.yaml:86
-      Restore_Where_It_Was,
-      --  [Default_Of_Where_It_Was] model.yaml:86
-      Default_Of_Where_It_Was,
+      Restore_Where_It_Was,            --  [Where_It_Was] model.yaml:86
+      Default_Of_Where_It_Was,         --  [Where_It_Was] model.yaml:86
       Ready,                           --  [ready] model.yaml:120
       Again,                           --  [again] model.yaml:121
       Order_Portion,                   --  [order_portion] model.yaml:122
@@ -62,12 +58,9 @@ is
       Trouble,                         --  [trouble] model.yaml:147
       Resume,                          --  [resume] model.yaml:150
       Give_Up,                         --  [give_up] model.yaml:153
-      --  [Defer_New_Portion_In_Self_Test] model.yaml:63
-      Defer_New_Portion_In_Self_Test,
-      --  [Defer_New_Volume_In_Self_Test] model.yaml:63
-      Defer_New_Volume_In_Self_Test,
-      --  [Defer_New_Portion_In_Alarm] model.yaml:105
-      Defer_New_Portion_In_Alarm,
+      Defer_New_Portion_In_Self_Test,  --  [Self_Test] model.yaml:63
+      Defer_New_Volume_In_Self_Test,   --  [Self_Test] model.yaml:63
+      Defer_New_Portion_In_Alarm,      --  [Alarm] model.yaml:105
       Go_On,                           --  [go_on] model.yaml:151
       Not_Yet,                         --  [not_yet] model.yaml:152
       None);
@@ -154,107 +147,6 @@ is
       Data                : Variables;
    end record;
 
-   function Enabled
-     (T     : Transition;
-      Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Boolean is
-     (case T is
-        when Turned =>
-           Place.Top = Infusion_States.Self_Test
-           and then Place.In_Motor = Infusion_States.Turning
-           and then Now = Completion_Of_Turning,
-        when Heard =>
-           Place.Top = Infusion_States.Self_Test
-           and then Place.In_Sensor = Infusion_States.Listening
-           and then Now = Conditions
-           and then Ins.Line.State = Ravenchart.Fresh,
-        when Loaded =>
-           Place.Top = Infusion_States.Loading
-           and then Now = Conditions
-           and then Data.Given >= Ins.Loading,
-        when Change =>
-           Place.Top = Infusion_States.Maintaining
-           and then Now = On_New_Portion
-           and then Item.Value_Portion > 0,
-        when Defer_New_Portion_In_Loading =>
-           Place.Top = Infusion_States.Loading and then Now = On_New_Portion,
-        when Filled_Up =>
-           Place.Top = Infusion_States.Filling
-           and then Now = Completion_Of_Filling,
-        when Beat =>
-           Place.Top in Infusion_States.Giving and then Now = Expiry_Of_Beat,
-        when Enough =>
-           Place.Top in Infusion_States.Giving
-           and then Now = Conditions
-           and then Data.Given >= Data.Volume,
-        when Defer_New_Portion_In_Filling =>
-           Place.Top = Infusion_States.Filling and then Now = On_New_Portion,
-        when Finished =>
-           Place.Top in Infusion_States.Running
-           and then Now = Completion_Of_Running,
-        when Hush =>
-           Place.Top = Infusion_States.Sounding and then Now = On_Silence,
-        when Remind =>
-           Place.Top = Infusion_States.Silent
-           and then Now = Expiry_Of_Remind,
-        when Restore_Where_It_Was =>
-           Place.Top = Infusion_States.Where_It_Was
-           and then Now = Passing
-           and then Past.Known_In_Infusing,
-        when Default_Of_Where_It_Was =>
-           Place.Top = Infusion_States.Where_It_Was and then Now = Passing,
-        when Ready =>
-           Place.Top = Infusion_States.Self_Test
-           and then Now = Completion_Of_Self_Test,
-        when Again =>
-           Place.Top = Infusion_States.Self_Test
-           and then Now = Expiry_Of_Again,
-        when Order_Portion =>
-           Place.Top = Infusion_States.Programming
-           and then Now = On_New_Portion,
-        when Order_Volume =>
-           Place.Top = Infusion_States.Programming
-           and then Now = On_New_Volume,
-        when Start =>
-           Place.Top = Infusion_States.Programming
-           and then Now = On_Start
-           and then Data.Portion > 0
-           and then Data.Volume > 0,
-        when Stop =>
-           Place.Top in Infusion_States.Infusing and then Now = On_Stop,
-        when Lost =>
-           Place.Top in Infusion_States.Infusing
-           and then Now = On_Sensor_Lost,
-        when Trouble =>
-           Place.Top in Infusion_States.Infusing
-           and then Now = Conditions
-           and then Ins.Line.Value /= Infusion_System.Clear,
-        when Resume =>
-           Place.Top in Infusion_States.Alarm and then Now = On_Resume,
-        when Give_Up =>
-           Place.Top in Infusion_States.Alarm and then Now = On_Stop,
-        when Defer_New_Portion_In_Self_Test =>
-           Place.Top = Infusion_States.Self_Test
-           and then Now = On_New_Portion,
-        when Defer_New_Volume_In_Self_Test =>
-           Place.Top = Infusion_States.Self_Test
-           and then Now = On_New_Volume,
-        when Defer_New_Portion_In_Alarm =>
-           Place.Top in Infusion_States.Alarm and then Now = On_New_Portion,
-        when Go_On =>
-           Place.Top = Infusion_States.May_Go_On
-           and then Now = Passing
-           and then Ins.Line.State = Ravenchart.Fresh
-           and then Ins.Line.Value = Infusion_System.Clear,
-        when Not_Yet =>
-           Place.Top = Infusion_States.May_Go_On and then Now = Passing);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Place : Infusion_States.Configuration)
      return Boolean is
@@ -285,7 +177,61 @@ is
         when Resume | Give_Up | Defer_New_Portion_In_Alarm =>
            Place.Top in Infusion_States.Alarm,
         when Go_On | Not_Yet => Place.Top = Infusion_States.May_Go_On);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition;
+      Self : Region;
+      Now  : Occurrence;
+      Ins  : Inputs;
+      Item : Event)
+     return Boolean is
+     (In_Source (T, Self.Place)
+      and then (case T is
+           when Turned => Now = Completion_Of_Turning,
+           when Heard =>
+              Now = Conditions and then Ins.Line.State = Ravenchart.Fresh,
+           when Loaded =>
+              Now = Conditions and then Self.Data.Given >= Ins.Loading,
+           when Change =>
+              Now = On_New_Portion and then Item.Value_Portion > 0,
+           when Defer_New_Portion_In_Loading => Now = On_New_Portion,
+           when Filled_Up => Now = Completion_Of_Filling,
+           when Beat => Now = Expiry_Of_Beat,
+           when Enough =>
+              Now = Conditions and then Self.Data.Given >= Self.Data.Volume,
+           when Defer_New_Portion_In_Filling => Now = On_New_Portion,
+           when Finished => Now = Completion_Of_Running,
+           when Hush => Now = On_Silence,
+           when Remind => Now = Expiry_Of_Remind,
+           when Restore_Where_It_Was =>
+              Now = Passing and then Self.Past.Known_In_Infusing,
+           when Default_Of_Where_It_Was => Now = Passing,
+           when Ready => Now = Completion_Of_Self_Test,
+           when Again => Now = Expiry_Of_Again,
+           when Order_Portion => Now = On_New_Portion,
+           when Order_Volume => Now = On_New_Volume,
+           when Start =>
+              Now = On_Start
+              and then Self.Data.Portion > 0
+              and then Self.Data.Volume > 0,
+           when Stop => Now = On_Stop,
+           when Lost => Now = On_Sensor_Lost,
+           when Trouble =>
+              Now = Conditions
+              and then Ins.Line.Value /= Infusion_System.Clear,
+           when Resume => Now = On_Resume,
+           when Give_Up => Now = On_Stop,
+           when Defer_New_Portion_In_Self_Test => Now = On_New_Portion,
+           when Defer_New_Volume_In_Self_Test => Now = On_New_Volume,
+           when Defer_New_Portion_In_Alarm => Now = On_New_Portion,
+           when Go_On =>
+              Now = Passing
+              and then Ins.Line.State = Ravenchart.Fresh
+              and then Ins.Line.Value = Infusion_System.Clear,
+           when Not_Yet => Now = Passing));
+   --  The trigger and the guard of each transition.
 
    function Deep_Infusing (Past : Memory) return Infusion_States.Infusing is
      (if Past.Known_In_Infusing
@@ -438,73 +384,37 @@ is
    --  Each exit of a state frees the events that it defers, of those kept
    --  till then.
 
-   function Is_Motor_Selection
+   function Is_Selection
      (Chosen : Selection;
-      Place  : Infusion_States.Configuration;
+      First  : Transition;
+      Last   : Transition;
+      Self   : Region;
       Now    : Occurrence;
-      Past   : Memory;
-      Data   : Variables;
       Ins    : Inputs;
       Item   : Event)
      return Boolean is
      ((Chosen = None
-       or else (Chosen in Motor_Transition
-          and then Enabled (Chosen, Place, Now, Past, Data, Ins, Item)))
-      and then (for all T in Motor_Transition =>
-            (if T < Chosen
-                then not Enabled (T, Place, Now, Past, Data, Ins, Item))))
+       or else (Chosen in First .. Last
+          and then Enabled (Chosen, Self, Now, Ins, Item)))
+      and then (for all T in First .. Last =>
+            (if T < Chosen then not Enabled (T, Self, Now, Ins, Item))))
    with Ghost;
-
-   function Is_Sensor_Selection
-     (Chosen : Selection;
-      Place  : Infusion_States.Configuration;
-      Now    : Occurrence;
-      Past   : Memory;
-      Data   : Variables;
-      Ins    : Inputs;
-      Item   : Event)
-     return Boolean is
-     ((Chosen = None
-       or else (Chosen in Sensor_Transition
-          and then Enabled (Chosen, Place, Now, Past, Data, Ins, Item)))
-      and then (for all T in Sensor_Transition =>
-            (if T < Chosen
-                then not Enabled (T, Place, Now, Past, Data, Ins, Item))))
-   with Ghost;
-
-   function Is_Top_Selection
-     (Chosen : Selection;
-      Place  : Infusion_States.Configuration;
-      Now    : Occurrence;
-      Past   : Memory;
-      Data   : Variables;
-      Ins    : Inputs;
-      Item   : Event)
-     return Boolean is
-     ((Chosen = None
-       or else (Chosen in Top_Transition
-          and then Enabled (Chosen, Place, Now, Past, Data, Ins, Item)))
-      and then (for all T in Top_Transition =>
-            (if T < Chosen
-                then not Enabled (T, Place, Now, Past, Data, Ins, Item))))
-   with Ghost;
-   --  The first transition of the lane that is enabled, or None when none
-   --  is.
+   --  The first transition that is enabled, or None when none is.
 
    function Is_Choice
-     (C     : Choice;
-      Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
+     (C    : Choice;
+      Self : Region;
+      Now  : Occurrence;
+      Ins  : Inputs;
+      Item : Event)
      return Boolean is
-     (Is_Motor_Selection (C.Motor, Place, Now, Past, Data, Ins, Item)
-      and then Is_Sensor_Selection (C.Sensor, Place, Now, Past, Data, Ins,
-           Item)
+     (Is_Selection (C.Motor, Motor_Transition'First, Motor_Transition'Last,
+         Self, Now, Ins, Item)
+      and then Is_Selection (C.Sensor, Sensor_Transition'First,
+           Sensor_Transition'Last, Self, Now, Ins, Item)
       and then (if C.Motor = None and then C.Sensor = None
-            then Is_Top_Selection (C.Top, Place, Now, Past, Data, Ins, Item)
+            then Is_Selection (C.Top, Top_Transition'First,
+                  Top_Transition'Last, Self, Now, Ins, Item)
          else C.Top = None)) with Ghost;
    --  Each lane's first; none where a lane inside it has one.
 
@@ -588,37 +498,30 @@ is
    --  Is that fired, with the segments of its way, and nothing else?
 
    function Choose
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
      return Choice
-   with Post => Is_Choice (Choose'Result, Place, Now, Past, Data, Ins, Item);
+   with Post => Is_Choice (Choose'Result, Self, Now, Ins, Item);
    --  The transitions that one occurrence asks for.
 
    function Has (Fired : Firing_List; T : Selection) return Boolean is
      (for some I in 1 .. Fired.Count => Fired.Items (I) = T) with Ghost;
 
-   function Is_Ordered (Fired : Firing_List) return Boolean is
+   function Is_Of_Choice
+     (Fired : Firing_List; C : Choice; Last : Selection)
+     return Boolean is
      (for all I in 1 .. Fired.Count =>
          Is_Segment (Fired.Items (I))
-         or else (for all J in 1 .. I - 1 =>
-               Is_Segment (Fired.Items (J))
-               or else Fired.Items (J) < Fired.Items (I))) with Ghost;
-   --  Do the lanes fire in their order?
+         or else (Fired.Items (I) <= Last
+            and then Fired.Items (I) in C.Motor | C.Sensor | C.Top
+            and then (for all J in 1 .. I - 1 =>
+                  Is_Segment (Fired.Items (J))
+                  or else Fired.Items (J) < Fired.Items (I)))) with Ghost;
+   --  Is what has fired chosen, in the order of the lanes, and not after
+   --  Last?
 
    function Follows (Fired : Firing_List; C : Choice) return Boolean is
-     (if Is_Deferral (C.Motor) then Is_Only (Fired, C.Motor)
-      elsif Is_Deferral (C.Sensor) then Is_Only (Fired, C.Sensor)
-      elsif Is_Deferral (C.Top) then Is_Only (Fired, C.Top)
-      else (for all I in 1 .. Fired.Count =>
-             Is_Segment (Fired.Items (I))
-             or else (Fired.Items (I) = C.Motor
-                or else Fired.Items (I) = C.Sensor
-                or else Fired.Items (I) = C.Top))
-         and then Is_Ordered (Fired)
+     (if Is_Deferral (C.Top) then Is_Only (Fired, C.Top)
+      else Is_Of_Choice (Fired, C, Top_Transition'Last)
          and then (if C.Motor /= None then Has (Fired, C.Motor)
             elsif C.Sensor /= None then Has (Fired, C.Sensor)
             elsif C.Top /= None then Has (Fired, C.Top))) with Ghost;
@@ -802,8 +705,6 @@ is
              then Segments_Left (Self.Place) = 0)
        and then ((Now = Start_Of_Region and Is_Only (Fired, Initial_Entry))
           or (Now /= Start_Of_Region
-             and Follows (Fired,
-                  Choose (Self.Place'Old, Now, Self.Past'Old, Self.Data'Old,
-                     Ins, Item))));
+             and Follows (Fired, Choose (Self'Old, Now, Ins, Item))));
    --  One run-to-completion step.
 end Infusion_System.Pump.Infusion;

@@ -10,91 +10,39 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   function In_S1_Init (Now : Occurrence; Data : Variables) return Selection is
-     (if Now = Passing then S1_Init
-      elsif Now = On_A then S1_A
-      elsif Now = On_B then S1_B
-      elsif Now = On_C then S1_C
-      elsif Now = On_D and then not Data.Foo then S1_D
-      elsif Now = On_F then S1_F
-      elsif Now = On_I then S1_I
-      elsif Now = On_E then S_E
-      elsif Now = On_I and then Data.Foo then S_I
-      else None)
-   with
-     Post =>
-       Is_Selection (In_S1_Init'Result, Chart_States.S1_Init, Now, Data);
-
-   function In_S21_Init
-     (Now : Occurrence; Data : Variables)
-     return Selection is
-     (if Now = Passing then S21_Init
-      elsif Now = On_A then S21_A
-      elsif Now = On_B then S21_B
-      elsif Now = On_G then S21_G
-      elsif Now = On_C then S2_C
-      elsif Now = On_F then S2_F
-      elsif Now = On_I and then not Data.Foo then S2_I
-      elsif Now = On_E then S_E
-      elsif Now = On_I and then Data.Foo then S_I
-      else None)
-   with
-     Post =>
-       Is_Selection (In_S21_Init'Result, Chart_States.S21_Init, Now, Data);
-
-   function In_S_Init (Now : Occurrence; Data : Variables) return Selection is
-     (if Now = Passing then S_Init
-      elsif Now = On_E then S_E
-      elsif Now = On_I and then Data.Foo then S_I
-      else None)
-   with
-     Post => Is_Selection (In_S_Init'Result, Chart_States.S_Init, Now, Data);
-
    function Select_Transition
-     (Leaf : Chart_States.Leaf; Now  : Occurrence; Data : Variables)
-     return Selection is
-     (case Leaf is
-        when Chart_States.S11 =>
-           (if Now = On_D and then Data.Foo then S11_D
-            elsif Now = On_G then S11_G
-            elsif Now = On_H then S11_H
-            elsif Now = On_A then S1_A
-            elsif Now = On_B then S1_B
-            elsif Now = On_C then S1_C
-            elsif Now = On_D and then not Data.Foo then S1_D
-            elsif Now = On_F then S1_F
-            elsif Now = On_I then S1_I
-            elsif Now = On_E then S_E
-            elsif Now = On_I and then Data.Foo then S_I
-            else None),
-        when Chart_States.S1_Init => In_S1_Init (Now, Data),
-        when Chart_States.S211 =>
-           (if Now = On_D then S211_D
-            elsif Now = On_H then S211_H
-            elsif Now = On_A then S21_A
-            elsif Now = On_B then S21_B
-            elsif Now = On_G then S21_G
-            elsif Now = On_C then S2_C
-            elsif Now = On_F then S2_F
-            elsif Now = On_I and then not Data.Foo then S2_I
-            elsif Now = On_E then S_E
-            elsif Now = On_I and then Data.Foo then S_I
-            else None),
-        when Chart_States.S21_Init => In_S21_Init (Now, Data),
-        when Chart_States.S_Init => In_S_Init (Now, Data))
-   with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Data);
+     (Self : Region; Now : Occurrence)
+     return Selection
+   with Post => Is_Selection (Select_Transition'Result, Self, Now)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now)));
+      end loop;
+      return None;
+   end Select_Transition;
 
-   function Select_Segment
-     (Leaf : Chart_States.Leaf; Data : Variables)
-     return Transition is
-     (if Leaf = Chart_States.S_Init then In_S_Init (Passing, Data)
-      elsif Leaf = Chart_States.S1_Init then In_S1_Init (Passing, Data)
-      else In_S21_Init (Passing, Data))
+   function Select_Segment (Self : Region) return Transition
    with
-     Pre => Segments_Left (Leaf) > 0,
+     Pre => Segments_Left (Self.Leaf) > 0,
      Post =>
-       Enabled (Select_Segment'Result, Leaf, Passing, Data)
-       and then Is_Segment (Select_Segment'Result);
+       Enabled (Select_Segment'Result, Self, Passing)
+       and then Is_Segment (Select_Segment'Result)
+   is
+   begin
+      pragma Assert
+        ((if Self.Leaf = Chart_States.S_Init
+             then Enabled (S_Init, Self, Passing)
+          elsif Self.Leaf = Chart_States.S1_Init
+             then Enabled (S1_Init, Self, Passing)
+          else Enabled (S21_Init, Self, Passing)));
+      return Select_Transition (Self, Passing);
+   end Select_Segment;
 
    package Chart
    with Ghost
@@ -346,7 +294,7 @@ is
             if Segments_Left (Self.Leaf) = 0 then
                exit;
             end if;
-            Segment := Select_Segment (Self.Leaf, Self.Data);
+            Segment := Select_Segment (Self);
             Fire (Self, Segment);
             Fired.Count := Fired.Count + 1;
             Fired.Items (Fired.Count) := Segment;
@@ -357,7 +305,7 @@ is
       if Now = Start_Of_Region then
          Fire_Whole (Initial_Entry);
       else
-         Chosen := Select_Transition (Self.Leaf, Now, Self.Data);
+         Chosen := Select_Transition (Self, Now);
          if Chosen /= None then
             Fire_Whole (Chosen);
          end if;

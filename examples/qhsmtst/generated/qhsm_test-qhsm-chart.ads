@@ -69,41 +69,6 @@ is
       Data    : Variables;
    end record;
 
-   function Enabled
-     (T    : Transition;
-      Leaf : Chart_States.Leaf;
-      Now  : Occurrence;
-      Data : Variables)
-     return Boolean is
-     (case T is
-        when S211_D => Leaf = Chart_States.S211 and then Now = On_D,
-        when S211_H => Leaf = Chart_States.S211 and then Now = On_H,
-        when S21_Init => Leaf = Chart_States.S21_Init and then Now = Passing,
-        when S11_D =>
-           Leaf = Chart_States.S11 and then Now = On_D and then Data.Foo,
-        when S11_G => Leaf = Chart_States.S11 and then Now = On_G,
-        when S11_H => Leaf = Chart_States.S11 and then Now = On_H,
-        when S21_A => Leaf in Chart_States.S21 and then Now = On_A,
-        when S21_B => Leaf in Chart_States.S21 and then Now = On_B,
-        when S21_G => Leaf in Chart_States.S21 and then Now = On_G,
-        when S1_Init => Leaf = Chart_States.S1_Init and then Now = Passing,
-        when S1_A => Leaf in Chart_States.S1 and then Now = On_A,
-        when S1_B => Leaf in Chart_States.S1 and then Now = On_B,
-        when S1_C => Leaf in Chart_States.S1 and then Now = On_C,
-        when S1_D =>
-           Leaf in Chart_States.S1 and then Now = On_D and then not Data.Foo,
-        when S1_F => Leaf in Chart_States.S1 and then Now = On_F,
-        when S1_I => Leaf in Chart_States.S1 and then Now = On_I,
-        when S2_C => Leaf in Chart_States.S2 and then Now = On_C,
-        when S2_F => Leaf in Chart_States.S2 and then Now = On_F,
-        when S2_I =>
-           Leaf in Chart_States.S2 and then Now = On_I and then not Data.Foo,
-        when S_Init => Leaf = Chart_States.S_Init and then Now = Passing,
-        when S_E => Leaf in Chart_States.S and then Now = On_E,
-        when S_I =>
-           Leaf in Chart_States.S and then Now = On_I and then Data.Foo);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Chart_States.Leaf)
      return Boolean is
@@ -118,7 +83,37 @@ is
         when S2_C | S2_F | S2_I => Leaf in Chart_States.S2,
         when S_Init => Leaf = Chart_States.S_Init,
         when S_E | S_I => Leaf in Chart_States.S);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T : Transition; Self : Region; Now : Occurrence)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when S211_D => Now = On_D,
+           when S211_H => Now = On_H,
+           when S21_Init => Now = Passing,
+           when S11_D => Now = On_D and then Self.Data.Foo,
+           when S11_G => Now = On_G,
+           when S11_H => Now = On_H,
+           when S21_A => Now = On_A,
+           when S21_B => Now = On_B,
+           when S21_G => Now = On_G,
+           when S1_Init => Now = Passing,
+           when S1_A => Now = On_A,
+           when S1_B => Now = On_B,
+           when S1_C => Now = On_C,
+           when S1_D => Now = On_D and then not Self.Data.Foo,
+           when S1_F => Now = On_F,
+           when S1_I => Now = On_I,
+           when S2_C => Now = On_C,
+           when S2_F => Now = On_F,
+           when S2_I => Now = On_I and then not Self.Data.Foo,
+           when S_Init => Now = Passing,
+           when S_E => Now = On_E,
+           when S_I => Now = On_I and then Self.Data.Foo));
+   --  The trigger and the guard of each transition.
 
    function Target
      (T : Firing; Leaf : Chart_States.Leaf)
@@ -136,17 +131,12 @@ is
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
-     (Chosen : Selection;
-      Leaf   : Chart_States.Leaf;
-      Now    : Occurrence;
-      Data   : Variables)
+     (Chosen : Selection; Self : Region; Now : Occurrence)
      return Boolean is
      ((Chosen = None
-       or else (Chosen in Transition
-          and then Enabled (Chosen, Leaf, Now, Data)))
+       or else (Chosen in Transition and then Enabled (Chosen, Self, Now)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now, Data))))
-   with Ghost;
+            (if T < Chosen then not Enabled (T, Self, Now)))) with Ghost;
    --  The first transition that is enabled, or None when none is.
 
    function Segments_Left (Leaf : Chart_States.Leaf) return Natural is
@@ -200,8 +190,7 @@ is
              then Segments_Left (Self.Leaf) = 0)
        and then (if Now = Start_Of_Region
              then Fired.Items (1) = Initial_Entry
-          else Is_Selection (Fired.Items (1), Self.Leaf'Old, Now,
-                Self.Data'Old))
+          else Is_Selection (Fired.Items (1), Self'Old, Now))
        and then (if Fired.Count > 0 then Is_Only (Fired, Fired.Items (1)));
    --  One run-to-completion step.
 end Qhsm_Test.Qhsm.Chart;

@@ -9,12 +9,21 @@ is
    pragma Warnings (Off, "*can never be *");
 
    function Select_Transition
-     (Leaf : Keys_States.Leaf; Now : Occurrence)
-     return Selection is
-     (case Leaf is
-        when Keys_States.Listening =>
-           (if Now = On_Pressed then Pressed else None))
-   with Post => Is_Selection (Select_Transition'Result, Leaf, Now);
+     (Self : Region; Now : Occurrence)
+     return Selection
+   with Post => Is_Selection (Select_Transition'Result, Self, Now)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    package Chart
    with Ghost
@@ -129,7 +138,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self.Leaf, Now);
+         Fired := Select_Transition (Self, Now);
       end if;
       if Fired /= None then
          Fire (Self, Item, Box, Fired);

@@ -6,19 +6,21 @@ package body Surgical_Robot.Supervisor.Task_Of_Arm
 with SPARK_Mode
 is
    function Select_Transition
-     (Leaf : Task_Of_Arm_States.Leaf; Now  : Occurrence; Ins  : Inputs)
-     return Selection is
-     (case Leaf is
-        when Task_Of_Arm_States.Parked =>
-           (if Now = Expiry_Of_Begin_Task then Begin_Task else None),
-        when Task_Of_Arm_States.Reaching =>
-           (if Now = Conditions and then Ins.Get_Position.Axis_1 >= 280
-               then There
-            elsif Now = Expiry_Of_Too_Late then Too_Late
-            else None),
-        when Task_Of_Arm_States.Holding => None,
-        when Task_Of_Arm_States.Gave_Up => None)
-   with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins);
+     (Self : Region; Now : Occurrence; Ins : Inputs)
+     return Selection
+   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    package Chart
    with Ghost
@@ -173,7 +175,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self.Leaf, Now, Ins);
+         Fired := Select_Transition (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Box, Fired);

@@ -47,32 +47,25 @@ is
       Timers  : Ravenchart.Timers.Timer_Array (1 .. 2);
    end record;
 
-   function Enabled
-     (T    : Transition;
-      Leaf : Task_Of_Arm_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs)
-     return Boolean is
-     (case T is
-        when Begin_Task =>
-           Leaf = Task_Of_Arm_States.Parked
-           and then Now = Expiry_Of_Begin_Task,
-        when There =>
-           Leaf = Task_Of_Arm_States.Reaching
-           and then Now = Conditions
-           and then Ins.Get_Position.Axis_1 >= 280,
-        when Too_Late =>
-           Leaf = Task_Of_Arm_States.Reaching
-           and then Now = Expiry_Of_Too_Late);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Task_Of_Arm_States.Leaf)
      return Boolean is
      (case T is
         when Begin_Task => Leaf = Task_Of_Arm_States.Parked,
         when There | Too_Late => Leaf = Task_Of_Arm_States.Reaching);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Begin_Task => Now = Expiry_Of_Begin_Task,
+           when There =>
+              Now = Conditions and then Ins.Get_Position.Axis_1 >= 280,
+           when Too_Late => Now = Expiry_Of_Too_Late));
+   --  The trigger and the guard of each transition.
 
    function Target (T : Firing) return Task_Of_Arm_States.Leaf is
      (case T is
@@ -117,15 +110,15 @@ is
 
    function Is_Selection
      (Chosen : Selection;
-      Leaf   : Task_Of_Arm_States.Leaf;
+      Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
-          and then Enabled (Chosen, Leaf, Now, Ins)))
+          and then Enabled (Chosen, Self, Now, Ins)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
+            (if T < Chosen then not Enabled (T, Self, Now, Ins))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
@@ -168,7 +161,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
+          else Is_Selection (Fired, Self'Old, Now, Ins))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)

@@ -44,23 +44,23 @@ is
       Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
    end record;
 
-   function Enabled
-     (T    : Transition; Leaf : Starting_States.Leaf; Now  : Occurrence)
-     return Boolean is
-     (case T is
-        when Start =>
-           Leaf = Starting_States.Before and then Now = Expiry_Of_Start,
-        when Again =>
-           Leaf = Starting_States.After_Start and then Now = On_Token_Came);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Starting_States.Leaf)
      return Boolean is
      (case T is
         when Start => Leaf = Starting_States.Before,
         when Again => Leaf = Starting_States.After_Start);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T : Transition; Self : Region; Now : Occurrence)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Start => Now = Expiry_Of_Start,
+           when Again => Now = On_Token_Came));
+   --  The trigger and the guard of each transition.
 
    function Target (T : Firing) return Starting_States.Leaf is
      (case T is
@@ -96,14 +96,12 @@ is
    --  entered.
 
    function Is_Selection
-     (Chosen : Selection;
-      Leaf   : Starting_States.Leaf;
-      Now    : Occurrence)
+     (Chosen : Selection; Self : Region; Now : Occurrence)
      return Boolean is
      ((Chosen = None
-       or else (Chosen in Transition and then Enabled (Chosen, Leaf, Now)))
+       or else (Chosen in Transition and then Enabled (Chosen, Self, Now)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now)))) with Ghost;
+            (if T < Chosen then not Enabled (T, Self, Now)))) with Ghost;
    --  The first transition that is enabled, or None when none is.
 
    procedure Tick (Self : in out Region)
@@ -148,7 +146,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now))
+          else Is_Selection (Fired, Self'Old, Now))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)

@@ -35,18 +35,6 @@ is
       Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
    end record;
 
-   function Enabled
-     (T    : Transition; Leaf : Watching_States.Leaf; Now  : Occurrence)
-     return Boolean is
-     (case T is
-        when Seen =>
-           Leaf = Watching_States.Quiet and then Now = On_Token_Came,
-        when Calm =>
-           Leaf = Watching_States.Busy and then Now = Expiry_Of_Calm,
-        when Left =>
-           Leaf in Watching_States.At_Work and then Now = On_Station_Silent);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Watching_States.Leaf)
      return Boolean is
@@ -54,7 +42,18 @@ is
         when Seen => Leaf = Watching_States.Quiet,
         when Calm => Leaf = Watching_States.Busy,
         when Left => Leaf in Watching_States.At_Work);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T : Transition; Self : Region; Now : Occurrence)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Seen => Now = On_Token_Came,
+           when Calm => Now = Expiry_Of_Calm,
+           when Left => Now = On_Station_Silent));
+   --  The trigger and the guard of each transition.
 
    function Target (T : Firing) return Watching_States.Leaf is
      (case T is
@@ -93,14 +92,12 @@ is
    --  entered.
 
    function Is_Selection
-     (Chosen : Selection;
-      Leaf   : Watching_States.Leaf;
-      Now    : Occurrence)
+     (Chosen : Selection; Self : Region; Now : Occurrence)
      return Boolean is
      ((Chosen = None
-       or else (Chosen in Transition and then Enabled (Chosen, Leaf, Now)))
+       or else (Chosen in Transition and then Enabled (Chosen, Self, Now)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now)))) with Ghost;
+            (if T < Chosen then not Enabled (T, Self, Now)))) with Ghost;
    --  The first transition that is enabled, or None when none is.
 
    procedure Tick (Self : in out Region)
@@ -141,7 +138,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now))
+          else Is_Selection (Fired, Self'Old, Now))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
              and then Self.Timers (1)

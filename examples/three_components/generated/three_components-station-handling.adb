@@ -6,14 +6,21 @@ package body Three_Components.Station.Handling
 with SPARK_Mode
 is
    function Select_Transition
-     (Leaf : Handling_States.Leaf; Now : Occurrence)
-     return Selection is
-     (case Leaf is
-        when Handling_States.Empty =>
-           (if Now = On_Token_Came then Take else None),
-        when Handling_States.Holding =>
-           (if Now = On_Worked then Pass_On else None))
-   with Post => Is_Selection (Select_Transition'Result, Leaf, Now);
+     (Self : Region; Now : Occurrence)
+     return Selection
+   with Post => Is_Selection (Select_Transition'Result, Self, Now)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    package Chart
    with Ghost
@@ -97,7 +104,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self.Leaf, Now);
+         Fired := Select_Transition (Self, Now);
       end if;
       if Fired /= None then
          Fire (Self, Ins, Box, Fired);

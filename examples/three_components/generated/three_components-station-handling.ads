@@ -39,23 +39,23 @@ is
       Leaf    : Handling_States.Leaf := Handling_States.Empty;
    end record;
 
-   function Enabled
-     (T    : Transition; Leaf : Handling_States.Leaf; Now  : Occurrence)
-     return Boolean is
-     (case T is
-        when Take =>
-           Leaf = Handling_States.Empty and then Now = On_Token_Came,
-        when Pass_On =>
-           Leaf = Handling_States.Holding and then Now = On_Worked);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Handling_States.Leaf)
      return Boolean is
      (case T is
         when Take => Leaf = Handling_States.Empty,
         when Pass_On => Leaf = Handling_States.Holding);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T : Transition; Self : Region; Now : Occurrence)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Take => Now = On_Token_Came,
+           when Pass_On => Now = On_Worked));
+   --  The trigger and the guard of each transition.
 
    function Target (T : Firing) return Handling_States.Leaf is
      (case T is
@@ -64,14 +64,12 @@ is
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
-     (Chosen : Selection;
-      Leaf   : Handling_States.Leaf;
-      Now    : Occurrence)
+     (Chosen : Selection; Self : Region; Now : Occurrence)
      return Boolean is
      ((Chosen = None
-       or else (Chosen in Transition and then Enabled (Chosen, Leaf, Now)))
+       or else (Chosen in Transition and then Enabled (Chosen, Self, Now)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now)))) with Ghost;
+            (if T < Chosen then not Enabled (T, Self, Now)))) with Ghost;
    --  The first transition that is enabled, or None when none is.
 
    function To_Occurrence (Item : Event) return Occurrence is
@@ -98,7 +96,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now))
+          else Is_Selection (Fired, Self'Old, Now))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired));
    --  One run-to-completion step.

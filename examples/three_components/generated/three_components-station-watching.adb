@@ -6,14 +6,21 @@ package body Three_Components.Station.Watching
 with SPARK_Mode
 is
    function Select_Transition
-     (Leaf : Watching_States.Leaf; Now : Occurrence)
-     return Selection is
-     (case Leaf is
-        when Watching_States.Quiet =>
-           (if Now = On_Token_Came then Seen else None),
-        when Watching_States.Busy =>
-           (if Now = Expiry_Of_Calm then Calm else None))
-   with Post => Is_Selection (Select_Transition'Result, Leaf, Now);
+     (Self : Region; Now : Occurrence)
+     return Selection
+   with Post => Is_Selection (Select_Transition'Result, Self, Now)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    package Chart
    with Ghost
@@ -124,7 +131,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self.Leaf, Now);
+         Fired := Select_Transition (Self, Now);
       end if;
       if Fired /= None then
          Fire (Self, Fired);

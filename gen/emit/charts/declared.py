@@ -10,21 +10,16 @@ from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import (
     FALSE,
     SPARK,
-    Arg,
     Aspect,
-    Call,
     CaseExpr,
     Comment,
     Decl,
     Expr,
-    ForAll,
     ForSome,
     IfExpr,
-    OperatorChain,
     Package,
     Param,
     Pragma,
-    Prefix,
     Ref,
     Subprogram,
     Unit,
@@ -51,7 +46,8 @@ from .lasting import declared_domains
 from .operations import operations
 from .records import region_types
 from .safety import Safety
-from .shape import START, RegionShape, plain_args
+from .selection import is_selected, is_selection
+from .shape import START, RegionShape
 from .stepping import body_of
 
 
@@ -89,7 +85,7 @@ the program grow with the square of the chart."""
 
 def _declared(shape: RegionShape) -> list[Decl]:
     chosen = Param("T", "in", "Transition")
-    params = shape.choice_params()
+    place = Param(shape.place, "in", shape.place_type)
     lines = tuple((f.literal, _enabled(shape, f)) for f in shape.firings)
     sources = tuple((f.literal, shape.in_sources(f)) for f in shape.firings)
     if not lines:
@@ -98,17 +94,23 @@ def _declared(shape: RegionShape) -> list[Decl]:
     targets = tuple((f.literal, _target(shape, f)) for f in shape.firings)
     if not targets:
         targets = (("None", start),)
+    in_source = call("In_Source", Ref("T"), Ref(f"Self.{shape.place}"))
     items: list[Decl] = [
-        Subprogram("Enabled", (chosen, *params), "Boolean", expression=CaseExpr(Ref("T"), lines)),
-        Comment("The declared chart: source, trigger and guard of each transition."),
         Subprogram(
             "In_Source",
-            (chosen, params[0]),
+            (chosen, place),
             "Boolean",
             aspects=(Aspect("No_Inline"),) if len(shape.busy_lanes) > MANY_LANES else (),
             expression=choice_of(Ref("T"), sources),
         ),
-        Comment("Is its source the leaf, or around it?"),
+        Comment("The declared chart: the source of each transition. Is it the leaf, or around it?"),
+        Subprogram(
+            "Enabled",
+            (chosen, *shape.situation()),
+            "Boolean",
+            expression=both(in_source, CaseExpr(Ref("T"), lines)),
+        ),
+        Comment("The trigger and the guard of each transition."),
         *restored_functions(shape),
         Subprogram(
             "Target",
@@ -123,7 +125,7 @@ def _declared(shape: RegionShape) -> list[Decl]:
         ),
     ]
     items += declared_domains(shape)
-    items += _selections(shape, params)
+    items += _selections(shape)
     items += _passing(shape)
     if shape.deferring:
         items += declared_deferrals(shape)
@@ -133,16 +135,17 @@ def _declared(shape: RegionShape) -> list[Decl]:
 
 
 def _enabled(shape: RegionShape, firing: Firing) -> Expr:
-    scope = shape.scope("Data")
-    parts: list[Expr] = [shape.in_sources(firing)]
+    scope = shape.scope("Self.Data")
     triggers = shape.triggers(firing)
-    if len(triggers) == 1:
-        parts.append(equal(Ref("Now"), Ref(triggers[0])))
-    else:
-        parts.append(member(Ref("Now"), " | ".join(triggers)))
+    parts: list[Expr] = [
+        equal(Ref("Now"), Ref(triggers[0]))
+        if len(triggers) == 1
+        else member(Ref("Now"), " | ".join(triggers))
+    ]
     parts += [emit_expression(scope, t.condition) for t in firing.triggers if isinstance(t, When)]
     if firing.kind is FiringKind.RESTORE:
-        parts.append(Ref(f"Past.{shape.memory(shape.compounds.place(firing.sources[0])).known}"))
+        memory = shape.memory(shape.compounds.place(firing.sources[0]))
+        parts.append(Ref(f"Self.Past.{memory.known}"))
     parts += [emit_expression(scope, guard) for guard in firing.guards]
     if len(firing.sources) > 1:
         parts += [p for s in firing.sources if (p := shape.is_complete(s)) is not None]
@@ -157,30 +160,25 @@ def _target(shape: RegionShape, firing: Firing) -> Expr:
     return shape.configuration(shape.leads_to(firing), shape.place)
 
 
-def _selections(shape: RegionShape, params: tuple[Param, ...]) -> list[Decl]:
+def _selections(shape: RegionShape) -> list[Decl]:
+    first = "The first transition that is enabled, or None when none is."
     if shape.single:
-        return [
-            _is_selection(shape, "Is_Selection", "Transition"),
-            Comment("The first transition that is enabled, or None when none is."),
-        ]
-    items: list[Decl] = []
+        return [is_selection(shape), Comment(first)]
     lines: list[Expr] = []
     for lane in shape.busy_lanes:
         name = shape.lane_name(lane)
-        items.append(_is_selection(shape, f"Is_{name}_Selection", f"{name}_Transition"))
-        right: Expr = Call(
-            f"Is_{name}_Selection", (Arg(None, Ref(f"C.{name}")), *plain_args(params))
-        )
+        right: Expr = is_selected(shape, f"C.{name}", f"{name}_")
         if inner := shape.inner_lanes(lane):
             idle = [equal(Ref(f"C.{shape.lane_name(n)}"), Ref("None")) for n in inner]
             none = equal(Ref(f"C.{name}"), Ref("None"))
             right = IfExpr(((chain("and then", idle), right),), none)
         lines.append(right)
-    items += [
-        Comment("The first transition of the lane that is enabled, or None when none is."),
+    items: list[Decl] = [
+        is_selection(shape),
+        Comment(first),
         Subprogram(
             "Is_Choice",
-            (Param("C", "in", "Choice"), *params),
+            (Param("C", "in", "Choice"), *shape.situation()),
             "Boolean",
             aspects=(Aspect("Ghost"),),
             expression=both(*flat(lines)),
@@ -209,26 +207,6 @@ def _selections(shape: RegionShape, params: tuple[Param, ...]) -> list[Decl]:
             )
         )
     return items
-
-
-def _is_selection(shape: RegionShape, name: str, domain: str) -> Subprogram:
-    params = shape.choice_params()
-
-    def enabled(which: str) -> Expr:
-        return Call("Enabled", (Arg(None, Ref(which)), *plain_args(params)))
-
-    none = equal(Ref("Chosen"), Ref("None"))
-    one = both(member(Ref("Chosen"), domain), enabled("Chosen"))
-    rule = chain("or else", [none, one])
-    earlier = OperatorChain("<", (Ref("T"), Ref("Chosen")))
-    first = ForAll("T", domain, IfExpr(((earlier, Prefix("not", enabled("T"))),), None))
-    return Subprogram(
-        name,
-        (Param("Chosen", "in", "Selection"), *params),
-        "Boolean",
-        aspects=(Aspect("Ghost"),),
-        expression=both(rule, first),
-    )
 
 
 def _passing(shape: RegionShape) -> list[Decl]:

@@ -26,6 +26,7 @@ from ravenchart.gen.emit.ada.syntax import (
     IfStatement,
     Loop,
     Object,
+    Old,
     OperatorChain,
     Param,
     Pragma,
@@ -44,12 +45,12 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
     one_of,
 )
-from ravenchart.gen.emit.language.compound import Firing
+from ravenchart.gen.emit.language.compound import Firing, FiringKind
 from ravenchart.gen.model.statechart import Lane
 
 from .firing import Moves
-from .selection import segment
-from .shape import START, RegionShape, plain_args
+from .selection import segment, selected
+from .shape import START, RegionShape
 
 
 def fire(moves: Moves, chosen: str) -> Do:
@@ -73,11 +74,10 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
     items: list[Decl] = [*_starts_with(shape, fired)]
     if shape.single:
         return items
-    params = shape.choice_params()
-    chosen = Call("Is_Choice", (Arg(None, Ref("Choose'Result")), *plain_args(params)))
+    params = shape.situation()
+    chosen = Call("Is_Choice", (Arg(None, Ref("Choose'Result")), *shape.situation_args()))
     found = ForSome("I", _FIRED, equal(Ref(_ITEM), Ref("T")))
-    earlier = OperatorChain("<", (Ref("Fired.Items (J)"), Ref(_ITEM)))
-    pairs = ForAll("J", "1 .. I - 1", _unless_segment(shape, earlier, "J"))
+    choice = Param("C", "in", "Choice")
     ghost = (Aspect("Ghost"),)
     return [
         *items,
@@ -91,27 +91,37 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
             expression=found,
         ),
         Subprogram(
-            "Is_Ordered",
-            (fired,),
+            _IS_OF,
+            (fired, choice, Param("Last", "in", "Selection")),
             "Boolean",
             aspects=ghost,
-            expression=ForAll("I", _FIRED, _unless_segment(shape, pairs, "I")),
+            expression=_of_choice(shape),
         ),
-        Comment("Do the lanes fire in their order?"),
+        Comment("Is what has fired chosen, in the order of the lanes, and not after Last?"),
         Subprogram(
-            "Follows",
-            (fired, Param("C", "in", "Choice")),
-            "Boolean",
-            aspects=ghost,
-            expression=_follows(shape),
+            "Follows", (fired, choice), "Boolean", aspects=ghost, expression=_follows(shape)
         ),
         Comment(_FOLLOWS + (_DROPPED if shape.watched and not shape.passes else _OVERTAKEN)),
     ]
 
 
+def _of_choice(shape: RegionShape) -> Expr:
+    """Each is chosen for a lane, or goes on from a choice or history, and stands in its order."""
+    chosen = " | ".join(f"C.{shape.lane_name(n)}" for n in shape.busy_lanes)
+    earlier = OperatorChain("<", (Ref("Fired.Items (J)"), Ref(_ITEM)))
+    ordered = ForAll("J", "1 .. I - 1", _unless_segment(shape, earlier, "J"))
+    due = both(OperatorChain("<=", (Ref(_ITEM), Ref("Last"))), member(Ref(_ITEM), chosen), ordered)
+    return ForAll("I", _FIRED, _unless_segment(shape, due, "I"))
+
+
+def _is_of(lane: str) -> Expr:
+    return call(_IS_OF, Ref("Fired"), Ref("C"), Ref(f"{lane}_Transition'Last"))
+
+
 BEFORE = "Place_Before"
 """The configuration before anything has fired."""
 
+_IS_OF = "Is_Of_Choice"
 _FIRED = "1 .. Fired.Count"
 _ITEM = "Fired.Items (I)"
 _FOLLOWS = (
@@ -171,21 +181,19 @@ def _choice(shape: RegionShape, lane: Lane) -> Expr:
 
 
 def _follows(shape: RegionShape) -> Expr:
-    chosen = [equal(Ref(_ITEM), _choice(shape, n)) for n in shape.busy_lanes]
-    facts = [
-        ForAll("I", _FIRED, _unless_segment(shape, chain("or else", chosen), "I")),
-        call("Is_Ordered", Ref("Fired")),
-        *_asked(shape, shape.busy_lanes),
-    ]
+    last = shape.lane_name(shape.busy_lanes[-1])
+    facts = both(_is_of(last), *_asked(shape, shape.busy_lanes))
     deferrals = tuple(
-        (
-            call("Is_Deferral", _choice(shape, n)),
-            call("Is_Only", Ref("Fired"), _choice(shape, n)),
-        )
-        for n in shape.busy_lanes
-        if shape.deferring
+        (call("Is_Deferral", lane), call("Is_Only", Ref("Fired"), lane))
+        for lane in _deferring(shape)
     )
-    return IfExpr(deferrals, both(*facts)) if deferrals else both(*facts)
+    return IfExpr(deferrals, facts) if deferrals else facts
+
+
+def _deferring(shape: RegionShape) -> list[Expr]:
+    """What is chosen for the lanes that have deferrals."""
+    lanes = {f.lane for f in shape.firings if f.kind is FiringKind.DEFERRAL}
+    return [_choice(shape, n) for n in shape.busy_lanes if n in lanes]
 
 
 def _asked(shape: RegionShape, lanes: Sequence[Lane]) -> list[Expr]:
@@ -255,7 +263,7 @@ def _overtaken(shape: RegionShape, lane: Lane) -> bool:
 def followed(shape: RegionShape) -> Expr:
     """What Step says of all that it has fired."""
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
-    choice = Call("Choose", shape.choice_args(old=True))
+    choice = Call("Choose", shape.situation_args(Self=Old("Self")))
     only = call("Is_Only", Ref("Fired"), Ref(START))
     follows = call("Follows", Ref("Fired"), choice)
     #  no `if`: 'Old behind a condition known on entry wants an exception handler
@@ -274,11 +282,10 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
         *moves.safety.alone(),
         *(s for lane in shape.busy_lanes for s in (_lane(shape, lane), _so_far(shape, lane))),
     )
-    if shape.deferring:
-        fields = [f"C.{shape.lane_name(n)}" for n in shape.busy_lanes]
-        rows = [(call("Is_Deferral", Ref(f)), (do("Fire_Whole", Ref(f)),)) for f in fields]
+    if deferred := _deferring(shape):
+        rows = [(call("Is_Deferral", one), (do("Fire_Whole", one),)) for one in deferred]
         work = (IfStatement(tuple(rows), work),)
-    choose = Assign("C", Call("Choose", shape.choice_args()))
+    choose = Assign("C", Call("Choose", shape.situation_args()))
     declared: list[Decl] = [Object("C", "Choice")]
     if shape.watched and not shape.passes:
         held, ghost = Ref(f"Self.{shape.place}"), (Aspect("Ghost"),)
@@ -288,7 +295,7 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
 
 def passing_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
     """One transition, then the segments that its way passes."""
-    pick = Assign("Chosen", Call("Select_Transition", shape.choice_args()))
+    pick = Assign("Chosen", selected(shape, None))
     some = OperatorChain("/=", (Ref("Chosen"), Ref("None")))
     work = (pick, IfStatement(((some, (do("Fire_Whole", Ref("Chosen")),)),)))
     return _step(shape, moves, profile, [Object("Chosen", "Selection")], work)
@@ -338,19 +345,10 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
 def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
     """What has been fired of the lanes up to this one; types bound it when it is the last."""
     done = shape.busy_lanes[: shape.busy_lanes.index(lane) + 1]
-    each = chain("or else", [equal(Ref(_ITEM), _choice(shape, n)) for n in done])
     few: list[Expr] = []
     if lane != shape.busy_lanes[-1]:
-        last = OperatorChain("<=", (Ref(_ITEM), Ref(f"{shape.lane_name(lane)}_Transition'Last")))
-        each = both(last, each)
         few = [OperatorChain("<=", (_COUNT, number(len(done) * (1 + shape.most_segments))))]
-    facts = (
-        *few,
-        ForAll("I", _FIRED, _unless_segment(shape, each, "I")),
-        call("Is_Ordered", Ref("Fired")),
-        *_asked(shape, done),
-        *_unmoved(shape, done),
-    )
+    facts = (*few, _is_of(shape.lane_name(lane)), *_asked(shape, done), *_unmoved(shape, done))
     return Pragma("Assert", (both(*facts),))
 
 
@@ -382,7 +380,7 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
                 (
                     going_on,
                     IfStatement(((equal(left, number(0)), (Say("exit"),)),)),
-                    Assign("Segment", segment(shape, "Self.")),
+                    Assign("Segment", segment(shape)),
                     fire(moves, "Segment"),
                     *_note("Segment"),
                 ),

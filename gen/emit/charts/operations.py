@@ -7,9 +7,7 @@ from __future__ import annotations
 
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import (
-    Arg,
     Aspect,
-    Call,
     CaseExpr,
     Comment,
     Decl,
@@ -35,6 +33,7 @@ from .deferring import FREED
 from .lanes import followed
 from .lasting import Lasting
 from .safety import Safety
+from .selection import is_selected
 from .shape import START, RegionShape
 from .working import notices
 
@@ -171,7 +170,7 @@ def _stepped(shape: RegionShape) -> list[Expr]:
     kept = equal(Ref(held), Old(held))
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     first = "Fired.Items (1)" if shape.listed else "Fired"
-    chosen = Call("Is_Selection", (Arg(None, Ref(first)), *shape.choice_args(old=True)))
+    chosen = is_selected(shape, first, None, Self=Old("Self"))
     started = equal(Ref(first), Ref(START))
     if not shape.listed:
         none = equal(Ref("Fired"), Ref("None"))

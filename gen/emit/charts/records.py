@@ -64,7 +64,11 @@ def region_types(shape: RegionShape) -> list[Decl]:
 def _places(shape: RegionShape) -> tuple[Comment, ...]:
     """The transition that each line of the chart is, and where it stands in the model."""
     model = shape.system.origin
-    return (Comment(""), *(where(f.name, f.origins, model) for f in shape.firings), Comment(""))
+    return (
+        Comment(""),
+        *(where(f.vertex or f.name, f.origins, model) for f in shape.firings),
+        Comment(""),
+    )
 
 
 def _selection_of(names: Sequence[str]) -> str:

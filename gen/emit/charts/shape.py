@@ -67,8 +67,8 @@ TYPES = frozenset(
 )
 """What hides an event of the same name inside a region's package."""
 
-HELD = frozenset(("Leaf", "Place", "Data", "Past", "Done_In"))
-"""The parameters of a selection that are components of the region's own state."""
+SELF = Param("Self", "in", "Region")
+"""The region's own state, read."""
 
 ITEM = Param("Item", "in", "Event")
 """The event that a step is made for."""
@@ -219,8 +219,8 @@ class RegionShape(Places):
 
     def is_complete(self, state: str) -> Expr | None:
         """Has an active state completed? None: always."""
-        parts = self.finals(state, self.place)
-        parts += [Ref(self.done(state))] if state in self.working else []
+        parts = self.finals(state, f"Self.{self.place}")
+        parts += [Ref(f"Self.{self.done(state)}")] if state in self.working else []
         return both(*flat(parts)) if parts else None
 
     def finals(self, state: str, holder: str) -> list[Expr]:
@@ -381,22 +381,6 @@ class RegionShape(Places):
         """Does a step send or raise anything?"""
         return bool(self.region.sends or self.region.raises)
 
-    def guard_params(self) -> tuple[Param, ...]:
-        """The parameters that guards are evaluated over, besides place and occurrence."""
-        named = {name for guard in guards_of(self.region) for name in names_in(guard)}
-        params = []
-        if self.memories:
-            params.append(Param("Past", "in", "Memory"))
-        if any(len(f.sources) > 1 and {*f.sources} & {*self.working} for f in self.firings):
-            params.append(Param("Done_In", "in", "Done_States"))
-        if named & set(self.region.writes):
-            params.append(Param("Data", "in", "Variables"))
-        if named & set(self.inputs):
-            params.append(Param("Ins", "in", "Inputs"))
-        if any(asks_event(g) for g in guards_of(self.region)):
-            params.append(ITEM)
-        return tuple(params)
-
     @cached_property
     def takes_item(self) -> bool:
         """Does a step need the event itself, for its value?"""
@@ -409,21 +393,20 @@ class RegionShape(Places):
         flows = (e for flow in flows_of(self.region) for e in expressions_in(flow))
         return carries(self.component) and (any(map(asks_event, flows)) or self.deferring)
 
-    def choice_params(self) -> tuple[Param, ...]:
-        """What a selection is made over."""
-        return (
-            Param(self.place, "in", self.place_type),
-            Param("Now", "in", "Occurrence"),
-            *self.guard_params(),
-        )
+    def situation(self) -> tuple[Param, ...]:
+        """What decides whether a transition is enabled: the region, the occurrence, and what
+        guards read besides."""
+        named = {name for guard in guards_of(self.region) for name in names_in(guard)}
+        params = [SELF, Param("Now", "in", "Occurrence")]
+        if named & set(self.inputs):
+            params.append(Param("Ins", "in", "Inputs"))
+        if any(asks_event(g) for g in guards_of(self.region)):
+            params.append(ITEM)
+        return tuple(params)
 
-    def choice_args(self, old: bool = False) -> tuple[Arg, ...]:
-        """The same from the region's own state, before or after a call."""
-        mark = "'Old" if old else ""
-        return tuple(
-            Arg(None, Ref(f"Self.{p.name}{mark}" if p.name in HELD else p.name))
-            for p in self.choice_params()
-        )
+    def situation_args(self, **replaced: Expr) -> tuple[Arg, ...]:
+        """The same as arguments, some replaced."""
+        return plain_args(self.situation(), **replaced)
 
     def target_params(self) -> tuple[Param, ...]:
         """Target looks at the place and the past only when it needs to."""
@@ -473,6 +456,6 @@ class RegionShape(Places):
         )
 
 
-def plain_args(params: tuple[Param, ...], **replaced: str) -> tuple[Arg, ...]:
+def plain_args(params: tuple[Param, ...], **replaced: Expr) -> tuple[Arg, ...]:
     """Positional arguments that repeat the parameters, some replaced."""
-    return tuple(Arg(None, Ref(replaced.get(p.name, p.name))) for p in params)
+    return tuple(Arg(None, replaced.get(p.name, Ref(p.name))) for p in params)

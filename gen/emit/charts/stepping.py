@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import (
-    NULL,
-    Arg,
-    Aspect,
     Assign,
-    Call,
     Case,
     Decl,
     Do,
@@ -36,12 +32,12 @@ from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.terms import expressions_in, flow_operators
 
 from .deferring import FREED, is_due
-from .firing import MANY, Moves
+from .firing import Moves
 from .guards import guard_operators, guards_of
 from .lanes import fire, lane_step, passing_step
 from .safety import Safety
-from .selection import selectors
-from .shape import START, RegionShape, plain_args
+from .selection import selected, selectors
+from .shape import START, RegionShape
 from .working import notice_bodies
 
 
@@ -63,7 +59,6 @@ def body_of(shape: RegionShape) -> tuple[Decl, ...]:
         *_polling(shape),
         *moves.claims(),
         fire,
-        *_sources_hold(shape),
         _step(shape, moves),
     )
 
@@ -161,31 +156,10 @@ def _step(shape: RegionShape, moves: Moves) -> Subprogram:
 
 
 def _plain_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
-    pick = Assign("Fired", Call("Select_Transition", shape.choice_args()))
+    pick = Assign("Fired", selected(shape, None))
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     some = OperatorChain("/=", (Ref("Fired"), Ref("None")))
-    seen: tuple[Stmt, ...] = ()
-    if _is_large(shape):
-        held = Arg(None, Ref("Fired"))
-        seen = (IfStatement(((some, (Do("Sources_Hold", (held, *shape.choice_args())),)),)),)
     return (
-        IfStatement(((begun, (Assign("Fired", Ref(START)),)),), (pick, *seen)),
+        IfStatement(((begun, (Assign("Fired", Ref(START)),)),), (pick,)),
         IfStatement(((some, (fire(moves, "Fired"),)),)),
     )
-
-
-def _is_large(shape: RegionShape) -> bool:
-    return not shape.listed and len(shape.firings) > MANY
-
-
-def _sources_hold(shape: RegionShape) -> list[Decl]:
-    """What is enabled has its source active: by itself, for provers, in a large region."""
-    if not _is_large(shape):
-        return []
-    params = (Param("T", "in", "Transition"), *shape.choice_params())
-    enabled = Call("Enabled", plain_args(params))
-    source = call("In_Source", Ref("T"), Ref(shape.place))
-    known = both(source, *Safety(shape).guarded("T", ""))
-    claims = (Aspect("Ghost"), Aspect("Pre", enabled), Aspect("Post", known))
-    spec = Subprogram("Sources_Hold", params, aspects=claims)
-    return [spec, Subprogram("Sources_Hold", params, body=(NULL,))]

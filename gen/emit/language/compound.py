@@ -84,6 +84,8 @@ class Firing:
     """The pseudostate or state it leads to; None for a fork."""
     origins: tuple[Origin, ...] = ()
     """Where the transitions that it consists of stand, or the vertex that it comes from."""
+    vertex: str | None = None
+    """The state or pseudostate that it comes from, where the model has no transition for it."""
 
     @property
     def literal(self) -> str:
@@ -207,6 +209,7 @@ class Compounds:
                         (),
                         None,
                         origins=(state.origin,),
+                        vertex=state.name,
                     )
                     for e in state.defers
                 ]
@@ -230,6 +233,7 @@ class Compounds:
                     self.place(name),
                     goal=name,
                     origins=(pseudo.origin,),
+                    vertex=name,
                 )
             )
         out = self.region.outgoing(name)
@@ -250,6 +254,7 @@ class Compounds:
                     (),
                     entries,
                     origins=(pseudo.origin,),
+                    vertex=name,
                 )
             )
         return lines

@@ -43,40 +43,6 @@ is
       Leaf    : Drive_States.Leaf := Drive_States.Standing;
    end record;
 
-   function Enabled
-     (T    : Transition;
-      Leaf : Drive_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs)
-     return Boolean is
-     (case T is
-        when Go =>
-           Leaf = Drive_States.Standing
-           and then Now = On_Told
-           and then Ins.Order.Value.Wish = Two_Nodes.Follow,
-        when Rest =>
-           Leaf = Drive_States.Following
-           and then Now = On_Told
-           and then Ins.Order.Value.Wish = Two_Nodes.Rest,
-        when Lost_At_Rest =>
-           Leaf = Drive_States.Standing and then Now = On_Nobody_Tells,
-        when Lost =>
-           Leaf = Drive_States.Following and then Now = On_Nobody_Tells,
-        when Cut_Off_At_Rest =>
-           Leaf = Drive_States.Standing and then Now = On_Bus_Failed,
-        when Cut_Off =>
-           Leaf = Drive_States.Following and then Now = On_Bus_Failed,
-        when Cut_Off_Besides =>
-           Leaf = Drive_States.Safe and then Now = On_Bus_Failed,
-        when Still_Cut_Off =>
-           Leaf = Drive_States.Safe_Off_Bus and then Now = On_Bus_Failed,
-        when Told_Off_Bus =>
-           Leaf = Drive_States.Safe_Off_Bus and then Now = On_Told,
-        when Connected =>
-           Leaf = Drive_States.Safe_Off_Bus and then Now = On_Bus_Back,
-        when Back => Leaf = Drive_States.Safe and then Now = On_Told);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Drive_States.Leaf)
      return Boolean is
@@ -87,7 +53,28 @@ is
         when Cut_Off_Besides | Back => Leaf = Drive_States.Safe,
         when Still_Cut_Off | Told_Off_Bus | Connected =>
            Leaf = Drive_States.Safe_Off_Bus);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Go =>
+              Now = On_Told and then Ins.Order.Value.Wish = Two_Nodes.Follow,
+           when Rest =>
+              Now = On_Told and then Ins.Order.Value.Wish = Two_Nodes.Rest,
+           when Lost_At_Rest => Now = On_Nobody_Tells,
+           when Lost => Now = On_Nobody_Tells,
+           when Cut_Off_At_Rest => Now = On_Bus_Failed,
+           when Cut_Off => Now = On_Bus_Failed,
+           when Cut_Off_Besides => Now = On_Bus_Failed,
+           when Still_Cut_Off => Now = On_Bus_Failed,
+           when Told_Off_Bus => Now = On_Told,
+           when Connected => Now = On_Bus_Back,
+           when Back => Now = On_Told));
+   --  The trigger and the guard of each transition.
 
    function Target
      (T : Firing; Leaf : Drive_States.Leaf)
@@ -103,15 +90,15 @@ is
 
    function Is_Selection
      (Chosen : Selection;
-      Leaf   : Drive_States.Leaf;
+      Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
-          and then Enabled (Chosen, Leaf, Now, Ins)))
+          and then Enabled (Chosen, Self, Now, Ins)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
+            (if T < Chosen then not Enabled (T, Self, Now, Ins))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
@@ -140,7 +127,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
+          else Is_Selection (Fired, Self'Old, Now, Ins))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old));
    --  One run-to-completion step.

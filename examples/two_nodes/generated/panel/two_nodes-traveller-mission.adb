@@ -9,37 +9,21 @@ is
    pragma Warnings (Off, "*can never be *");
 
    function Select_Transition
-     (Leaf : Mission_States.Leaf; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (case Leaf is
-        when Mission_States.Waiting =>
-           (if Now = Conditions and then Ins.Report.State = Ravenchart.Fresh
-               then Go
-            elsif Now = On_Bus_Failed then Cut_Off_Early
-            else None),
-        when Mission_States.Outward =>
-           (if Now = Conditions and then Ins.Report.Value.Position = 20_000
-               then There
-            elsif Now = On_Servo_Lost then Lost
-            elsif Now = On_Bus_Failed then Cut_Off
-            else None),
-        when Mission_States.Homeward =>
-           (if Now = Conditions and then Ins.Report.Value.Position = 0
-               then Home
-            elsif Now = On_Servo_Lost then Lost
-            elsif Now = On_Bus_Failed then Cut_Off
-            else None),
-        when Mission_States.Safe =>
-           (if Now = On_Bus_Failed then Cut_Off_Besides
-            elsif Now = Conditions
-               and then Ins.Report.State = Ravenchart.Fresh
-               then Again
-            else None),
-        when Mission_States.Safe_Off_Bus =>
-           (if Now = On_Bus_Failed then Still_Cut_Off
-            elsif Now = On_Bus_Back then Connected
-            else None))
-   with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins);
+     (Self : Region; Now : Occurrence; Ins : Inputs)
+     return Selection
+   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all E in Transition'First .. T =>
+                not Enabled (E, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Select_Transition;
 
    package Chart
    with Ghost
@@ -165,7 +149,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self.Leaf, Now, Ins);
+         Fired := Select_Transition (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Fired);

@@ -51,43 +51,6 @@ is
       Data    : Variables;
    end record;
 
-   function Enabled
-     (T    : Transition;
-      Leaf : Mission_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs)
-     return Boolean is
-     (case T is
-        when There =>
-           Leaf = Mission_States.Outward
-           and then Now = Conditions
-           and then Ins.Report.Value.Position = 20_000,
-        when Home =>
-           Leaf = Mission_States.Homeward
-           and then Now = Conditions
-           and then Ins.Report.Value.Position = 0,
-        when Go =>
-           Leaf = Mission_States.Waiting
-           and then Now = Conditions
-           and then Ins.Report.State = Ravenchart.Fresh,
-        when Lost =>
-           Leaf in Mission_States.Travelling and then Now = On_Servo_Lost,
-        when Cut_Off_Early =>
-           Leaf = Mission_States.Waiting and then Now = On_Bus_Failed,
-        when Cut_Off =>
-           Leaf in Mission_States.Travelling and then Now = On_Bus_Failed,
-        when Cut_Off_Besides =>
-           Leaf = Mission_States.Safe and then Now = On_Bus_Failed,
-        when Still_Cut_Off =>
-           Leaf = Mission_States.Safe_Off_Bus and then Now = On_Bus_Failed,
-        when Connected =>
-           Leaf = Mission_States.Safe_Off_Bus and then Now = On_Bus_Back,
-        when Again =>
-           Leaf = Mission_States.Safe
-           and then Now = Conditions
-           and then Ins.Report.State = Ravenchart.Fresh);
-   --  The declared chart: source, trigger and guard of each transition.
-
    function In_Source
      (T : Transition; Leaf : Mission_States.Leaf)
      return Boolean is
@@ -98,7 +61,29 @@ is
         when Lost | Cut_Off => Leaf in Mission_States.Travelling,
         when Cut_Off_Besides | Again => Leaf = Mission_States.Safe,
         when Still_Cut_Off | Connected => Leaf = Mission_States.Safe_Off_Bus);
-   --  Is its source the leaf, or around it?
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when There =>
+              Now = Conditions and then Ins.Report.Value.Position = 20_000,
+           when Home =>
+              Now = Conditions and then Ins.Report.Value.Position = 0,
+           when Go =>
+              Now = Conditions and then Ins.Report.State = Ravenchart.Fresh,
+           when Lost => Now = On_Servo_Lost,
+           when Cut_Off_Early => Now = On_Bus_Failed,
+           when Cut_Off => Now = On_Bus_Failed,
+           when Cut_Off_Besides => Now = On_Bus_Failed,
+           when Still_Cut_Off => Now = On_Bus_Failed,
+           when Connected => Now = On_Bus_Back,
+           when Again =>
+              Now = Conditions and then Ins.Report.State = Ravenchart.Fresh));
+   --  The trigger and the guard of each transition.
 
    function Target
      (T : Firing; Leaf : Mission_States.Leaf)
@@ -115,15 +100,15 @@ is
 
    function Is_Selection
      (Chosen : Selection;
-      Leaf   : Mission_States.Leaf;
+      Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
-          and then Enabled (Chosen, Leaf, Now, Ins)))
+          and then Enabled (Chosen, Self, Now, Ins)))
       and then (for all T in Transition =>
-            (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
+            (if T < Chosen then not Enabled (T, Self, Now, Ins))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
@@ -151,7 +136,7 @@ is
      Post =>
        Self.Started
        and then (if Now = Start_Of_Region then Fired = Initial_Entry
-          else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
+          else Is_Selection (Fired, Self'Old, Now, Ins))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old));
    --  One run-to-completion step.
