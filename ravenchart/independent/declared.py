@@ -193,7 +193,8 @@ class _Comparison:
         said = tuple(token.low for token in begins)
         text = "Enabled does not ask for the source of a transition"
         holds = said == words(f"(In_Source (T, Self.{holder}) and then") or not fires
-        self.agree("sources", self._line_of(table), holds, text)
+        at = begins[0].line if begins else self._line_of(table)
+        self.agree("sources", at, holds, text)
 
     def _source(
         self, name: str, line: Line, found: tuple[Token, list[Token]] | None, at: int

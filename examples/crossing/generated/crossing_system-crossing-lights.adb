@@ -529,6 +529,7 @@ is
          pragma Assert
            (Fired.Count <= 1
             and then Is_Of_Choice (Fired, C, Cars_Transition'Last)
+            and then Is_Ordered (Fired)
             and then (if C.Cars /= None then Has (Fired, C.Cars)));
          if C.Walkers /= None then
             Fire_Whole (C.Walkers);
@@ -536,6 +537,7 @@ is
          pragma Assert
            (Fired.Count <= 2
             and then Is_Of_Choice (Fired, C, Walkers_Transition'Last)
+            and then Is_Ordered (Fired)
             and then (if C.Cars /= None then Has (Fired, C.Cars))
             and then (if C.Walkers /= None then Has (Fired, C.Walkers)));
          if C.Top /= None then
@@ -543,6 +545,7 @@ is
          end if;
          pragma Assert
            (Is_Of_Choice (Fired, C, Top_Transition'Last)
+            and then Is_Ordered (Fired)
             and then (if C.Cars /= None then Has (Fired, C.Cars))
             and then (if C.Walkers /= None then Has (Fired, C.Walkers))
             and then (if C.Top /= None then Has (Fired, C.Top)));

@@ -315,14 +315,18 @@ is
      return Boolean is
      (for all I in 1 .. Fired.Count =>
          Fired.Items (I) <= Last
-         and then Fired.Items (I) in C.Cars | C.Walkers | C.Top
-         and then (for all J in 1 .. I - 1 =>
-               Fired.Items (J) < Fired.Items (I))) with Ghost;
-   --  Is what has fired chosen, in the order of the lanes, and not after
-   --  Last?
+         and then Fired.Items (I) in C.Cars | C.Walkers | C.Top) with Ghost;
+   --  Is what has fired chosen, and none of it after Last?
+
+   function Is_Ordered (Fired : Firing_List) return Boolean is
+     (for all I in 1 .. Fired.Count =>
+         (for all J in 1 .. I - 1 => Fired.Items (J) < Fired.Items (I)))
+   with Ghost;
+   --  Do the lanes fire in their order?
 
    function Follows (Fired : Firing_List; C : Choice) return Boolean is
      (Is_Of_Choice (Fired, C, Top_Transition'Last)
+      and then Is_Ordered (Fired)
       and then (if C.Cars /= None then Has (Fired, C.Cars))
       and then (if C.Walkers /= None then Has (Fired, C.Walkers))
       and then (if C.Top /= None then Has (Fired, C.Top))) with Ghost;

@@ -888,6 +888,7 @@ is
             pragma Assert
               (Fired.Count <= 3
                and then Is_Of_Choice (Fired, C, Motor_Transition'Last)
+               and then Is_Ordered (Fired)
                and then (if C.Motor /= None then Has (Fired, C.Motor)));
             if C.Sensor /= None and then In_Source (C.Sensor, Self.Place)
             then
@@ -896,6 +897,7 @@ is
             pragma Assert
               (Fired.Count <= 6
                and then Is_Of_Choice (Fired, C, Sensor_Transition'Last)
+               and then Is_Ordered (Fired)
                and then (if C.Motor /= None then Has (Fired, C.Motor)
                   elsif C.Sensor /= None then Has (Fired, C.Sensor)));
             if C.Top /= None and then In_Source (C.Top, Self.Place) then
@@ -903,6 +905,7 @@ is
             end if;
             pragma Assert
               (Is_Of_Choice (Fired, C, Top_Transition'Last)
+               and then Is_Ordered (Fired)
                and then (if C.Motor /= None then Has (Fired, C.Motor)
                   elsif C.Sensor /= None then Has (Fired, C.Sensor)
                   elsif C.Top /= None then Has (Fired, C.Top)));

@@ -512,16 +512,22 @@ is
      (for all I in 1 .. Fired.Count =>
          Is_Segment (Fired.Items (I))
          or else (Fired.Items (I) <= Last
-            and then Fired.Items (I) in C.Motor | C.Sensor | C.Top
-            and then (for all J in 1 .. I - 1 =>
-                  Is_Segment (Fired.Items (J))
-                  or else Fired.Items (J) < Fired.Items (I)))) with Ghost;
-   --  Is what has fired chosen, in the order of the lanes, and not after
-   --  Last?
+            and then Fired.Items (I) in C.Motor | C.Sensor | C.Top))
+   with Ghost;
+   --  Is what has fired chosen, and none of it after Last?
+
+   function Is_Ordered (Fired : Firing_List) return Boolean is
+     (for all I in 1 .. Fired.Count =>
+         Is_Segment (Fired.Items (I))
+         or else (for all J in 1 .. I - 1 =>
+               Is_Segment (Fired.Items (J))
+               or else Fired.Items (J) < Fired.Items (I))) with Ghost;
+   --  Do the lanes fire in their order?
 
    function Follows (Fired : Firing_List; C : Choice) return Boolean is
      (if Is_Deferral (C.Top) then Is_Only (Fired, C.Top)
       else Is_Of_Choice (Fired, C, Top_Transition'Last)
+         and then Is_Ordered (Fired)
          and then (if C.Motor /= None then Has (Fired, C.Motor)
             elsif C.Sensor /= None then Has (Fired, C.Sensor)
             elsif C.Top /= None then Has (Fired, C.Top))) with Ghost;

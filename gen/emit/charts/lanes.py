@@ -77,6 +77,8 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
     params = shape.situation()
     chosen = Call("Is_Choice", (Arg(None, Ref("Choose'Result")), *shape.situation_args()))
     found = ForSome("I", _FIRED, equal(Ref(_ITEM), Ref("T")))
+    earlier = OperatorChain("<", (Ref("Fired.Items (J)"), Ref(_ITEM)))
+    pairs = ForAll("J", "1 .. I - 1", _unless_segment(shape, earlier, "J"))
     choice = Param("C", "in", "Choice")
     ghost = (Aspect("Ghost"),)
     return [
@@ -97,7 +99,15 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
             aspects=ghost,
             expression=_of_choice(shape),
         ),
-        Comment("Is what has fired chosen, in the order of the lanes, and not after Last?"),
+        Comment("Is what has fired chosen, and none of it after Last?"),
+        Subprogram(
+            "Is_Ordered",
+            (fired,),
+            "Boolean",
+            aspects=ghost,
+            expression=ForAll("I", _FIRED, _unless_segment(shape, pairs, "I")),
+        ),
+        Comment("Do the lanes fire in their order?"),
         Subprogram(
             "Follows", (fired, choice), "Boolean", aspects=ghost, expression=_follows(shape)
         ),
@@ -106,11 +116,9 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
 
 
 def _of_choice(shape: RegionShape) -> Expr:
-    """Each is chosen for a lane, or goes on from a choice or history, and stands in its order."""
+    """Each is chosen for a lane, or goes on from a choice or history."""
     chosen = " | ".join(f"C.{shape.lane_name(n)}" for n in shape.busy_lanes)
-    earlier = OperatorChain("<", (Ref("Fired.Items (J)"), Ref(_ITEM)))
-    ordered = ForAll("J", "1 .. I - 1", _unless_segment(shape, earlier, "J"))
-    due = both(OperatorChain("<=", (Ref(_ITEM), Ref("Last"))), member(Ref(_ITEM), chosen), ordered)
+    due = both(OperatorChain("<=", (Ref(_ITEM), Ref("Last"))), member(Ref(_ITEM), chosen))
     return ForAll("I", _FIRED, _unless_segment(shape, due, "I"))
 
 
@@ -124,6 +132,7 @@ BEFORE = "Place_Before"
 _IS_OF = "Is_Of_Choice"
 _FIRED = "1 .. Fired.Count"
 _ITEM = "Fired.Items (I)"
+_ORDERED = call("Is_Ordered", Ref("Fired"))
 _FOLLOWS = (
     "A deferral is fired alone. Otherwise what is chosen is fired, lane by lane, and nothing else; "
 )
@@ -182,7 +191,7 @@ def _choice(shape: RegionShape, lane: Lane) -> Expr:
 
 def _follows(shape: RegionShape) -> Expr:
     last = shape.lane_name(shape.busy_lanes[-1])
-    facts = both(_is_of(last), *_asked(shape, shape.busy_lanes))
+    facts = both(_is_of(last), _ORDERED, *_asked(shape, shape.busy_lanes))
     deferrals = tuple(
         (call("Is_Deferral", lane), call("Is_Only", Ref("Fired"), lane))
         for lane in _deferring(shape)
@@ -348,7 +357,8 @@ def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
     few: list[Expr] = []
     if lane != shape.busy_lanes[-1]:
         few = [OperatorChain("<=", (_COUNT, number(len(done) * (1 + shape.most_segments))))]
-    facts = (*few, _is_of(shape.lane_name(lane)), *_asked(shape, done), *_unmoved(shape, done))
+    of_lanes = _is_of(shape.lane_name(lane))
+    facts = (*few, of_lanes, _ORDERED, *_asked(shape, done), *_unmoved(shape, done))
     return Pragma("Assert", (both(*facts),))
 
 
