@@ -7,7 +7,17 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from .mutants import Edit, Files, Found, replaced, swapped
-from .source import Branch, Span, Subprogram, branches, choices, conjuncts, subprogram, subprograms
+from .source import (
+    Branch,
+    Span,
+    Subprogram,
+    branches,
+    choices,
+    conjuncts,
+    declared_rows,
+    subprogram,
+    subprograms,
+)
 
 _PLACED = re.compile(r"^(?:Place|Leaf)\b")
 _TRIGGER = re.compile(r"^Now\b")
@@ -15,9 +25,9 @@ _COMPARISONS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "=": "/=", "/=": "="
 
 
 def selectors(text: str) -> Iterator[tuple[Subprogram, list[Branch]]]:
-    """The selection functions of leaf states, with their branches."""
+    """The selection functions of states with their branches; of leaves, where they have one."""
     for one in subprograms(text):
-        if one.is_expression and one.name.startswith("In_"):
+        if one.is_expression and one.name.startswith(("In_", "Around_")):
             found = branches(text, one.inner)
             if found and re.match(r"Now\b", found[0].head.of(text)):
                 yield one, found
@@ -69,21 +79,22 @@ def _dispatch(text: str, one: Subprogram) -> list[Branch]:
 
 
 def source_declared(file: str, files: Files) -> Iterator[Found]:
-    """Another state as the source of a declared transition."""
+    """Another state as the source of a declared transition; none that is asked for."""
     yield from _declared(file, files, "In_Source", "source", _PLACED)
-    yield from _declared(file, files, "Enabled", "source", _PLACED)
+    text = files[file]
+    one = subprogram(text, "Enabled")
+    asked = one and re.compile(r"\bIn_Source \([^()]*\)").search(text, one.inner.start)
+    if one is not None and asked and asked.end() < one.inner.end:
+        yield "Enabled", "source", replaced(Span(*asked.span()), "True")
 
 
 def _declared(
     file: str, files: Files, function: str, rule: str, part: re.Pattern[str]
 ) -> Iterator[Found]:
     text = files[file]
-    one = subprogram(text, function)
-    if one is None:
-        return
     parts = [
         span
-        for row in choices(text, one.inner)
+        for row in declared_rows(text, function)
         for span in conjuncts(text, row.body)
         if part.match(span.of(text))
     ]
@@ -146,17 +157,13 @@ def guard_in_code(file: str, files: Files) -> Iterator[Found]:
 
 
 def guard_declared(file: str, files: Files) -> Iterator[Found]:
-    """The same in the declared chart."""
+    """A guard that is dropped, denied or shifted by one comparison."""
     text = files[file]
-    one = subprogram(text, "Enabled")
-    if one is None:
-        return
-    for row in choices(text, one.inner):
+    for row in declared_rows(text, "Enabled"):
         parts = conjuncts(text, row.body)
         for before, part in pairwise(parts):
-            if not _PLACED.match(part.of(text)) and not _TRIGGER.match(part.of(text)):
-                for rule, edits in _guards(text, before, part):
-                    yield one.name, rule, edits
+            for rule, edits in _guards(text, before, part):
+                yield "Enabled", rule, edits
 
 
 def _guards(text: str, before: Span, part: Span) -> Iterator[tuple[str, tuple[Edit, ...]]]:

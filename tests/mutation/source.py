@@ -199,6 +199,15 @@ def choices(text: str, inner: Span) -> list[Branch]:
     return found
 
 
+def declared_rows(text: str, function: str) -> list[Branch]:
+    """The alternatives of the case of an expression function, whatever stands before it."""
+    one = subprogram(text, function)
+    if one is None:
+        return []
+    case = text.find("(case ", one.inner.start, one.inner.end)
+    return choices(text, one.inner if case < 0 else Span(case + 1, one.inner.end - 1))
+
+
 def conjuncts(text: str, inner: Span) -> list[Span]:
     """The parts of a condition, joined by `and then`."""
     keys = _tokens(text, inner)

@@ -23,7 +23,7 @@ from ravenchart.tools.toolchain import ToolMissing, have
 
 from .mutants import Files, Mutant
 from .observing import Observer, Simulated
-from .source import choices, subprogram, subprograms
+from .source import declared_rows, subprogram, subprograms
 
 LONGEST = 1200
 """Seconds after which a tool is given up: the mutant counts as not caught by it."""
@@ -168,21 +168,23 @@ class Workbench:
         """The subprograms that are asked first."""
         text = self.files.get(_body(mutant.file), "")
         if mutant.part == "code":
-            #  exits and entries have no contract: gnatprove inlines them where they are called
-            inlined = mutant.place.startswith(("Enter_", "Exit_", "Leave_"))
-            names = _firing(text) if inlined else [mutant.place]
+            #  some have no contract: gnatprove sees their work where they are called
+            names = [mutant.place]
+            if mutant.place.startswith(("Enter_", "Exit_", "Leave_")):
+                names = _firing(text)
+            elif mutant.place.startswith("Around_"):
+                names = re.findall(r"function ((?:In|Select)_\w+)", text)
             return [n for n in names if subprogram(text, n) is not None]
         spec = self.files[mutant.file]
-        one = subprogram(spec, mutant.place)
-        if mutant.place == "Enabled" and one is not None:
+        if mutant.place == "Enabled":
             at = mutant.edits[0].span.start
-            rows = [c for c in choices(spec, one.inner) if c.body.start <= at < c.body.end]
-            name = rows[0].head.of(spec) if rows else ""
+            found = [c for c in declared_rows(spec, "Enabled") if c.body.start <= at < c.body.end]
+            name = found[0].head.of(spec) if found else ""
             using = re.compile(rf"(?:then|\() *{name}\b")
-            for match in re.finditer(r"function (In_\w+)", text):
-                found = subprogram(text, match.group(1))
-                if found is not None and using.search(found.inner.of(text)):
-                    return [found.name]
+            for match in re.finditer(r"function (In_\w+|Select_\w+)", text):
+                one = subprogram(text, match.group(1))
+                if one is not None and using.search(one.inner.of(text)):
+                    return [one.name]
         return _firing(text)
 
     def _place(self, name: str, mutant: Mutant, broken: str) -> str:

@@ -10,21 +10,22 @@ is
 
    function Select_Transition
      (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection
+     return Selection is
+     (case Self.Leaf is
+        when Inbox_States.Open =>
+           (if Now = On_Asked
+               and then (Ins.Nmt = Nmt_States.Pre_Operational
+                  or else Ins.Nmt = Nmt_States.Operational)
+               and then Item.Value_Sdo.Command /= 128
+               then Ask
+            elsif Now = On_Ordered and then Ins.Nmt = Nmt_States.Operational
+               then Order
+            elsif Now = On_Sync_Came
+               and then Ins.Nmt = Nmt_States.Operational
+               then Synchronise
+            else None))
    with
-     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now, Ins, Item)));
-      end loop;
-      return None;
-   end Select_Transition;
+     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item);
 
    package Chart
    with Ghost

@@ -8,23 +8,54 @@ is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
 
+   function Around_Ready
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (if Now = On_Commanded
+         and then Item.Value_Nmt_Command.Service = Canopen_Device.Start
+         and then (Item.Value_Nmt_Command.Node = 0
+            or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
+         then Start
+      elsif Now = On_Commanded
+         and then Item.Value_Nmt_Command.Service = Canopen_Device.Stop
+         and then (Item.Value_Nmt_Command.Node = 0
+            or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
+         then Stop
+      elsif Now = On_Commanded
+         and then Item.Value_Nmt_Command.Service
+           = Canopen_Device.Enter_Pre_Operational
+         and then (Item.Value_Nmt_Command.Node = 0
+            or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
+         then Prepare
+      elsif Now = On_Commanded
+         and then Item.Value_Nmt_Command.Service = Canopen_Device.Reset_Node
+         and then (Item.Value_Nmt_Command.Node = 0
+            or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
+         then Reset_Node
+      elsif Now = On_Commanded
+         and then Item.Value_Nmt_Command.Service
+           = Canopen_Device.Reset_Communication
+         and then (Item.Value_Nmt_Command.Node = 0
+            or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
+         then Reset_Communication
+      else None);
+
    function Select_Transition
      (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection
+     return Selection is
+     (case Self.Leaf is
+        when Nmt_States.Initialisation =>
+           (if Now = Expiry_Of_Initialised then Initialised else None),
+        when Nmt_States.Boot_Up_Due =>
+           (if Now = Conditions and then Ins.Beat.Boots = Self.Data.Boots
+               then Booted
+            else None),
+        when Nmt_States.Pre_Operational =>
+           Around_Ready (Self, Now, Ins, Item),
+        when Nmt_States.Operational => Around_Ready (Self, Now, Ins, Item),
+        when Nmt_States.Stopped => Around_Ready (Self, Now, Ins, Item))
    with
-     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now, Ins, Item)));
-      end loop;
-      return None;
-   end Select_Transition;
+     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item);
 
    package Chart
    with Ghost

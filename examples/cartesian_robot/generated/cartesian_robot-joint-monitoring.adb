@@ -7,20 +7,31 @@ with SPARK_Mode
 is
    function Select_Transition
      (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now, Ins)));
-      end loop;
-      return None;
-   end Select_Transition;
+     return Selection is
+     (case Self.Leaf is
+        when Monitoring_States.Watching =>
+           (if Now = Conditions
+               and then Ins.Homed
+               and then abs Ins.Measured.Error > 20_000
+               then Strayed
+            elsif Now = Conditions
+               and then Ins.Motion in Motion_States.Moving
+               and then Ins.Feedback.Value.Limit /= Cartesian_Robot.Clear
+               then Limit_Hit
+            elsif Now = Conditions
+               and then Ins.Motion in Motion_States.Homing
+               and then Ins.Feedback.Value.Limit = Cartesian_Robot.High_End
+               then End_Reached
+            elsif Now = Conditions
+               and then Ins.Feedback.State = Ravenchart.Fresh
+               and then Ins.Feedback.Value.Condition
+                 = Cartesian_Robot.Faulted
+               and then Ins.Motion in Motion_States.Operational
+               then Drive_Failed
+            else None),
+        when Monitoring_States.Alarmed =>
+           (if Now = Expiry_Of_Calm then Calm else None))
+   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
 
    package Chart
    with Ghost

@@ -5,22 +5,85 @@
 package body Cartesian_Robot.Joint.Motion
 with SPARK_Mode
 is
+   function Around_Operational
+     (Self : Region; Now : Occurrence; Ins : Inputs)
+     return Selection is
+     (if Now = On_Ordered
+         and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
+         then Halt
+      elsif Now = On_Feedback_Lost then Lost
+      elsif Now = On_Drive_Failed then Failed
+      elsif Now = On_Strayed then Strayed
+      elsif Now = On_Limit_Hit then Limit
+      else None);
+
+   function Around_Homing
+     (Self : Region; Now : Occurrence; Ins : Inputs)
+     return Selection is
+     (if Now = Expiry_Of_No_End then No_End
+      else Around_Operational (Self, Now, Ins));
+
+   function Around_Moving
+     (Self : Region; Now : Occurrence; Ins : Inputs)
+     return Selection is
+     (if Now = Conditions
+         and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
+         and then Ins.Profile.Position = Self.Data.Goal.Target
+         and then abs Ins.Measured.Error < 2_000
+         then Arrived
+      else Around_Operational (Self, Now, Ins));
+
    function Select_Transition
      (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now, Ins)));
-      end loop;
-      return None;
-   end Select_Transition;
+     return Selection is
+     (case Self.Leaf is
+        when Motion_States.Idle =>
+           (if Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Home
+               and then Ins.Feedback.State = Ravenchart.Fresh
+               then Start_Homing
+            elsif Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Move
+               and then Self.Data.Homed
+               then Start_Move
+            else Around_Operational (Self, Now, Ins)),
+        when Motion_States.Seeking =>
+           (if Now = Conditions
+               and then Ins.Feedback.Value.Limit = Cartesian_Robot.Low_End
+               then End_Found
+            else Around_Homing (Self, Now, Ins)),
+        when Motion_States.Backing_Off =>
+           (if Now = Conditions
+               and then Ins.Feedback.Value.Limit = Cartesian_Robot.Clear
+               then End_Left
+            else Around_Homing (Self, Now, Ins)),
+        when Motion_States.Accelerating =>
+           (if Now = Conditions
+               and then Ins.Profile.Phase = Cartesian_Robot.At_Speed
+               then At_Speed
+            elsif Now = Conditions
+               and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down
+               then No_Cruise
+            else Around_Moving (Self, Now, Ins)),
+        when Motion_States.Cruising =>
+           (if Now = Conditions
+               and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down
+               then Brake
+            else Around_Moving (Self, Now, Ins)),
+        when Motion_States.Braking => Around_Moving (Self, Now, Ins),
+        when Motion_States.Limit =>
+           (if Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
+               and then Ins.Feedback.State = Ravenchart.Fresh
+               then Reset
+            else None),
+        when Motion_States.Drive =>
+           (if Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
+               and then Ins.Feedback.State = Ravenchart.Fresh
+               then Reset
+            else None))
+   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
 
    package Chart
    with Ghost

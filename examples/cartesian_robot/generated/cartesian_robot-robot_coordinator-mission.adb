@@ -5,22 +5,89 @@
 package body Cartesian_Robot.Robot_Coordinator.Mission
 with SPARK_Mode
 is
+   function Around_Active
+     (Self : Region; Now : Occurrence; Ins : Inputs)
+     return Selection is
+     (if Now = Conditions
+         and then ((Ins.Report_X.Value.Condition = Cartesian_Robot.Failed
+             or else Ins.Report_Y.Value.Condition = Cartesian_Robot.Failed)
+            or else Ins.Report_Z.Value.Condition = Cartesian_Robot.Failed)
+         then Joint_Failed
+      elsif Now = On_Joint_Lost then Joint_Lost
+      elsif Now = On_Shutdown then Shut_Down
+      else None);
+
+   function Around_Travelling
+     (Self : Region; Now : Occurrence; Ins : Inputs)
+     return Selection is
+     (if Now = On_Commanded
+         and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
+         then Halt
+      else Around_Active (Self, Now, Ins));
+
    function Select_Transition
      (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now, Ins)));
-      end loop;
-      return None;
-   end Select_Transition;
+     return Selection is
+     (case Self.Leaf is
+        when Mission_States.Waiting =>
+           (if Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Home
+               then Home
+            else Around_Active (Self, Now, Ins)),
+        when Mission_States.Homing =>
+           (if Now = Conditions
+               and then Ins.Report_X.Value.Condition
+                 = Cartesian_Robot.Standing
+               and then Ins.Report_Y.Value.Condition
+                 = Cartesian_Robot.Standing
+               and then Ins.Report_Z.Value.Condition
+                 = Cartesian_Robot.Standing
+               then Homed
+            elsif Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
+               then Halt_Homing
+            else Around_Active (Self, Now, Ins)),
+        when Mission_States.Ready =>
+           (if Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Home
+               then Home_Again
+            elsif Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Move
+               then Move
+            else Around_Active (Self, Now, Ins)),
+        when Mission_States.Departing =>
+           (if Now = Expiry_Of_Under_Way then Under_Way
+            else Around_Travelling (Self, Now, Ins)),
+        when Mission_States.Under_Way =>
+           (if Now = Conditions
+               and then Ins.Report_X.Value.Condition
+                 = Cartesian_Robot.Standing
+               and then Ins.Report_Y.Value.Condition
+                 = Cartesian_Robot.Standing
+               and then Ins.Report_Z.Value.Condition
+                 = Cartesian_Robot.Standing
+               then Arrived
+            else Around_Travelling (Self, Now, Ins)),
+        when Mission_States.Failed =>
+           (if Now = On_Shutdown then Shut_Down_Failed
+            elsif Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Reset
+               then Recover
+            else None),
+        when Mission_States.Recovering =>
+           (if Now = Conditions
+               and then Ins.Report_X.Value.Condition
+                 /= Cartesian_Robot.Failed
+               and then Ins.Report_Y.Value.Condition
+                 /= Cartesian_Robot.Failed
+               and then Ins.Report_Z.Value.Condition
+                 /= Cartesian_Robot.Failed
+               then Recovered
+            elsif Now = Expiry_Of_Not_Recovered then Not_Recovered
+            elsif Now = On_Shutdown then Shut_Down_Recovering
+            else None),
+        when Mission_States.Shut_Down => None)
+   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
 
    package Chart
    with Ghost

@@ -8,43 +8,88 @@ is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
 
-   function Select_Transition
-     (First : Transition;
-      Last  : Transition;
-      Self  : Region;
-      Now   : Occurrence;
-      Item  : Event)
-     return Selection
+   function Select_Cars
+     (Self : Region; Now : Occurrence; Item : Event)
+     return Selection is
+     (if Self.Place.Top = Lights_States.Working
+         then (case Self.Place.In_Cars is
+               when Lights_States.Stopping =>
+                  (if Now = Expiry_Of_Stopped then Stopped else None),
+               when Lights_States.Held =>
+                  (if Now = Conditions
+                      and then Self.Data.Road_Free
+                      and then not Self.Data.Requested
+                      then Get_Ready
+                   else None),
+               when Lights_States.Red_Yellow =>
+                  (if Now = Expiry_Of_Start then Start else None),
+               when Lights_States.Least =>
+                  (if Now = Expiry_Of_Long_Enough then Long_Enough
+                   else None),
+               when Lights_States.Longer =>
+                  (if Now = Conditions and then Self.Data.Requested
+                      then Slow_Down
+                   else None),
+               when Lights_States.Yellow =>
+                  (if Now = Expiry_Of_Stop then Stop else None))
+      else None)
    with
      Post =>
-       Is_Selection (Select_Transition'Result, First, Last, Self, Now, Item)
-   is
-   begin
-      for T in First .. Last loop
-         if Enabled (T, Self, Now, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in First .. T => not Enabled (E, Self, Now, Item)));
-      end loop;
-      return None;
-   end Select_Transition;
+       Is_Selection (Select_Cars'Result, Cars_Transition'First,
+          Cars_Transition'Last, Self, Now, Item);
+
+   function Select_Walkers
+     (Self : Region; Now : Occurrence; Item : Event)
+     return Selection is
+     (if Self.Place.Top = Lights_States.Working
+         then (case Self.Place.In_Walkers is
+               when Lights_States.Nobody =>
+                  (if Now = On_Wish then Ask else None),
+               when Lights_States.Waiting =>
+                  (if Now = Conditions and then Self.Data.Cars_Stopped
+                      then Walk
+                   else None),
+               when Lights_States.Walking =>
+                  (if Now = Expiry_Of_Last_Call then Last_Call
+                   elsif Now = Expiry_Of_Gone then Gone
+                   else None),
+               when Lights_States.Leaving =>
+                  (if Now = Expiry_Of_Gone then Gone else None))
+      else None)
+   with
+     Post =>
+       Is_Selection (Select_Walkers'Result, Walkers_Transition'First,
+          Walkers_Transition'Last, Self, Now, Item);
+
+   function Select_Top
+     (Self : Region; Now : Occurrence; Item : Event)
+     return Selection is
+     (case Self.Place.Top is
+        when Lights_States.Blinking =>
+           (if Now = On_Ordered
+               and then Item.Value_Order = Crossing_System.Work
+               then Into_Service
+            elsif Now = Expiry_Of_Blink then Blink
+            else None),
+        when Lights_States.Working =>
+           (if Now = On_Ordered
+               and then Item.Value_Order = Crossing_System.Blink
+               then Out_Of_Service
+            else None))
+   with
+     Post =>
+       Is_Selection (Select_Top'Result, Top_Transition'First,
+          Top_Transition'Last, Self, Now, Item);
 
    function Choose
      (Self : Region; Now : Occurrence; Item : Event)
      return Choice is
       C : Choice;
    begin
-      C.Cars :=
-        Select_Transition (Cars_Transition'First, Cars_Transition'Last,
-           Self, Now, Item);
-      C.Walkers :=
-        Select_Transition (Walkers_Transition'First,
-           Walkers_Transition'Last, Self, Now, Item);
+      C.Cars := Select_Cars (Self, Now, Item);
+      C.Walkers := Select_Walkers (Self, Now, Item);
       if C.Cars = None and then C.Walkers = None then
-         C.Top :=
-           Select_Transition (Top_Transition'First, Top_Transition'Last,
-              Self, Now, Item);
+         C.Top := Select_Top (Self, Now, Item);
       end if;
       return C;
    end Choose;

@@ -8,23 +8,51 @@ is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
 
+   function Around_Contending
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (if Now = On_Claimed_Too
+         and then (Item.Value_Name.High < Ins.Name_High
+            or else (Item.Value_Name.High = Ins.Name_High
+               and then Item.Value_Name.Low < Ins.Name_Low))
+         then Yield
+      elsif Now = On_Claimed_Too
+         and then (Item.Value_Name.High > Ins.Name_High
+            or else (Item.Value_Name.High = Ins.Name_High
+               and then Item.Value_Name.Low > Ins.Name_Low))
+         then Defend
+      elsif Now = On_Asked_All and then Item.Value_Pgn_Octets.Pgn = 60_928
+         then Tell_All
+      elsif Now = On_Asked_Us and then Item.Value_Pgn_Octets.Pgn = 60_928
+         then Tell_Us
+      elsif Now = On_Asked_By_Null
+         and then Item.Value_Pgn_Octets.Pgn = 60_928
+         then Tell_Null
+      else None);
+
    function Select_Transition
      (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection
+     return Selection is
+     (case Self.Leaf is
+        when Address_States.Before =>
+           (if Now = Expiry_Of_Claim then Claim else None),
+        when Address_States.Claiming =>
+           (if Now = Expiry_Of_Granted then Granted
+            else Around_Contending (Self, Now, Ins, Item)),
+        when Address_States.Claimed =>
+           Around_Contending (Self, Now, Ins, Item),
+        when Address_States.Yielding =>
+           (if Now = Expiry_Of_Give_Up then Give_Up else None),
+        when Address_States.Without_Address =>
+           (if Now = On_Asked_All
+               and then Item.Value_Pgn_Octets.Pgn = 60_928
+               then Tell_Lost
+            elsif Now = On_Asked_By_Null
+               and then Item.Value_Pgn_Octets.Pgn = 60_928
+               then Tell_Lost_Null
+            else None))
    with
-     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now, Ins, Item)));
-      end loop;
-      return None;
-   end Select_Transition;
+     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item);
 
    package Chart
    with Ghost

@@ -10,21 +10,31 @@ is
 
    function Select_Transition
      (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection
+     return Selection is
+     (case Self.Leaf is
+        when Answers_States.Silent =>
+           (if Now = Conditions
+               and then Ins.Address = Address_States.Claimed
+               then With_Address
+            else None),
+        when Answers_States.Sending =>
+           (if Now = Conditions
+               and then not (Ins.Address = Address_States.Claimed)
+               then Without_Address
+            elsif Now = Expiry_Of_Cyclic then Cyclic
+            elsif Now = On_Asked_All
+               and then Item.Value_Pgn_Octets.Pgn = 65_213
+               then Answer_All
+            elsif Now = On_Asked_Us
+               and then Item.Value_Pgn_Octets.Pgn = 65_213
+               then Answer
+            elsif Now = On_Asked_Us
+               and then Item.Value_Pgn_Octets.Pgn /= 65_213
+               and then Item.Value_Pgn_Octets.Pgn /= 60_928
+               then Refuse
+            else None))
    with
-     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now, Ins, Item)));
-      end loop;
-      return None;
-   end Select_Transition;
+     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item);
 
    package Chart
    with Ghost

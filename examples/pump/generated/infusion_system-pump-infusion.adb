@@ -10,68 +10,190 @@ is
 
    use type Ravenchart.Event_Count;
 
-   function Select_Transition
-     (First : Transition;
-      Last  : Transition;
-      Self  : Region;
-      Now   : Occurrence;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection
+   function Select_Motor
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (if Self.Place.Top = Infusion_States.Self_Test
+         then (case Self.Place.In_Motor is
+               when Infusion_States.Turning =>
+                  (if Now = Completion_Of_Turning then Turned else None),
+               when Infusion_States.Motor_Good => None)
+      else None)
    with
      Post =>
-       Is_Selection (Select_Transition'Result, First, Last, Self, Now, Ins,
-          Item)
-   is
-   begin
-      for T in First .. Last loop
-         if Enabled (T, Self, Now, Ins, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in First .. T =>
-                not Enabled (E, Self, Now, Ins, Item)));
-      end loop;
-      return None;
-   end Select_Transition;
+       Is_Selection (Select_Motor'Result, Motor_Transition'First,
+          Motor_Transition'Last, Self, Now, Ins, Item);
+
+   function Select_Sensor
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (if Self.Place.Top = Infusion_States.Self_Test
+         then (case Self.Place.In_Sensor is
+               when Infusion_States.Listening =>
+                  (if Now = Conditions
+                      and then Ins.Line.State = Ravenchart.Fresh
+                      then Heard
+                   else None),
+               when Infusion_States.Sensor_Good => None)
+      else None)
+   with
+     Post =>
+       Is_Selection (Select_Sensor'Result, Sensor_Transition'First,
+          Sensor_Transition'Last, Self, Now, Ins, Item);
+
+   function Around_Infusing
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (if Now = On_Stop then Stop
+      elsif Now = On_Sensor_Lost then Lost
+      elsif Now = Conditions
+         and then Ins.Line.Value /= Infusion_System.Clear
+         then Trouble
+      else None);
+
+   function Around_Running
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (if Now = Completion_Of_Running then Finished
+      else Around_Infusing (Self, Now, Ins, Item));
+
+   function Around_Giving
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (if Now = Expiry_Of_Beat then Beat
+      elsif Now = Conditions and then Self.Data.Given >= Self.Data.Volume
+         then Enough
+      else Around_Running (Self, Now, Ins, Item));
+
+   function Around_Alarm
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (if Now = On_Resume then Resume
+      elsif Now = On_Stop then Give_Up
+      elsif Now = On_New_Portion then Defer_New_Portion_In_Alarm
+      else None);
+
+   function In_Where_It_Was
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (if Now = Passing and then Self.Past.Known_In_Infusing
+         then Restore_Where_It_Was
+      elsif Now = Passing then Default_Of_Where_It_Was
+      else Around_Infusing (Self, Now, Ins, Item))
+   with
+     Pre => Self.Place.Top = Infusion_States.Where_It_Was,
+     Post =>
+       Is_Selection (In_Where_It_Was'Result, Top_Transition'First,
+          Top_Transition'Last, Self, Now, Ins, Item);
+
+   function In_Infusing
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (case Infusion_States.Infusing'(Self.Place.Top) is
+        when Infusion_States.Filling =>
+           (if Now = Completion_Of_Filling then Filled_Up
+            elsif Now = On_New_Portion then Defer_New_Portion_In_Filling
+            else Around_Running (Self, Now, Ins, Item)),
+        when Infusion_States.Loading =>
+           (if Now = Conditions and then Self.Data.Given >= Ins.Loading
+               then Loaded
+            elsif Now = On_New_Portion then Defer_New_Portion_In_Loading
+            else Around_Giving (Self, Now, Ins, Item)),
+        when Infusion_States.Maintaining =>
+           (if Now = On_New_Portion and then Item.Value_Portion > 0
+               then Change
+            else Around_Giving (Self, Now, Ins, Item)),
+        when Infusion_States.All_Given =>
+           Around_Running (Self, Now, Ins, Item),
+        when Infusion_States.Trickling =>
+           Around_Infusing (Self, Now, Ins, Item),
+        when Infusion_States.Where_It_Was =>
+           In_Where_It_Was (Self, Now, Ins, Item))
+   with
+     Pre => Self.Place.Top in Infusion_States.Infusing,
+     Post =>
+       Is_Selection (In_Infusing'Result, Top_Transition'First,
+          Top_Transition'Last, Self, Now, Ins, Item);
+
+   function In_Alarm
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (case Infusion_States.Alarm'(Self.Place.Top) is
+        when Infusion_States.Sounding =>
+           (if Now = On_Silence then Hush
+            else Around_Alarm (Self, Now, Ins, Item)),
+        when Infusion_States.Silent =>
+           (if Now = Expiry_Of_Remind then Remind
+            else Around_Alarm (Self, Now, Ins, Item)))
+   with
+     Pre => Self.Place.Top in Infusion_States.Alarm,
+     Post =>
+       Is_Selection (In_Alarm'Result, Top_Transition'First,
+          Top_Transition'Last, Self, Now, Ins, Item);
+
+   function In_May_Go_On
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (if Now = Passing
+         and then Ins.Line.State = Ravenchart.Fresh
+         and then Ins.Line.Value = Infusion_System.Clear
+         then Go_On
+      elsif Now = Passing then Not_Yet
+      else None)
+   with
+     Pre => Self.Place.Top = Infusion_States.May_Go_On,
+     Post =>
+       Is_Selection (In_May_Go_On'Result, Top_Transition'First,
+          Top_Transition'Last, Self, Now, Ins, Item);
+
+   function Select_Top
+     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     return Selection is
+     (case Self.Place.Top is
+        when Infusion_States.Self_Test =>
+           (if Now = Completion_Of_Self_Test then Ready
+            elsif Now = Expiry_Of_Again then Again
+            elsif Now = On_New_Portion then Defer_New_Portion_In_Self_Test
+            elsif Now = On_New_Volume then Defer_New_Volume_In_Self_Test
+            else None),
+        when Infusion_States.Programming =>
+           (if Now = On_New_Portion then Order_Portion
+            elsif Now = On_New_Volume then Order_Volume
+            elsif Now = On_Start
+               and then Self.Data.Portion > 0
+               and then Self.Data.Volume > 0
+               then Start
+            else None),
+        when Infusion_States.Infusing => In_Infusing (Self, Now, Ins, Item),
+        when Infusion_States.Alarm => In_Alarm (Self, Now, Ins, Item),
+        when Infusion_States.May_Go_On =>
+           In_May_Go_On (Self, Now, Ins, Item))
+   with
+     Post =>
+       Is_Selection (Select_Top'Result, Top_Transition'First,
+          Top_Transition'Last, Self, Now, Ins, Item);
 
    function Select_Segment
      (Self : Region; Ins : Inputs; Item : Event)
-     return Transition
+     return Transition is
+     (if Self.Place.Top = Infusion_States.Where_It_Was
+         then In_Where_It_Was (Self, Passing, Ins, Item)
+      else In_May_Go_On (Self, Passing, Ins, Item))
    with
      Pre => Segments_Left (Self.Place) > 0,
      Post =>
        Enabled (Select_Segment'Result, Self, Passing, Ins, Item)
-       and then Is_Segment (Select_Segment'Result)
-   is
-   begin
-      pragma Assert
-        ((if Self.Place.Top = Infusion_States.Where_It_Was
-             then Enabled (Restore_Where_It_Was, Self, Passing, Ins, Item)
-                or else Enabled (Default_Of_Where_It_Was, Self, Passing,
-                     Ins, Item)
-          else Enabled (Go_On, Self, Passing, Ins, Item)
-             or else Enabled (Not_Yet, Self, Passing, Ins, Item)));
-      return
-        Select_Transition (Transition'First, Transition'Last, Self, Passing,
-           Ins, Item);
-   end Select_Segment;
+       and then Is_Segment (Select_Segment'Result);
 
    function Choose
      (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
      return Choice is
       C : Choice;
    begin
-      C.Motor :=
-        Select_Transition (Motor_Transition'First, Motor_Transition'Last,
-           Self, Now, Ins, Item);
-      C.Sensor :=
-        Select_Transition (Sensor_Transition'First, Sensor_Transition'Last,
-           Self, Now, Ins, Item);
+      C.Motor := Select_Motor (Self, Now, Ins, Item);
+      C.Sensor := Select_Sensor (Self, Now, Ins, Item);
       if C.Motor = None and then C.Sensor = None then
-         C.Top :=
-           Select_Transition (Top_Transition'First, Top_Transition'Last,
-              Self, Now, Ins, Item);
+         C.Top := Select_Top (Self, Now, Ins, Item);
       end if;
       return C;
    end Choose;

@@ -10,39 +10,77 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   function Around_S (Self : Region; Now : Occurrence) return Selection is
+     (if Now = On_E then S_E
+      elsif Now = On_I and then Self.Data.Foo then S_I
+      else None);
+
+   function Around_S1 (Self : Region; Now : Occurrence) return Selection is
+     (if Now = On_A then S1_A
+      elsif Now = On_B then S1_B
+      elsif Now = On_C then S1_C
+      elsif Now = On_D and then not Self.Data.Foo then S1_D
+      elsif Now = On_F then S1_F
+      elsif Now = On_I then S1_I
+      else Around_S (Self, Now));
+
+   function Around_S2 (Self : Region; Now : Occurrence) return Selection is
+     (if Now = On_C then S2_C
+      elsif Now = On_F then S2_F
+      elsif Now = On_I and then not Self.Data.Foo then S2_I
+      else Around_S (Self, Now));
+
+   function Around_S21 (Self : Region; Now : Occurrence) return Selection is
+     (if Now = On_A then S21_A
+      elsif Now = On_B then S21_B
+      elsif Now = On_G then S21_G
+      else Around_S2 (Self, Now));
+
+   function In_S1_Init (Self : Region; Now : Occurrence) return Selection is
+     (if Now = Passing then S1_Init else Around_S1 (Self, Now))
+   with
+     Pre => Self.Leaf = Chart_States.S1_Init,
+     Post => Is_Selection (In_S1_Init'Result, Self, Now);
+
+   function In_S21_Init (Self : Region; Now : Occurrence) return Selection is
+     (if Now = Passing then S21_Init else Around_S21 (Self, Now))
+   with
+     Pre => Self.Leaf = Chart_States.S21_Init,
+     Post => Is_Selection (In_S21_Init'Result, Self, Now);
+
+   function In_S_Init (Self : Region; Now : Occurrence) return Selection is
+     (if Now = Passing then S_Init else Around_S (Self, Now))
+   with
+     Pre => Self.Leaf = Chart_States.S_Init,
+     Post => Is_Selection (In_S_Init'Result, Self, Now);
+
    function Select_Transition
      (Self : Region; Now : Occurrence)
-     return Selection
-   with Post => Is_Selection (Select_Transition'Result, Self, Now)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now)));
-      end loop;
-      return None;
-   end Select_Transition;
+     return Selection is
+     (case Self.Leaf is
+        when Chart_States.S11 =>
+           (if Now = On_D and then Self.Data.Foo then S11_D
+            elsif Now = On_G then S11_G
+            elsif Now = On_H then S11_H
+            else Around_S1 (Self, Now)),
+        when Chart_States.S1_Init => In_S1_Init (Self, Now),
+        when Chart_States.S211 =>
+           (if Now = On_D then S211_D
+            elsif Now = On_H then S211_H
+            else Around_S21 (Self, Now)),
+        when Chart_States.S21_Init => In_S21_Init (Self, Now),
+        when Chart_States.S_Init => In_S_Init (Self, Now))
+   with Post => Is_Selection (Select_Transition'Result, Self, Now);
 
-   function Select_Segment (Self : Region) return Transition
+   function Select_Segment (Self : Region) return Transition is
+     (if Self.Leaf = Chart_States.S_Init then In_S_Init (Self, Passing)
+      elsif Self.Leaf = Chart_States.S1_Init then In_S1_Init (Self, Passing)
+      else In_S21_Init (Self, Passing))
    with
      Pre => Segments_Left (Self.Leaf) > 0,
      Post =>
        Enabled (Select_Segment'Result, Self, Passing)
-       and then Is_Segment (Select_Segment'Result)
-   is
-   begin
-      pragma Assert
-        ((if Self.Leaf = Chart_States.S_Init
-             then Enabled (S_Init, Self, Passing)
-          elsif Self.Leaf = Chart_States.S1_Init
-             then Enabled (S1_Init, Self, Passing)
-          else Enabled (S21_Init, Self, Passing)));
-      return Select_Transition (Self, Passing);
-   end Select_Segment;
+       and then Is_Segment (Select_Segment'Result);
 
    package Chart
    with Ghost

@@ -10,20 +10,11 @@ is
 
    function Select_Transition
      (Self : Region; Now : Occurrence)
-     return Selection
-   with Post => Is_Selection (Select_Transition'Result, Self, Now)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now)));
-      end loop;
-      return None;
-   end Select_Transition;
+     return Selection is
+     (case Self.Leaf is
+        when Keys_States.Listening =>
+           (if Now = On_Pressed then Pressed else None))
+   with Post => Is_Selection (Select_Transition'Result, Self, Now);
 
    package Chart
    with Ghost

@@ -7,20 +7,18 @@ with SPARK_Mode
 is
    function Select_Transition
      (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now, Ins)));
-      end loop;
-      return None;
-   end Select_Transition;
+     return Selection is
+     (case Self.Leaf is
+        when Task_Of_Arm_States.Parked =>
+           (if Now = Expiry_Of_Begin_Task then Begin_Task else None),
+        when Task_Of_Arm_States.Reaching =>
+           (if Now = Conditions and then Ins.Get_Position.Axis_1 >= 280
+               then There
+            elsif Now = Expiry_Of_Too_Late then Too_Late
+            else None),
+        when Task_Of_Arm_States.Holding => None,
+        when Task_Of_Arm_States.Gave_Up => None)
+   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
 
    package Chart
    with Ghost

@@ -7,20 +7,18 @@ with SPARK_Mode
 is
    function Select_Transition
      (Self : Region; Now : Occurrence)
-     return Selection
-   with Post => Is_Selection (Select_Transition'Result, Self, Now)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now)));
-      end loop;
-      return None;
-   end Select_Transition;
+     return Selection is
+     (case Self.Leaf is
+        when Watching_States.Quiet =>
+           (if Now = On_Token_Came then Seen
+            elsif Now = On_Station_Silent then Left
+            else None),
+        when Watching_States.Busy =>
+           (if Now = Expiry_Of_Calm then Calm
+            elsif Now = On_Station_Silent then Left
+            else None),
+        when Watching_States.Alone => None)
+   with Post => Is_Selection (Select_Transition'Result, Self, Now);
 
    package Chart
    with Ghost

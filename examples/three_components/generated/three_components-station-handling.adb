@@ -7,20 +7,13 @@ with SPARK_Mode
 is
    function Select_Transition
      (Self : Region; Now : Occurrence)
-     return Selection
-   with Post => Is_Selection (Select_Transition'Result, Self, Now)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now)));
-      end loop;
-      return None;
-   end Select_Transition;
+     return Selection is
+     (case Self.Leaf is
+        when Handling_States.Empty =>
+           (if Now = On_Token_Came then Take else None),
+        when Handling_States.Holding =>
+           (if Now = On_Worked then Pass_On else None))
+   with Post => Is_Selection (Select_Transition'Result, Self, Now);
 
    package Chart
    with Ghost

@@ -28,15 +28,13 @@ from ravenchart.gen.emit.ada.syntax import (
     chain,
     choice_of,
     equal,
-    member,
     number,
     one_of,
 )
 from ravenchart.gen.emit.language.compound import PASSED, Firing, FiringKind
 from ravenchart.gen.emit.language.places import flat
-from ravenchart.gen.emit.language.terms import emit_expression
 from ravenchart.gen.model.component import Component
-from ravenchart.gen.model.statechart import Region, When
+from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 
 from .deferring import declared_deferrals
@@ -46,7 +44,7 @@ from .lasting import declared_domains
 from .operations import operations
 from .records import region_types
 from .safety import Safety
-from .selection import is_selected, is_selection
+from .selection import is_selected, is_selection, when_enabled
 from .shape import START, RegionShape
 from .stepping import body_of
 
@@ -86,7 +84,7 @@ the program grow with the square of the chart."""
 def _declared(shape: RegionShape) -> list[Decl]:
     chosen = Param("T", "in", "Transition")
     place = Param(shape.place, "in", shape.place_type)
-    lines = tuple((f.literal, _enabled(shape, f)) for f in shape.firings)
+    lines = tuple((f.literal, when_enabled(shape, f)) for f in shape.firings)
     sources = tuple((f.literal, shape.in_sources(f)) for f in shape.firings)
     if not lines:
         lines = sources = (("None", FALSE),)
@@ -134,24 +132,6 @@ def _declared(shape: RegionShape) -> list[Decl]:
     return items
 
 
-def _enabled(shape: RegionShape, firing: Firing) -> Expr:
-    scope = shape.scope("Self.Data")
-    triggers = shape.triggers(firing)
-    parts: list[Expr] = [
-        equal(Ref("Now"), Ref(triggers[0]))
-        if len(triggers) == 1
-        else member(Ref("Now"), " | ".join(triggers))
-    ]
-    parts += [emit_expression(scope, t.condition) for t in firing.triggers if isinstance(t, When)]
-    if firing.kind is FiringKind.RESTORE:
-        memory = shape.memory(shape.compounds.place(firing.sources[0]))
-        parts.append(Ref(f"Self.Past.{memory.known}"))
-    parts += [emit_expression(scope, guard) for guard in firing.guards]
-    if len(firing.sources) > 1:
-        parts += [p for s in firing.sources if (p := shape.is_complete(s)) is not None]
-    return both(*flat(parts))
-
-
 def _target(shape: RegionShape, firing: Firing) -> Expr:
     if firing.kind is FiringKind.RESTORE:
         return restored_place(shape, firing.sources[0])
@@ -167,7 +147,7 @@ def _selections(shape: RegionShape) -> list[Decl]:
     lines: list[Expr] = []
     for lane in shape.busy_lanes:
         name = shape.lane_name(lane)
-        right: Expr = is_selected(shape, f"C.{name}", f"{name}_")
+        right: Expr = is_selected(shape, f"C.{name}", lane)
         if inner := shape.inner_lanes(lane):
             idle = [equal(Ref(f"C.{shape.lane_name(n)}"), Ref("None")) for n in inner]
             none = equal(Ref(f"C.{name}"), Ref("None"))

@@ -49,7 +49,7 @@ from ravenchart.gen.emit.language.compound import Firing, FiringKind
 from ravenchart.gen.model.statechart import Lane
 
 from .firing import Moves
-from .selection import segment, selected
+from .selection import segment, whole
 from .shape import START, RegionShape
 
 
@@ -304,7 +304,7 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
 
 def passing_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
     """One transition, then the segments that its way passes."""
-    pick = Assign("Chosen", selected(shape, None))
+    pick = Assign("Chosen", whole(shape, shape.lanes[0]))
     some = OperatorChain("/=", (Ref("Chosen"), Ref("None")))
     work = (pick, IfStatement(((some, (do("Fire_Whole", Ref("Chosen")),)),)))
     return _step(shape, moves, profile, [Object("Chosen", "Selection")], work)

@@ -170,7 +170,7 @@ def _stepped(shape: RegionShape) -> list[Expr]:
     kept = equal(Ref(held), Old(held))
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     first = "Fired.Items (1)" if shape.listed else "Fired"
-    chosen = is_selected(shape, first, None, Self=Old("Self"))
+    chosen = is_selected(shape, first, shape.lanes[-1], Self=Old("Self"))
     started = equal(Ref(first), Ref(START))
     if not shape.listed:
         none = equal(Ref("Fired"), Ref("None"))

@@ -1,27 +1,27 @@
-"""Selection: for one occurrence the first transition of each lane that is enabled.
+"""Selection: for one occurrence the transition of each lane, by small functions.
 
-The transitions of a lane are looked at in order of precedence, by the declared chart itself:
-what is reviewed is what runs. The time grows with the number of transitions, each of which
-costs a comparison or two where its source is not active.
+There is one for each composite state, with what its leaves select. A leaf has its own
+among many: what the prover must see at a time stays small. A leaf asks for the transitions
+of the states around it by a function of the innermost of them, which asks on.
 """
 
 from __future__ import annotations
 
+from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Aspect,
     Assign,
     Call,
+    CaseExpr,
     Decl,
     Expr,
     ForAll,
     IfExpr,
     IfStatement,
-    Loop,
     Object,
     OperatorChain,
     Param,
-    Pragma,
     Prefix,
     Ref,
     Return,
@@ -34,35 +34,41 @@ from ravenchart.gen.emit.ada.syntax import (
     member,
     number,
 )
-from ravenchart.gen.emit.language.compound import PASSED
+from ravenchart.gen.emit.language.compound import PASSED, TOP, Firing, FiringKind
+from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.terms import emit_expression
+from ravenchart.gen.model.chart.tree import Place
+from ravenchart.gen.model.statechart import Lane, When
 
 from .shape import PASSING, RegionShape
 
-SELECT = "Select_Transition"
-_IS_SELECTION = "Is_Selection"
+FEW = 8
+"""Up to so many leaves are selected for by the function of the state around them."""
+WORTH = 2
+"""So many transitions of the states around its leaves a state has a function for."""
 _BOUNDS = (Param("First", "in", "Transition"), Param("Last", "in", "Transition"))
 
 
-def is_selection(shape: RegionShape) -> Subprogram:
-    """What it means that a transition is the first one enabled."""
-    none = equal(Ref("Chosen"), Ref("None"))
-    among = member(Ref("Chosen"), _among(shape))
-    rule = chain("or else", [none, both(among, enabled(shape, "Chosen"))])
-    earlier = OperatorChain("<", (Ref("T"), Ref("Chosen")))
-    denied = IfExpr(((earlier, Prefix("not", enabled(shape, "T"))),), None)
-    return Subprogram(
-        _IS_SELECTION,
-        (Param("Chosen", "in", "Selection"), *_bounds(shape), *shape.situation()),
-        "Boolean",
-        aspects=(Aspect("Ghost"),),
-        expression=both(rule, ForAll("T", _among(shape), denied)),
-    )
+# --- the declared form
 
 
-def is_selected(shape: RegionShape, chosen: str, lane: str | None, **replaced: Expr) -> Call:
-    """A call of that function, for a lane where there are several."""
-    args = shape.situation_args(**replaced)
-    return Call(_IS_SELECTION, (Arg(None, Ref(chosen)), *_bounds_of(lane), *args))
+def when_enabled(shape: RegionShape, firing: Firing) -> Expr:
+    """Trigger and guard of a firing; where it has several sources, that all are complete."""
+    scope = shape.scope("Self.Data")
+    triggers = shape.triggers(firing)
+    parts: list[Expr] = [
+        equal(Ref("Now"), Ref(triggers[0]))
+        if len(triggers) == 1
+        else member(Ref("Now"), " | ".join(triggers))
+    ]
+    parts += [emit_expression(scope, t.condition) for t in firing.triggers if isinstance(t, When)]
+    if firing.kind is FiringKind.RESTORE:
+        memory = shape.memory(shape.compounds.place(firing.sources[0]))
+        parts.append(Ref(f"Self.Past.{memory.known}"))
+    parts += [emit_expression(scope, guard) for guard in firing.guards]
+    if len(firing.sources) > 1:
+        parts += [p for s in firing.sources if (p := shape.is_complete(s)) is not None]
+    return both(*flat(parts))
 
 
 def enabled(shape: RegionShape, chosen: str, **replaced: Expr) -> Call:
@@ -70,54 +76,52 @@ def enabled(shape: RegionShape, chosen: str, **replaced: Expr) -> Call:
     return Call("Enabled", (Arg(None, Ref(chosen)), *shape.situation_args(**replaced)))
 
 
-def selected(shape: RegionShape, lane: str | None, **replaced: Expr) -> Call:
-    """The selection among the transitions of a lane."""
-    return Call(SELECT, (*_bounds_of(lane), *shape.situation_args(**replaced)))
+def is_selection(shape: RegionShape) -> Subprogram:
+    """What it means that a transition is the first one enabled."""
+    among = "Transition" if shape.single else "First .. Last"
+    none = equal(Ref("Chosen"), Ref("None"))
+    rule = chain("or else", [none, both(member(Ref("Chosen"), among), enabled(shape, "Chosen"))])
+    earlier = OperatorChain("<", (Ref("T"), Ref("Chosen")))
+    denied = IfExpr(((earlier, Prefix("not", enabled(shape, "T"))),), None)
+    bounds = () if shape.single else _BOUNDS
+    return Subprogram(
+        "Is_Selection",
+        (Param("Chosen", "in", "Selection"), *bounds, *shape.situation()),
+        "Boolean",
+        aspects=(Aspect("Ghost"),),
+        expression=both(rule, ForAll("T", among, denied)),
+    )
+
+
+def is_selected(shape: RegionShape, chosen: str, lane: Lane, **replaced: Expr) -> Call:
+    """A call of that function over the transitions of a lane."""
+    own = f"{shape.lane_name(lane)}_Transition"
+    ends = () if shape.single else ("First", "Last")
+    bounds = (Arg(None, Ref(f"{own}'{end}")) for end in ends)
+    return Call(
+        "Is_Selection", (Arg(None, Ref(chosen)), *bounds, *shape.situation_args(**replaced))
+    )
+
+
+# --- the code
 
 
 def selectors(shape: RegionShape) -> list[Decl]:
-    """The selection in a lane, that of a segment, and the choice of all lanes."""
-    items: list[Decl] = [_select(shape), *_segments(shape)]
-    return items if shape.single else [*items, _choose(shape)]
+    """One function per state, leaves first; the last is the whole selection."""
+    if shape.single:
+        return [*_of_lane(shape, shape.lanes[0]), *_segments(shape)]
+    lanes = [d for lane in shape.busy_lanes for d in _of_lane(shape, lane)]
+    return [*lanes, *_segments(shape), _choose(shape)]
 
 
-def _bounds(shape: RegionShape) -> tuple[Param, ...]:
-    return () if shape.single else _BOUNDS
+def whole(shape: RegionShape, lane: Lane) -> Call:
+    """The selection of a lane."""
+    return Call(_whole_name(shape, lane), shape.situation_args())
 
 
-def _bounds_of(lane: str | None) -> tuple[Arg, ...]:
-    if lane is None:
-        return ()
-    return tuple(Arg(None, Ref(f"{lane}Transition'{end}")) for end in ("First", "Last"))
-
-
-def _among(shape: RegionShape) -> str:
-    return "Transition" if shape.single else "First .. Last"
-
-
-def _select(shape: RegionShape) -> Subprogram:
-    """A search in order of precedence."""
-    first = "Transition'First" if shape.single else "First"
-    before = ForAll("E", f"{first} .. T", Prefix("not", enabled(shape, "E")))
-    search = Loop(
-        f"for T in {_among(shape)}",
-        (
-            IfStatement(((enabled(shape, "T"), (Return(Ref("T")),)),)),
-            Pragma("Loop_Invariant", (before,)),
-        ),
-    )
-    args = (
-        Arg(None, Ref(f"{SELECT}'Result")),
-        *(Arg(None, Ref(p.name)) for p in _bounds(shape)),
-        *shape.situation_args(),
-    )
-    return Subprogram(
-        SELECT,
-        (*_bounds(shape), *shape.situation()),
-        "Selection",
-        aspects=(Aspect("Post", Call(_IS_SELECTION, args)),),
-        body=(search, Return(Ref("None"))),
-    )
+def segment(shape: RegionShape) -> Expr:
+    """The selection of a segment, over the state of the region."""
+    return call("Select_Segment", *(Ref(p.name) for p in shape.situation() if p.name != "Now"))
 
 
 def _segments(shape: RegionShape) -> list[Decl]:
@@ -126,8 +130,9 @@ def _segments(shape: RegionShape) -> list[Decl]:
     if not passed:
         return []
     held = f"Self.{shape.place}"
-    rows = [(shape.in_state(held, name), chain("or else", _ways(shape, name))) for name in passed]
-    goes_on = IfExpr(tuple(rows[:-1]), rows[-1][1]) if rows[1:] else rows[0][1]
+    args = shape.situation_args(Now=Ref(PASSING))
+    rows = [(shape.in_state(held, p), Call(f"In_{ada_case(p)}", args)) for p in passed]
+    chosen: Expr = IfExpr(tuple(rows[:-1]), rows[-1][1]) if rows[1:] else rows[0][1]
     waits = OperatorChain(">", (call("Segments_Left", Ref(held)), number(0)))
     result = "Select_Segment'Result"
     post = both(enabled(shape, result, Now=Ref(PASSING)), call("Is_Segment", Ref(result)))
@@ -137,31 +142,120 @@ def _segments(shape: RegionShape) -> list[Decl]:
             tuple(p for p in shape.situation() if p.name != "Now"),
             "Transition",
             aspects=(Aspect("Pre", waits), Aspect("Post", post)),
-            body=(
-                Pragma("Assert", (goes_on,)),
-                Return(selected(shape, None if shape.single else "", Now=Ref(PASSING))),
-            ),
+            expression=chosen,
         )
     ]
 
 
-def _ways(shape: RegionShape, pseudo: str) -> list[Expr]:
-    """That one of the segments which go on from it is enabled."""
-    segments = [f.literal for f in shape.firings if f.sources[0] == pseudo]
-    return [enabled(shape, name, Now=Ref(PASSING)) for name in segments]
+def _of_lane(shape: RegionShape, lane: Lane) -> list[Decl]:
+    """The functions of the states around leaves, outermost first, and those of all that stands
+    in the lane."""
+    place = TOP if lane.owner is None else Place(lane.owner, lane.name)
+    around = [
+        Subprogram(
+            _around_name(state.name),
+            shape.situation(),
+            "Selection",
+            expression=_selected(shape, lane, state.name),
+        )
+        for state in shape.region.states
+        if shape.region.lane(state.name) == lane and _has_own(shape, lane, state.name)
+    ]
+    return [*around, *_of_place(shape, lane, place)]
 
 
-def segment(shape: RegionShape) -> Expr:
-    """A call of that function over the state of the region."""
-    return call("Select_Segment", *(Ref(p.name) for p in shape.situation() if p.name != "Now"))
+def _around_name(state: str) -> str:
+    return f"Around_{ada_case(state)}"
+
+
+def _asked(shape: RegionShape, lane: Lane, state: str) -> list[Firing]:
+    """The firings from a state and those around it, in order of precedence."""
+    inside = shape.ancestors(state)
+    return [f for f in shape.firings if f.lane == lane and f.sources[0] in inside]
+
+
+def _has_own(shape: RegionShape, lane: Lane, state: str) -> bool:
+    """Is there a function for what leaves of a composite state share?"""
+    if shape.is_literal(state):
+        return False
+    leaves = list(shape.literals_in(Place(state, shape.region.state(state).regions[0].name)))
+    return len(leaves) > 1 and len(_asked(shape, lane, state)) >= WORTH
+
+
+def _selected(shape: RegionShape, lane: Lane, state: str) -> Expr:
+    """What is selected when a leaf is active, or for the leaves of a composite state."""
+    asked = _asked(shape, lane, state)
+    otherwise: Expr = Ref("None")
+    for outer in shape.ancestors(state)[1:]:
+        if shape.region.pseudostate(outer) is None and _has_own(shape, lane, outer):
+            shared = _asked(shape, lane, outer)
+            if asked[len(asked) - len(shared) :] == shared:
+                otherwise = Call(_around_name(outer), shape.situation_args())
+                asked = asked[: len(asked) - len(shared)]
+                break
+    branches = [(_condition(shape, f), Ref(f.literal)) for f in asked]
+    return IfExpr(tuple(branches), otherwise) if branches else otherwise
+
+
+def _of_place(shape: RegionShape, lane: Lane, place: Place) -> list[Decl]:
+    """The functions of what stands in a region of a lane, then that of the region."""
+    items: list[Decl] = []
+    rows: list[tuple[str, Expr]] = []
+    children = [s.name for s in shape.region.children(place.owner, place.region)]
+    literals = tuple(shape.literals_in(place))
+    at_once = len(literals) <= FEW
+    few = at_once or sum(map(shape.is_literal, children)) <= FEW
+    for child in literals if at_once else (*children, *shape.compounds.passed(place)):
+        passing = shape.region.pseudostate(child) is not None
+        chosen: Expr = Call(f"In_{ada_case(child)}", shape.situation_args())
+        if few and not passing and shape.is_literal(child):
+            chosen = _selected(shape, lane, child)
+        elif shape.is_literal(child):
+            items.append(_function(shape, lane, child, _selected(shape, lane, child)))
+        else:
+            region = shape.region.state(child).regions[0].name
+            items += _of_place(shape, lane, Place(child, region))
+        rows.append((shape.literal(child), chosen))
+    leaf = shape.at(f"Self.{shape.place}", lane)
+    if place != TOP and (place.owner != lane.owner or place.region != lane.name):
+        owner = place.owner or ""
+        chosen = CaseExpr(Ref(f"{shape.literal(owner)}'({leaf})"), tuple(rows))
+        return [*items, _function(shape, lane, owner, chosen)]
+    chosen = CaseExpr(Ref(leaf), tuple(rows))
+    if lane.owner is not None:
+        active = shape.in_state(f"Self.{shape.place}", lane.owner)
+        chosen = IfExpr(((active, chosen),), Ref("None"))
+    name = _whole_name(shape, lane)
+    right = Aspect("Post", is_selected(shape, f"{name}'Result", lane))
+    params = shape.situation()
+    return [*items, Subprogram(name, params, "Selection", aspects=(right,), expression=chosen)]
+
+
+def _function(shape: RegionShape, lane: Lane, state: str, chosen: Expr) -> Subprogram:
+    """The selection where a state is active."""
+    name = f"In_{ada_case(state)}"
+    active = Aspect("Pre", shape.in_state(f"Self.{shape.place}", state))
+    right = Aspect("Post", is_selected(shape, f"{name}'Result", lane))
+    aspects = (active, right)
+    return Subprogram(name, shape.situation(), "Selection", aspects=aspects, expression=chosen)
+
+
+def _whole_name(shape: RegionShape, lane: Lane) -> str:
+    return "Select_Transition" if shape.single else f"Select_{shape.lane_name(lane)}"
+
+
+def _condition(shape: RegionShape, firing: Firing) -> Expr:
+    """When a firing is enabled, given that its first source is active."""
+    held = f"Self.{shape.place}"
+    more = [shape.in_state(held, s) for s in firing.sources[1:]]
+    return both(*flat([*more, when_enabled(shape, firing)]))
 
 
 def _choose(shape: RegionShape) -> Subprogram:
     """All lanes; one around another selects only when the inner one does not."""
     steps: list[Stmt] = []
     for lane in shape.busy_lanes:
-        name = shape.lane_name(lane)
-        take = Assign(f"C.{name}", selected(shape, f"{name}_"))
+        take = Assign(f"C.{shape.lane_name(lane)}", whole(shape, lane))
         idle = [equal(Ref(f"C.{shape.lane_name(n)}"), Ref("None")) for n in shape.inner_lanes(lane)]
         steps.append(IfStatement(((chain("and then", idle), (take,)),)) if idle else take)
     return Subprogram(

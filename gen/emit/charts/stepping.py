@@ -36,7 +36,7 @@ from .firing import Moves
 from .guards import guard_operators, guards_of
 from .lanes import fire, lane_step, passing_step
 from .safety import Safety
-from .selection import selected, selectors
+from .selection import selectors, whole
 from .shape import START, RegionShape
 from .working import notice_bodies
 
@@ -156,7 +156,7 @@ def _step(shape: RegionShape, moves: Moves) -> Subprogram:
 
 
 def _plain_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
-    pick = Assign("Fired", selected(shape, None))
+    pick = Assign("Fired", whole(shape, shape.lanes[0]))
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     some = OperatorChain("/=", (Ref("Fired"), Ref("None")))
     return (

@@ -7,20 +7,31 @@ with SPARK_Mode
 is
    function Select_Transition
      (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now, Ins)));
-      end loop;
-      return None;
-   end Select_Transition;
+     return Selection is
+     (case Self.Leaf is
+        when Drive_States.Standing =>
+           (if Now = On_Told
+               and then Ins.Order.Value.Wish = Two_Nodes.Follow
+               then Go
+            elsif Now = On_Nobody_Tells then Lost_At_Rest
+            elsif Now = On_Bus_Failed then Cut_Off_At_Rest
+            else None),
+        when Drive_States.Following =>
+           (if Now = On_Told and then Ins.Order.Value.Wish = Two_Nodes.Rest
+               then Rest
+            elsif Now = On_Nobody_Tells then Lost
+            elsif Now = On_Bus_Failed then Cut_Off
+            else None),
+        when Drive_States.Safe =>
+           (if Now = On_Bus_Failed then Cut_Off_Besides
+            elsif Now = On_Told then Back
+            else None),
+        when Drive_States.Safe_Off_Bus =>
+           (if Now = On_Bus_Failed then Still_Cut_Off
+            elsif Now = On_Told then Told_Off_Bus
+            elsif Now = On_Bus_Back then Connected
+            else None))
+   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
 
    package Chart
    with Ghost

@@ -8,22 +8,41 @@ is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
 
+   function Around_Travelling
+     (Self : Region; Now : Occurrence; Ins : Inputs)
+     return Selection is
+     (if Now = On_Servo_Lost then Lost
+      elsif Now = On_Bus_Failed then Cut_Off
+      else None);
+
    function Select_Transition
      (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins)
-   is
-   begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all E in Transition'First .. T =>
-                not Enabled (E, Self, Now, Ins)));
-      end loop;
-      return None;
-   end Select_Transition;
+     return Selection is
+     (case Self.Leaf is
+        when Mission_States.Waiting =>
+           (if Now = Conditions and then Ins.Report.State = Ravenchart.Fresh
+               then Go
+            elsif Now = On_Bus_Failed then Cut_Off_Early
+            else None),
+        when Mission_States.Outward =>
+           (if Now = Conditions and then Ins.Report.Value.Position = 20_000
+               then There
+            else Around_Travelling (Self, Now, Ins)),
+        when Mission_States.Homeward =>
+           (if Now = Conditions and then Ins.Report.Value.Position = 0
+               then Home
+            else Around_Travelling (Self, Now, Ins)),
+        when Mission_States.Safe =>
+           (if Now = On_Bus_Failed then Cut_Off_Besides
+            elsif Now = Conditions
+               and then Ins.Report.State = Ravenchart.Fresh
+               then Again
+            else None),
+        when Mission_States.Safe_Off_Bus =>
+           (if Now = On_Bus_Failed then Still_Cut_Off
+            elsif Now = On_Bus_Back then Connected
+            else None))
+   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
 
    package Chart
    with Ghost
