@@ -9,7 +9,7 @@ is
    pragma Warnings (Off, "*can never be *");
 
    function Around_Ready
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     (Now : Occurrence; Ins : Inputs; Item : Event)
      return Selection is
      (if Now = On_Commanded
          and then Item.Value_Nmt_Command.Service = Canopen_Device.Start
@@ -50,10 +50,9 @@ is
            (if Now = Conditions and then Ins.Beat.Boots = Self.Data.Boots
                then Booted
             else None),
-        when Nmt_States.Pre_Operational =>
-           Around_Ready (Self, Now, Ins, Item),
-        when Nmt_States.Operational => Around_Ready (Self, Now, Ins, Item),
-        when Nmt_States.Stopped => Around_Ready (Self, Now, Ins, Item))
+        when Nmt_States.Pre_Operational => Around_Ready (Now, Ins, Item),
+        when Nmt_States.Operational => Around_Ready (Now, Ins, Item),
+        when Nmt_States.Stopped => Around_Ready (Now, Ins, Item))
    with
      Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item);
 

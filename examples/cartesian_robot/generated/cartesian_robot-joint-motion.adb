@@ -6,7 +6,7 @@ package body Cartesian_Robot.Joint.Motion
 with SPARK_Mode
 is
    function Around_Operational
-     (Self : Region; Now : Occurrence; Ins : Inputs)
+     (Now : Occurrence; Ins : Inputs)
      return Selection is
      (if Now = On_Ordered
          and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
@@ -17,11 +17,9 @@ is
       elsif Now = On_Limit_Hit then Limit
       else None);
 
-   function Around_Homing
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
+   function Around_Homing (Now : Occurrence; Ins : Inputs) return Selection is
      (if Now = Expiry_Of_No_End then No_End
-      else Around_Operational (Self, Now, Ins));
+      else Around_Operational (Now, Ins));
 
    function Around_Moving
      (Self : Region; Now : Occurrence; Ins : Inputs)
@@ -31,7 +29,7 @@ is
          and then Ins.Profile.Position = Self.Data.Goal.Target
          and then abs Ins.Measured.Error < 2_000
          then Arrived
-      else Around_Operational (Self, Now, Ins));
+      else Around_Operational (Now, Ins));
 
    function Select_Transition
      (Self : Region; Now : Occurrence; Ins : Inputs)
@@ -46,17 +44,17 @@ is
                and then Ins.Order.Value.Kind = Cartesian_Robot.Move
                and then Self.Data.Homed
                then Start_Move
-            else Around_Operational (Self, Now, Ins)),
+            else Around_Operational (Now, Ins)),
         when Motion_States.Seeking =>
            (if Now = Conditions
                and then Ins.Feedback.Value.Limit = Cartesian_Robot.Low_End
                then End_Found
-            else Around_Homing (Self, Now, Ins)),
+            else Around_Homing (Now, Ins)),
         when Motion_States.Backing_Off =>
            (if Now = Conditions
                and then Ins.Feedback.Value.Limit = Cartesian_Robot.Clear
                then End_Left
-            else Around_Homing (Self, Now, Ins)),
+            else Around_Homing (Now, Ins)),
         when Motion_States.Accelerating =>
            (if Now = Conditions
                and then Ins.Profile.Phase = Cartesian_Robot.At_Speed

@@ -5,9 +5,7 @@
 package body Cartesian_Robot.Robot_Coordinator.Mission
 with SPARK_Mode
 is
-   function Around_Active
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
+   function Around_Active (Now : Occurrence; Ins : Inputs) return Selection is
      (if Now = Conditions
          and then ((Ins.Report_X.Value.Condition = Cartesian_Robot.Failed
              or else Ins.Report_Y.Value.Condition = Cartesian_Robot.Failed)
@@ -18,12 +16,12 @@ is
       else None);
 
    function Around_Travelling
-     (Self : Region; Now : Occurrence; Ins : Inputs)
+     (Now : Occurrence; Ins : Inputs)
      return Selection is
      (if Now = On_Commanded
          and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
          then Halt
-      else Around_Active (Self, Now, Ins));
+      else Around_Active (Now, Ins));
 
    function Select_Transition
      (Self : Region; Now : Occurrence; Ins : Inputs)
@@ -33,7 +31,7 @@ is
            (if Now = On_Commanded
                and then Ins.Command.Value.Kind = Cartesian_Robot.Home
                then Home
-            else Around_Active (Self, Now, Ins)),
+            else Around_Active (Now, Ins)),
         when Mission_States.Homing =>
            (if Now = Conditions
                and then Ins.Report_X.Value.Condition
@@ -46,7 +44,7 @@ is
             elsif Now = On_Commanded
                and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
                then Halt_Homing
-            else Around_Active (Self, Now, Ins)),
+            else Around_Active (Now, Ins)),
         when Mission_States.Ready =>
            (if Now = On_Commanded
                and then Ins.Command.Value.Kind = Cartesian_Robot.Home
@@ -54,10 +52,10 @@ is
             elsif Now = On_Commanded
                and then Ins.Command.Value.Kind = Cartesian_Robot.Move
                then Move
-            else Around_Active (Self, Now, Ins)),
+            else Around_Active (Now, Ins)),
         when Mission_States.Departing =>
            (if Now = Expiry_Of_Under_Way then Under_Way
-            else Around_Travelling (Self, Now, Ins)),
+            else Around_Travelling (Now, Ins)),
         when Mission_States.Under_Way =>
            (if Now = Conditions
                and then Ins.Report_X.Value.Condition
@@ -67,7 +65,7 @@ is
                and then Ins.Report_Z.Value.Condition
                  = Cartesian_Robot.Standing
                then Arrived
-            else Around_Travelling (Self, Now, Ins)),
+            else Around_Travelling (Now, Ins)),
         when Mission_States.Failed =>
            (if Now = On_Shutdown then Shut_Down_Failed
             elsif Now = On_Commanded

@@ -9,7 +9,7 @@ is
    pragma Warnings (Off, "*can never be *");
 
    function Around_Contending
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     (Now : Occurrence; Ins : Inputs; Item : Event)
      return Selection is
      (if Now = On_Claimed_Too
          and then (Item.Value_Name.High < Ins.Name_High
@@ -38,9 +38,8 @@ is
            (if Now = Expiry_Of_Claim then Claim else None),
         when Address_States.Claiming =>
            (if Now = Expiry_Of_Granted then Granted
-            else Around_Contending (Self, Now, Ins, Item)),
-        when Address_States.Claimed =>
-           Around_Contending (Self, Now, Ins, Item),
+            else Around_Contending (Now, Ins, Item)),
+        when Address_States.Claimed => Around_Contending (Now, Ins, Item),
         when Address_States.Yielding =>
            (if Now = Expiry_Of_Give_Up then Give_Up else None),
         when Address_States.Without_Address =>

@@ -42,7 +42,7 @@ is
           Sensor_Transition'Last, Self, Now, Ins, Item);
 
    function Around_Infusing
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     (Now : Occurrence; Ins : Inputs)
      return Selection is
      (if Now = On_Stop then Stop
       elsif Now = On_Sensor_Lost then Lost
@@ -51,23 +51,19 @@ is
          then Trouble
       else None);
 
-   function Around_Running
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
+   function Around_Running (Now : Occurrence; Ins : Inputs) return Selection is
      (if Now = Completion_Of_Running then Finished
-      else Around_Infusing (Self, Now, Ins, Item));
+      else Around_Infusing (Now, Ins));
 
    function Around_Giving
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     (Self : Region; Now : Occurrence; Ins : Inputs)
      return Selection is
      (if Now = Expiry_Of_Beat then Beat
       elsif Now = Conditions and then Self.Data.Given >= Self.Data.Volume
          then Enough
-      else Around_Running (Self, Now, Ins, Item));
+      else Around_Running (Now, Ins));
 
-   function Around_Alarm
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
+   function Around_Alarm (Now : Occurrence) return Selection is
      (if Now = On_Resume then Resume
       elsif Now = On_Stop then Give_Up
       elsif Now = On_New_Portion then Defer_New_Portion_In_Alarm
@@ -79,7 +75,7 @@ is
      (if Now = Passing and then Self.Past.Known_In_Infusing
          then Restore_Where_It_Was
       elsif Now = Passing then Default_Of_Where_It_Was
-      else Around_Infusing (Self, Now, Ins, Item))
+      else Around_Infusing (Now, Ins))
    with
      Pre => Self.Place.Top = Infusion_States.Where_It_Was,
      Post =>
@@ -93,20 +89,18 @@ is
         when Infusion_States.Filling =>
            (if Now = Completion_Of_Filling then Filled_Up
             elsif Now = On_New_Portion then Defer_New_Portion_In_Filling
-            else Around_Running (Self, Now, Ins, Item)),
+            else Around_Running (Now, Ins)),
         when Infusion_States.Loading =>
            (if Now = Conditions and then Self.Data.Given >= Ins.Loading
                then Loaded
             elsif Now = On_New_Portion then Defer_New_Portion_In_Loading
-            else Around_Giving (Self, Now, Ins, Item)),
+            else Around_Giving (Self, Now, Ins)),
         when Infusion_States.Maintaining =>
            (if Now = On_New_Portion and then Item.Value_Portion > 0
                then Change
-            else Around_Giving (Self, Now, Ins, Item)),
-        when Infusion_States.All_Given =>
-           Around_Running (Self, Now, Ins, Item),
-        when Infusion_States.Trickling =>
-           Around_Infusing (Self, Now, Ins, Item),
+            else Around_Giving (Self, Now, Ins)),
+        when Infusion_States.All_Given => Around_Running (Now, Ins),
+        when Infusion_States.Trickling => Around_Infusing (Now, Ins),
         when Infusion_States.Where_It_Was =>
            In_Where_It_Was (Self, Now, Ins, Item))
    with
@@ -120,11 +114,9 @@ is
      return Selection is
      (case Infusion_States.Alarm'(Self.Place.Top) is
         when Infusion_States.Sounding =>
-           (if Now = On_Silence then Hush
-            else Around_Alarm (Self, Now, Ins, Item)),
+           (if Now = On_Silence then Hush else Around_Alarm (Now)),
         when Infusion_States.Silent =>
-           (if Now = Expiry_Of_Remind then Remind
-            else Around_Alarm (Self, Now, Ins, Item)))
+           (if Now = Expiry_Of_Remind then Remind else Around_Alarm (Now)))
    with
      Pre => Self.Place.Top in Infusion_States.Alarm,
      Post =>

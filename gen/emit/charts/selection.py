@@ -40,6 +40,7 @@ from ravenchart.gen.emit.language.terms import emit_expression
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import Lane, When
 
+from .safety import used
 from .shape import PASSING, RegionShape
 
 FEW = 8
@@ -151,21 +152,20 @@ def _of_lane(shape: RegionShape, lane: Lane) -> list[Decl]:
     """The functions of the states around leaves, outermost first, and those of all that stands
     in the lane."""
     place = TOP if lane.owner is None else Place(lane.owner, lane.name)
-    around = [
-        Subprogram(
-            _around_name(state.name),
-            shape.situation(),
-            "Selection",
-            expression=_selected(shape, lane, state.name),
-        )
-        for state in shape.region.states
-        if shape.region.lane(state.name) == lane and _has_own(shape, lane, state.name)
-    ]
+    around: list[Decl] = []
+    for state in shape.region.states:
+        if shape.region.lane(state.name) == lane and _has_own(shape, lane, state.name):
+            chosen = _selected(shape, lane, state.name)
+            params = used(shape.situation(), chosen)
+            name = f"Around_{ada_case(state.name)}"
+            around.append(Subprogram(name, params, "Selection", expression=chosen))
     return [*around, *_of_place(shape, lane, place)]
 
 
-def _around_name(state: str) -> str:
-    return f"Around_{ada_case(state)}"
+def _around(shape: RegionShape, lane: Lane, state: str) -> Expr:
+    """A call of the function of a composite state."""
+    params = used(shape.situation(), _selected(shape, lane, state))
+    return call(f"Around_{ada_case(state)}", *(Ref(p.name) for p in params))
 
 
 def _asked(shape: RegionShape, lane: Lane, state: str) -> list[Firing]:
@@ -190,7 +190,7 @@ def _selected(shape: RegionShape, lane: Lane, state: str) -> Expr:
         if shape.region.pseudostate(outer) is None and _has_own(shape, lane, outer):
             shared = _asked(shape, lane, outer)
             if asked[len(asked) - len(shared) :] == shared:
-                otherwise = Call(_around_name(outer), shape.situation_args())
+                otherwise = _around(shape, lane, outer)
                 asked = asked[: len(asked) - len(shared)]
                 break
     branches = [(_condition(shape, f), Ref(f.literal)) for f in asked]

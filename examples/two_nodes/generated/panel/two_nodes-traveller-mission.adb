@@ -8,9 +8,7 @@ is
    pragma Warnings (Off, "*can only be *");
    pragma Warnings (Off, "*can never be *");
 
-   function Around_Travelling
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
+   function Around_Travelling (Now : Occurrence) return Selection is
      (if Now = On_Servo_Lost then Lost
       elsif Now = On_Bus_Failed then Cut_Off
       else None);
@@ -27,11 +25,11 @@ is
         when Mission_States.Outward =>
            (if Now = Conditions and then Ins.Report.Value.Position = 20_000
                then There
-            else Around_Travelling (Self, Now, Ins)),
+            else Around_Travelling (Now)),
         when Mission_States.Homeward =>
            (if Now = Conditions and then Ins.Report.Value.Position = 0
                then Home
-            else Around_Travelling (Self, Now, Ins)),
+            else Around_Travelling (Now)),
         when Mission_States.Safe =>
            (if Now = On_Bus_Failed then Cut_Off_Besides
             elsif Now = Conditions
