@@ -61,6 +61,7 @@ def test_a_transition_is_said_to_fire_exactly_where_it_does(seed: int) -> None:
     assert list(_played(system, seed, Compared)) == list(_played(system, seed, RegionRun))
 
 
+@pytest.mark.slow
 def test_the_charts_have_shown_every_reason() -> None:
     for seed in SEEDS:
         list(_played(system_of(model_of([seed])), seed, Compared))

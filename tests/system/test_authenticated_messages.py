@@ -148,6 +148,7 @@ def test_attacks_on_the_bus_are_noticed_and_nothing_wrong_is_used(
     assert {GOOD, GOOD + 1, GOOD + 2} <= levels[0x200] & levels[0x201]
 
 
+@pytest.mark.slow
 def test_what_is_sent_is_sealed_with_values_that_only_grow(
     gate: Callable[[Play], Observation],
 ) -> None:

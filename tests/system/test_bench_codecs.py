@@ -12,6 +12,8 @@ from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
 from tests.bench import codecs as bench_codecs
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.alone
 def test_the_codecs_take_no_longer_than_c_that_checks_nothing() -> None:

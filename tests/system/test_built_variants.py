@@ -11,6 +11,8 @@ import pytest
 from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
 
+pytestmark = pytest.mark.slow
+
 
 def _copied(example: Path, folder: Path) -> programs.Program:
     shutil.copytree(example, folder)

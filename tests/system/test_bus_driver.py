@@ -42,6 +42,7 @@ def counted(messages: list[can.Message]) -> list[int]:
     return [int.from_bytes(message.data, "little") for message in messages]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", ["checks", "release"])
 def test_every_fact_of_a_member_holds(mode: str) -> None:
     program = built(mode, "bus", *MAINS) / "test_bus_members"

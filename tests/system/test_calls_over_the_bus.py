@@ -65,6 +65,7 @@ def test_calls_are_executed_on_the_other_node_and_a_missing_reply_is_told(folder
     assert "homed" in fired[len(fired) - fired[::-1].index("alone") :]
 
 
+@pytest.mark.slow
 def test_a_region_publishes_and_events_are_brought_without_a_warning(tmp_path: Path) -> None:
     copy = tmp_path / "gripper"
     shutil.copytree(ROOT / "tests" / "nodes" / "gripper", copy)

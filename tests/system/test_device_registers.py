@@ -100,6 +100,7 @@ def _run(program: Path, seconds: float, **variables: str) -> tuple[int, list[str
     return process.returncode, registers, [line for line in lines if line.startswith("error")]
 
 
+@pytest.mark.slow
 def test_devices_start_before_the_first_release_and_are_safe_behind_a_stop(tmp_path: Path) -> None:
     status, registers, errors = _run(_built(tmp_path), 1)
     assert (status, errors) == (0, [])

@@ -155,6 +155,7 @@ def palm(folder: Path) -> Callable[[Callable[[RavenchartBus, Codec], None]], Obs
     return run
 
 
+@pytest.mark.slow
 def test_bad_frames_are_not_delivered(
     palm: Callable[[Callable[[RavenchartBus, Codec], None]], Observation],
 ) -> None:
@@ -170,6 +171,7 @@ def test_bad_frames_are_not_delivered(
     assert len(list(seen.of("arrived", "tuning"))) == 1
 
 
+@pytest.mark.slow
 def test_one_node_exchanges_both_formats_with_a_bench(tmp_path: Path) -> None:
     copy = tmp_path / "flexible"
     shutil.copytree(ROOT / "tests" / "feature" / "flexible", copy)

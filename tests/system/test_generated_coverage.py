@@ -10,6 +10,8 @@ import pytest
 from ravenchart.paths import ROOT
 from tests.support.answers import answered
 
+pytestmark = pytest.mark.slow
+
 
 def test_the_cases_execute_the_whole_body_of_a_chart(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

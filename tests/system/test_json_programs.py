@@ -40,6 +40,7 @@ def test_a_program_that_was_built_is_named(model: Path, capsys: PRINTED) -> None
     answered(capsys, "clean", model)
 
 
+@pytest.mark.slow
 @pytest.mark.live
 def test_a_run_answers_with_its_verdict(model: Path, capsys: PRINTED) -> None:
     result = answered(capsys, "run", model, "--seconds", "1")["result"]
@@ -85,6 +86,7 @@ def _started(*words: object) -> subprocess.Popen[str]:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SERVERS)
 def test_a_server_answers_as_soon_as_it_serves(name: str) -> None:
     words, used = SERVERS[name]

@@ -21,7 +21,7 @@ from ravenchart.running.result import RunOutcome
 from tests.support.faults import shows
 from tests.support.modes import MODES
 
-pytestmark = pytest.mark.live
+pytestmark = [pytest.mark.live, pytest.mark.slow]
 
 SECONDS = 2.0
 

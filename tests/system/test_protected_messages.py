@@ -125,6 +125,7 @@ def test_faults_on_the_bus_are_noticed_and_nothing_wrong_is_used(
     assert WRONG not in levels
 
 
+@pytest.mark.slow
 def test_what_is_sent_is_accepted_by_the_independent_implementation(
     gate: Callable[[Callable[[RavenchartBus], None]], Observation],
 ) -> None:
@@ -227,6 +228,7 @@ def playing(tmp_path: Path) -> Playing:
     return play
 
 
+@pytest.mark.slow
 def test_a_scenario_exchanges_protected_messages(playing: Playing) -> None:
     given = "{level: 700, mode: Stop, ready: true}"
     steps_of = (

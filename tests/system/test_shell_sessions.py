@@ -91,6 +91,7 @@ def bus_of(on_bus: Path, folder: Path) -> Iterator[str]:
             yield place
 
 
+@pytest.mark.slow
 def test_a_script_leads_the_controller_that_the_shell_starts(robot: Robot, tmp_path: Path) -> None:
     log = tmp_path / "shell.blf"
     words = ("shell", MODEL, "--drives", SCENARIO, "--log", log)
@@ -119,6 +120,7 @@ def test_the_shell_joins_a_controller_on_a_bus_server(on_bus: Path, tmp_path: Pa
     assert out[-1].startswith("condition is Failed after ")
 
 
+@pytest.mark.slow
 def test_a_program_in_python_does_the_same(on_bus: Path, tmp_path: Path) -> None:
     def play() -> str:
         with (

@@ -74,6 +74,7 @@ def test_the_generated_code_gives_every_reference_trace(tmp_path: Path) -> None:
         assert labels_of(case, own) in case["expected_traces"], name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_command_says_the_same_of_an_example_both_ways(
     name: str, capsys: pytest.CaptureFixture[str]

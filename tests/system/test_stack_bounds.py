@@ -121,6 +121,7 @@ RAISED = """      begin
 """
 
 
+@pytest.mark.slow
 def test_an_exception_that_is_handled_stays_within_the_allowance(tmp_path: Path) -> None:
     program = _program(_devices(tmp_path, statements=RAISED))
     image = program.build()
@@ -140,6 +141,7 @@ USED = """      Wide (Integer (abs Position) mod 16_000 + 1) := 'x';
 """
 
 
+@pytest.mark.slow
 def test_a_stack_of_half_its_bound_fails_the_build(tmp_path: Path) -> None:
     home = _devices(tmp_path, WIDE, USED)
     program = _program(home)
@@ -195,6 +197,7 @@ TOUCHED = """      Sized (1) := 'x';
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("declarations", "statements", "code", "words"),
     [
@@ -230,6 +233,7 @@ def test_with_each_driver_every_stack_has_a_bound(driver: str, mode: str) -> Non
     )
 
 
+@pytest.mark.slow
 def test_objects_of_a_build_without_call_graphs_are_compiled_once_more(tmp_path: Path) -> None:
     program = _program(_devices(tmp_path))
     image = program.build()

@@ -99,6 +99,7 @@ def test_the_application_is_the_same_whatever_is_sensed(tmp_path: Path) -> None:
     assert all(one == seen[0] for one in seen)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", ["supervisory_control.yaml", "interface_only.yaml"])
 def test_the_level_of_control_is_chosen_by_a_line(level: str, variant: Variant) -> None:
     checked = variant("model.yaml", "software_control.yaml", level)
@@ -153,6 +154,7 @@ def test_the_supervisor_is_the_same_over_its_own_servo_loop_and_over_drives(
     assert "Servo_1.Put_Motion" in glue[0] and "Drives.Hold;" in glue[1]
 
 
+@pytest.mark.slow
 def test_a_drive_over_can_replaces_the_servo_by_a_line(
     variant: Variant, capsys: pytest.CaptureFixture[str]
 ) -> None:

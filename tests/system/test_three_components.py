@@ -9,6 +9,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+
 from ravenchart.analysis.system.observed import Observation, TraceRecord, read_map, read_trace
 from ravenchart.building import checking, generation, programs
 from ravenchart.gen.model.system import System
@@ -75,6 +77,7 @@ def test_processors_2_and_3_both_touch_component_2(
     assert system.object("two.held").ceiling == ceiling
 
 
+@pytest.mark.slow
 def test_moving_an_activity_is_one_line_and_the_token_still_goes_round(
     copy_of: Callable[[str], Path],
     tmp_path: Path,

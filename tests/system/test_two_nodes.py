@@ -194,6 +194,7 @@ def test_charts_that_request_recovery_bring_both_nodes_back(tmp_path: Path) -> N
         assert off <= len(asked) + 1
 
 
+@pytest.mark.slow
 def test_one_line_moves_the_servo_and_no_component_changes(
     checked: checking.Checked, tmp_path: Path
 ) -> None:
@@ -210,6 +211,7 @@ def test_one_line_moves_the_servo_and_no_component_changes(
     programs.programs_of(one)[0].build()
 
 
+@pytest.mark.slow
 def test_a_simulation_does_the_same_on_one_node_and_on_two(
     checked: checking.Checked, tmp_path: Path
 ) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+import pytest
+
 from ravenchart.behaviour.limits import EFFORT
 from ravenchart.behaviour.rules import findings
 from ravenchart.gen.model.system import System
@@ -39,6 +41,7 @@ def _rings() -> System:
     )
 
 
+@pytest.mark.slow
 def test_ten_regions_of_ten_states_take_a_fifth_of_the_work_at_most() -> None:
     assert "RV-1110" not in [item.code for item in findings(_rings(), EFFORT // 5)]
 

@@ -134,6 +134,7 @@ def test_a_lost_bench_is_found_in_the_trace(tmp_path: Path) -> None:
     assert result.steps[-1].outcome.startswith("after ")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("option", "reason"),
     [
@@ -177,6 +178,7 @@ def test_a_controller_that_does_not_end_is_killed(
     assert result.ended.killed
 
 
+@pytest.mark.slow
 @pytest.mark.alone
 def test_a_controller_that_says_no_port_fails_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -34,6 +34,7 @@ STEPS = """\
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".blf", ".asc", ".log"])
 def test_a_run_writes_its_log_and_others_read_it(tmp_path: Path, suffix: str) -> None:
     """All that bench and controller sent, in the order of time, with the values of the run."""

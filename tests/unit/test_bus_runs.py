@@ -51,6 +51,7 @@ def words(tmp_path: Path, server: BusServer, scenario: str, *more: str) -> list[
     return ["run", str(MODEL), "--scenario", str(plan), *bus, *report, *more]
 
 
+@pytest.mark.slow
 def test_a_scenario_is_played_and_nothing_is_started(
     tmp_path: Path, server: BusServer, far: FarEnd, capsys: PRINTED
 ) -> None:

@@ -30,12 +30,14 @@ def _calls(components: int, regions: int) -> int:
     return calls
 
 
+@pytest.mark.slow
 def test_each_further_component_takes_as_many_calls() -> None:
     _calls(1, 1)  # what is made once and kept
     few, some, many = (_calls(components, 1) for components in (4, 12, 20))
     assert many - some <= 1.002 * (some - few)
 
 
+@pytest.mark.slow
 def test_each_further_region_of_a_component_takes_as_many_calls() -> None:
     _calls(1, 1)
     few, some, many = (_calls(1, regions) for regions in (4, 12, 20))

@@ -15,6 +15,8 @@ from ravenchart.failures import OK
 from ravenchart.stacks.report import Memory, MemoryPart, PathStep, Stack
 from tests.support import evidence
 
+pytestmark = pytest.mark.slow
+
 HEADING = ">Stacks and memory</h2>"
 
 

@@ -92,6 +92,7 @@ def wishes(
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_event_file_gives_the_same_trace(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(play_session, "MOST_RELEASES", 300)

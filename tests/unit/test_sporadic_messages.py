@@ -91,6 +91,7 @@ def seen(chance: random.Random, longer: int) -> tuple[int, int, int]:
     return max(reactions), max(fetched), max(ages)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("longer", [0, 40, 400])
 def test_a_simulation_keeps_the_reaction_and_only_exact_periods_keep_the_age(longer: int) -> None:
     chance = random.Random(longer)

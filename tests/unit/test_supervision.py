@@ -88,6 +88,7 @@ def test_a_model_without_supervision_has_no_such_task() -> None:
     assert not list((ROOT / "examples" / "pump" / "generated").glob("*liveness*"))
 
 
+@pytest.mark.slow
 def test_the_report_says_how_soon_silence_is_found_or_that_nothing_looks_for_it() -> None:
     text = render(analyse(example("three_components")))
     #  deadline and margin; then a period of the supervisor and its response

@@ -144,6 +144,7 @@ def test_the_database_has_the_longest_time_as_cycle_time(
     assert database.get_message_by_name("link").cycle_time == cycle
 
 
+@pytest.mark.slow
 def test_report_and_figures_name_the_mode(tmp_path: Path) -> None:
     analysis = _analysed(tmp_path, MIXED)
     assert figures(analysis)["transmission"] == [

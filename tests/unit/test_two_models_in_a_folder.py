@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
 
@@ -35,6 +37,7 @@ def test_each_main_file_has_its_own_folder_of_generated_files(tmp_path: Path) ->
     assert [one.project.parent for one in made] == homes
 
 
+@pytest.mark.slow
 def test_a_second_main_file_builds_beside_the_first(tmp_path: Path) -> None:
     text = (ROOT / "tests" / "feature" / "conflicts" / "model.yaml").read_text()
     built = [

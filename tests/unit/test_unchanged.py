@@ -142,6 +142,7 @@ CHANGES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
 def test_a_change_is_seen(
     change: Callable[[], object], last: Said, checks: list[Path], told: Callable[..., Said]
@@ -151,6 +152,7 @@ def test_a_change_is_seen(
     assert len(checks) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", ["modules", "libraries"])
 def test_another_tool_takes_nothing_of_this_one(
     what: str,
@@ -171,6 +173,7 @@ def test_another_tool_takes_nothing_of_this_one(
     assert len(checks) == 1
 
 
+@pytest.mark.slow
 def test_a_model_of_another_name_or_folder_is_another(
     last: Said, checks: list[Path], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -254,6 +257,7 @@ def built(fake: Fake, checks: list[Path], told: Callable[..., Said]) -> Said:
     return said
 
 
+@pytest.mark.slow
 def test_a_build_that_does_nothing_says_what_one_that_does_all_says(
     built: Said, told: Callable[..., Said], fake: Fake, checks: list[Path]
 ) -> None:
@@ -266,6 +270,7 @@ def test_a_build_that_does_nothing_says_what_one_that_does_all_says(
     assert json.loads(answer[0])["result"]["programs"][0]["memory"] == asdict(MEMORY)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "more", [("--driver", "loopback"), ("--mode", "release"), ("--memory", "stacks.json")]
 )
@@ -276,6 +281,7 @@ def test_other_switches_are_another_build(
     assert (len(checks), fake.examined) == (1, 2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", ["an included file", "an edited file", "an empty record"])
 def test_a_change_is_seen_by_a_build(
     change: str,
@@ -289,6 +295,7 @@ def test_a_change_is_seen_by_a_build(
     assert (len(checks), fake.examined) == (1, 2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", ["another image", "no image", "other facts"])
 def test_another_program_is_examined(
     what: str, built: Said, told: Callable[..., Said], fake: Fake
@@ -302,6 +309,7 @@ def test_another_program_is_examined(
     assert fake.examined == 2
 
 
+@pytest.mark.slow
 def test_a_program_that_gprbuild_makes_now_is_examined_and_told_once(
     built: Said, told: Callable[..., Said], fake: Fake
 ) -> None:
@@ -310,6 +318,7 @@ def test_a_program_that_gprbuild_makes_now_is_examined_and_told_once(
     assert fake.examined == 2
 
 
+@pytest.mark.slow
 def test_gprbuild_that_fails_fails_the_build(
     built: Said, fake: Fake, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

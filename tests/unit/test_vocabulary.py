@@ -22,6 +22,7 @@ def test_a_command_is_a_literal_of_one_field_alone() -> None:
     assert robot().commands == places
 
 
+@pytest.mark.slow
 def test_the_values_of_a_boolean_are_no_commands() -> None:
     for feature in sorted(path.name for path in FEATURES.iterdir() if path.is_dir()):
         system = system_of(FEATURES / feature / "model.yaml")

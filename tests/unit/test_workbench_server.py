@@ -283,6 +283,7 @@ def test_a_drawing_comes_with_the_locations_of_what_it_shows(bench: Running) -> 
 # --- Start and end ---------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_a_signal_ends_it_in_order_while_pages_are_open(
     tmp_path: Path, number: int, status: int
