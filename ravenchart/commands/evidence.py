@@ -46,6 +46,10 @@ def add_sources(sub: argparse.ArgumentParser) -> None:
         help="stacks and memory as `build --memory` wrote them; for several nodes, once for each",
     )  # fmt: skip
     sub.add_argument(
+        "--coverage", type=Path, metavar="FILE",
+        help="what test cases execute, as `tests --coverage` wrote it (LCOV)",
+    )  # fmt: skip
+    sub.add_argument(
         "--tests", type=Path, metavar="FILE", help="results of tests in the form of JUnit"
     )
     sub.add_argument(
@@ -62,7 +66,12 @@ def gathered(options: argparse.Namespace) -> Facts:
     try:
         with progress(f"check {model.name}"):
             found = facts.gather(
-                model, options.driver, options.record, options.tests, memory=options.memory
+                model,
+                options.driver,
+                options.record,
+                options.tests,
+                memory=options.memory,
+                coverage=options.coverage,
             )
     except Refused:
         common.checked(options, deadlines=False)  # tells the same with the path as given

@@ -34,6 +34,7 @@ class ClaimKind(Enum):
     RUNTIME = "The runtime and the CAN layer keep their contracts"
     MEMORY = "Memory is sufficient"
     TESTS = "The tests pass"
+    COVERAGE = "The tests execute the code"
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from ravenchart.gen.model.statechart import Region
 from . import records
 from .bounds import bounds
 from .claim import NO_RECORD, Claim, ClaimKind, Pairs, Shown, own_tool, verdict_of
+from .coverage import coverage
 from .facts import Facts, NodeFacts
 from .memory import stacks
 from .records import BelievedRecord
@@ -35,6 +36,7 @@ def claims(facts: Facts) -> tuple[Claim, ...]:
         *_runtime(facts),
         *stacks(facts),
         _tests(facts),
+        *coverage(facts),
     )
 
 

@@ -25,9 +25,10 @@ from ravenchart.paths import ROOT
 from ravenchart.proof import outside_spark
 from ravenchart.stacks.report import Memory
 
-from . import records
+from . import records, tracefile
 from .records import BelievedRecord
 from .results import Test, junit
+from .tracefile import CountedBody
 
 FIRST_DRIVER = "loopback"
 """With it all of the runtime is proved; with another only what differs."""
@@ -73,6 +74,8 @@ class Facts:
     """Results of tests, where some were given."""
     memory: tuple[Memory, ...] = ()
     """Records of builds: stacks and memory."""
+    coverage: tuple[CountedBody, ...] | None = None
+    """What test cases execute, where a tracefile is given."""
 
 
 def gather(
@@ -82,6 +85,7 @@ def gather(
     tests: Path | None = None,
     effort: int = TO_THE_END,
     memory: Sequence[Path] = (),
+    coverage: Path | None = None,
 ) -> Facts:
     """What is at hand of a model; Refused where it has errors other than missed deadlines."""
     folder = model.parent
@@ -112,6 +116,7 @@ def gather(
         links(read_model(main, read).forms),
         None if tests is None else junit(tests),
         tuple(read_record(one) for one in memory),
+        None if coverage is None else tracefile.read(coverage),
     )
 
 

@@ -23,8 +23,6 @@ LIMITS = (
     ("invariants", "`never` is a contract of the generated code only where a claim says so "
      "(code-never-...). Any other is checked on the model."),
     ("effects", "No postcondition states what an effect or a user's body does to the data."),
-    ("coverage", "Structural coverage is no part of this folder: `ravenchart tests MODEL "
-     "--coverage FILE` counts it."),
     ("mutation", "No mutation score is part of this folder."),
     ("records", "A proof record is a text file: whoever can write it can lie. Who does not trust "
      "it runs `ravenchart prove MODEL --fresh` and compares."),
@@ -32,6 +30,14 @@ LIMITS = (
      "implements the text needs a review."),
 )  # fmt: skip
 """What no folder shows."""
+
+
+_UNCOVERED = Gap(
+    "limit",
+    "coverage",
+    "No structural coverage is given: `ravenchart tests MODEL --coverage FILE` counts it, and "
+    "`--coverage FILE` here makes claims of it.",
+)
 
 
 def gaps(facts: Facts, claims: Sequence[Claim]) -> tuple[Gap, ...]:
@@ -43,6 +49,7 @@ def gaps(facts: Facts, claims: Sequence[Claim]) -> tuple[Gap, ...]:
         *_budgets(facts),
         *_tests(facts),
         *_tools(facts),
+        *(() if facts.coverage else (_UNCOVERED,)),
         *(Gap("limit", what, why) for what, why in LIMITS),
     )
 

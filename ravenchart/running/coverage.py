@@ -7,6 +7,7 @@ of charts, which contracts compare with and no statement calls.
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -111,13 +112,17 @@ def read(said: str, places: Mapping[Path, Origin]) -> list[SourceCoverage]:
 
 
 def tracefile(coverage: Sequence[SourceCoverage]) -> str:
-    """The counts as an LCOV tracefile, which editors and genhtml show (geninfo(1), FILES)."""
+    """The counts as an LCOV tracefile, which editors and genhtml show (geninfo(1), FILES).
+
+    The version of a source is the SHA-256 of its text.
+    """
     return "".join(f"{line}\n" for one in coverage for line in _records(one))
 
 
 def _records(one: SourceCoverage) -> Iterator[str]:
     yield "TN:"
     yield f"SF:{one.path}"
+    yield f"VER:{hashlib.sha256(one.path.read_bytes()).hexdigest()}"
     for (line, index), count in sorted(one.branches.items()):
         yield f"BRDA:{line},0,{index},{count if one.lines.get(line) else '-'}"
     yield f"BRF:{len(one.branches)}"

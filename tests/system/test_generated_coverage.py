@@ -7,6 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.evidence import facts
+from ravenchart.evidence.claim import Shown
+from ravenchart.evidence.coverage import coverage
 from ravenchart.paths import ROOT
 from tests.support.answers import answered
 
@@ -32,6 +35,10 @@ def test_the_cases_execute_the_whole_body_of_a_chart(
     assert f"LF:{chart['lines']}\nLH:{chart['executed']}\n" in record
     assert record.count("\nDA:") == chart["lines"]
     assert record.count("\nBRDA:") == chart["branches"]
+
+    (claim,) = coverage(facts.gather(folder / "model.yaml", coverage=file))
+    assert claim.id == "coverage-Crossing.Lights" and claim.verdict in (Shown.MET, Shown.PARTLY)
+    assert not any("not executed" in reason for reason in claim.reasons)
 
     unplayed = answered(
         capsys, "tests", folder / "model.yaml", "--effort", "1", "--no-run", "--coverage", file

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from pathlib import Path
 
@@ -50,11 +51,14 @@ def test_generated_bodies_come_before_those_of_the_runtime() -> None:
     assert [one.path.name for one in found] == ["b.adb", "z.adb", "a.adb"]
 
 
-def test_the_tracefile_is_that_of_lcov() -> None:
-    said = _said((GENERATED / "a.adb", [_line(3, 2, 2, 0), _line(4, 0, 0, 0)]))
-    assert tracefile(read(said, PLACES)).splitlines() == [
+def test_the_tracefile_is_that_of_lcov(tmp_path: Path) -> None:
+    body = tmp_path / "a.adb"
+    body.write_bytes(b"body")
+    said = _said((body, [_line(3, 2, 2, 0), _line(4, 0, 0, 0)]))
+    assert tracefile(read(said, {tmp_path: Origin.GENERATED})).splitlines() == [
         "TN:",
-        "SF:/home/model/source/a.adb",
+        f"SF:{body}",
+        f"VER:{hashlib.sha256(b'body').hexdigest()}",
         "BRDA:3,0,0,2",
         "BRDA:3,0,1,0",
         "BRDA:4,0,0,-",

@@ -1,0 +1,81 @@
+"""Claims about what test cases execute of charts and user bodies, by an LCOV tracefile.
+
+A count is believed only of the text that stands there today.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+
+from ravenchart.gen.emit.ada.naming import region_package
+from ravenchart.gen.emit.program import simulation, source_folders
+from ravenchart.running.coverage import GCOV, spans
+
+from .claim import Claim, ClaimKind, Shown
+from .facts import Facts
+from .tracefile import CountedBody
+
+
+def coverage(facts: Facts) -> Iterator[Claim]:
+    """A claim for each chart, and for each body of the user; none without a tracefile."""
+    if facts.coverage is None or facts.ungenerated:
+        return
+    system = facts.checked.system
+    counted = {body.path.name: body for body in facts.coverage}
+    texts = simulation(system)
+    for component in system.components:
+        for region in component.regions:
+            file = f"{region_package(system, component, region).lower().replace('.', '-')}.adb"
+            name = f"{component.name}.{region.name}"
+            text = texts[file].encode("utf-8")
+            yield _claim(facts, f"coverage-{name}", (name,), file, text, counted.get(file))
+    for place in source_folders(system):
+        for path in sorted((facts.checked.folder / place).glob("*.adb")):
+            id_ = f"coverage-{path.stem}"
+            yield _claim(facts, id_, (), path.name, path.read_bytes(), counted.get(path.name))
+
+
+def _claim(
+    facts: Facts,
+    id_: str,
+    elements: tuple[str, ...],
+    file: str,
+    text: bytes,
+    body: CountedBody | None,
+) -> Claim:
+    version = hashlib.sha256(text).hexdigest()
+    wrong, left = _problems(file, version, body)
+    verdict = Shown.NOT_MET if wrong else Shown.PARTLY if left else Shown.MET
+    counts = ""
+    if body is not None:
+        lines = sum(count > 0 for count in body.lines.values())
+        taken = sum(count > 0 for _, count in body.branches)
+        counts = f": lines {lines} of {len(body.lines)}, branches {taken} of {len(body.branches)}"
+    return Claim(
+        id_, ClaimKind.COVERAGE, elements or (facts.checked.system.name,),
+        f"Test cases execute every line with code of {file} and take every branch",
+        f"executions in virtual time, as {GCOV} counts them without checks and contracts{counts}. "
+        "Where a body is generated, it is that of the simulation: with a note at each behaviour.",
+        "test", GCOV, verdict, (*wrong, *left), (*facts.sources, (file, version)),
+    )  # fmt: skip
+
+
+def _problems(
+    file: str, version: str, body: CountedBody | None
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """What contradicts the counts, and what they leave open."""
+    if body is None:
+        return (f"the tracefile has no counts of {file}",), ()
+    if not body.version:
+        return (f"the tracefile does not say of which text of {file} its counts are (VER)",), ()
+    if body.version != version:
+        return (f"{file} is not as it was when it was counted",), ()
+    lines = sorted(line for line, count in body.lines.items() if not count)
+    branches = sorted({line for line, count in body.branches if not count} - {*lines})
+    left = []
+    if lines:
+        left.append(f"{file}: not executed: {spans(lines)}")
+    if branches:
+        left.append(f"{file}: a branch is not taken: {spans(branches)}")
+    return (), tuple(left)
