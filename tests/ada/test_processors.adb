@@ -99,7 +99,7 @@ procedure Test_Processors is
       Facts.Check
         ("every activity that ran was measured",
          (for all Time of Observed.Worst_Execution =>
-            Time in 1 .. 100_000_000));
+            Time in 1 .. 10_000_000_000));
       Facts.Check
         ("a response was measured", Observed.Worst_Response > 0);
    end Check_Cyclic;
