@@ -15,9 +15,10 @@ ada boolean false interfaces natural positive ravenchart standard system true
 """
 _REGION = """
 active active_top after before beginning box c chart choice chosen completed count d data
-deferrals domain done_states due event event_lists fired firing firing_array firing_list freed
-freed_events i initial_entry inputs ins item j kept leaf memory none now occurrence outbox past
-place region released segment selection self t timer top_transition transition variables visit
+deferrals domain done_states due event event_lists fired firing firing_array firing_list first
+freed freed_events i initial_entry inputs ins item j kept last leaf memory none now occurrence
+outbox past place region released segment selection self t timer top_transition transition
+variables visit
 """
 _STATES = "leaf configuration"
 _NODES = "disorder node nowhere region self"
