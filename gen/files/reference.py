@@ -52,6 +52,7 @@ TITLES: Mapping[str, str] = {
     "RegisterForm": "Register",
     "DeviceForm": "Device",
     "BindingForm": "Binding",
+    "InnerBindingForm": "Binding inside a component",
     "NodeForm": "Node",
     "ProbeForm": "Probe",
     "SupervisionForm": "Supervision",
@@ -62,7 +63,9 @@ TITLES: Mapping[str, str] = {
     "RequestedForm": "Recovery of a bus: on",
     "ErrorsForm": "Errors of a bus",
     "InstanceForm": "Instance",
+    "InnerInstanceForm": "Instance inside a component",
     "ConnectionForm": "Connection",
+    "InnerConnectionForm": "Connection inside a component",
     "MessageForm": "Message",
     "SignalForm": "Signal",
     "ProtectionForm": "Protection",
@@ -228,7 +231,7 @@ def _text_kind(pattern: str) -> str:
         if mark in pattern:
             return word
     if "\\." in pattern:
-        return "`owner.name`"
+        return "`owner.name`" if pattern.endswith("+$") else "`name` or `owner.name`"
     return "name" if pattern else "text"
 
 

@@ -10,6 +10,7 @@ from pydantic import Tag
 from .schema_base import (
     Constant,
     Element,
+    InnerReference,
     Name,
     OwnedReference,
     PositiveSpan,
@@ -167,4 +168,16 @@ class BindingForm(Element):
     time_limit: PositiveSpan | None = optional(
         "Longest time from the caller's release until a reply from another node has arrived, "
         "and age of what is read there; needed for these, without effect inside a node."
+    )
+
+
+class InnerBindingForm(BindingForm):
+    """A binding inside a component; one with its own interface delegates that."""
+
+    from_: InnerReference = key(
+        "`instance.interface`, a required one, or `interface`, one that the component provides.",
+        alias="from",
+    )
+    to: InnerReference = key(
+        "`instance.interface`, a provided one, or `interface`, one that the component requires."
     )
