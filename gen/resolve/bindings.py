@@ -103,11 +103,18 @@ def bindings_of(
                 wanted, at = instance.outside(need.interface)
                 message = f"nothing provides {wanted}, which needs {need.name}"
                 notes = [(need.origin, f"{need.name} is required here")]
-                hint = f"add `- {{from: {wanted}, to: ...}}` under `bindings:`"
+                hint = _binding(wanted)
                 if near := meant(need.interface, known):
                     hint += f"; {near}"
                 findings.error("RV-1203", at, message, notes=notes, hint=hint)
     return tuple(made)
+
+
+def _binding(wanted: str) -> str:
+    """How to bind what is unbound, in the model or in the composite around it."""
+    *around, instance, interface = wanted.split(".")
+    where = f" of the component of {'.'.join(around)}" if around else ""
+    return f"add `- {{from: {instance}.{interface}, to: ...}}` under `bindings:`{where}"
 
 
 def event_wires(
@@ -130,7 +137,7 @@ def event_wires(
             if form is None and not needed:
                 message = f"nothing provides {wanted}, which requires the event {heard.name}"
                 notes = [(heard.origin, f"{heard.name} is required here")]
-                hint = f"add `- {{from: {wanted}, to: ...}}` under `bindings:`"
+                hint = _binding(wanted)
                 findings.error("RV-1203", at, message, notes=notes, hint=hint)
             elif form is not None and provider is not None:
                 told = tells(provider, heard.name)

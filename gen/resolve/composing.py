@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import product
 
+from ravenchart.gen.diagnostics import warning
 from ravenchart.gen.files.schema import ComponentForm, InputForm
 from ravenchart.gen.files.schema_base import Element
 from ravenchart.gen.files.schema_deployment import InnerConnectionForm
@@ -110,7 +111,8 @@ class _Composing:
         self.name, self.form, self.known = name, form, known
         self.findings = known.findings
         self.before = known.findings.count()
-        self.space = Namespace(name, known.system, known.findings)
+        #  no unit is called like the composite, so nothing in it hides one of that name
+        self.space = Namespace("", "", known.findings)
         self.inside: NameScope[Inside] = NameScope(f"instance of {name}")
         self.inside.open = form.lost("instances")
         self.leads: dict[str, Ends] = {}
@@ -255,9 +257,8 @@ class _Composing:
         """The instance that an end of a connection or binding names."""
         if "." in owner or not owner:
             message = f"`{text}` must have the form instance.{kind}"
-            hint = (
-                f"an instance inside another is reached by a {kind} of that one" if owner else None
-            )
+            around = owner.partition(".")[0]
+            hint = f"what is inside {around} is reached by its own {kind}s" if around else None
             self.findings.error("RV-0306", form.at(key), message, hint=hint)
             return None
         return self.inside.look_up(owner, form.at(key), self.findings)
@@ -372,6 +373,15 @@ class _Composing:
 
     # --- the whole
 
+    def _parameters_are_passed(self, members: Members) -> None:
+        """A warning for each parameter that no instance inside is given."""
+        given = (one.form.parameters or {} for one in self.inside.sound())
+        passed = {str(text).lower() for values in given for text in values.values()}
+        for one in members.parameters.sound():
+            if one.name.lower() not in passed:
+                message = f"{self.name} passes the parameter {one.name} to no instance"
+                self.findings.items.append(warning("RV-0534", one.origin, message))
+
     def _nothing_is_left(
         self, members: Members, requires: NameScope[Interface], provides: NameScope[Interface]
     ) -> None:
@@ -380,6 +390,7 @@ class _Composing:
         lost = any(form.list_damaged(key) or form.lost(key) for key in OF_COMPOSITES)
         if lost or self.inside.has_lost() or findings.count() > self.before:
             return
+        self._parameters_are_passed(members)
         for port in members.ports.sound():
             if port.name.lower() not in self.given:
                 way = "from" if port.direction is Direction.OUT else "to"

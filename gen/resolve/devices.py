@@ -129,12 +129,12 @@ class Devices:
         owner = None if pair is None else owner_at(pair[0], origin, self.owners, self.findings)
         if pair is None or owner is None or not reached(owner, origin, "interface", self.findings):
             return None
-        found = self._provided(owner).look_up(pair[1], origin, self.findings)
+        found = self.provided(owner).look_up(pair[1], origin, self.findings)
         if found is None or found.server is None:
             return None
         return Server(*found.server)
 
-    def _provided(self, owner: Instance | Placed) -> NameScope[Interface]:
+    def provided(self, owner: Instance | Placed) -> NameScope[Interface]:
         """The provided interfaces of an instance, as they are seen from outside."""
         if isinstance(owner, Placed):
             of = owner.composite.provides

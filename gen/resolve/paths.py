@@ -44,6 +44,10 @@ class DeploymentNames:
     owners: Owners
     findings: Findings
 
+    def composites(self) -> list[Composite]:
+        """The composite components."""
+        return [one for one in self.components.sound() if isinstance(one, Composite)]
+
     def parts(self, instance: Instance) -> Parts | None:
         """What the component of an instance has."""
         found = self.components.find(instance.component.name)
@@ -100,7 +104,7 @@ def _refuse_composite(at: Placed, name: str, origin: Origin, findings: Findings)
     known = at.composite.inside
     if known.look_up(name, origin, findings) is not None:
         message = f"expected a row or event, found the instance {at.name}.{name}"
-        hint = f"name one of its rows or events: `{at.name}.{name}. ...`"
+        hint = "add the name of what is meant inside it"
         findings.error("RV-0808", origin, message, hint=hint)
 
 
@@ -140,7 +144,7 @@ def reached(owner: Instance | Placed, origin: Origin, kind: str, findings: Findi
     around, dot, name = owner.name.rpartition(".")
     if dot:
         message = f"{name} is inside {around}: nothing outside is joined to its {kind}s"
-        hint = f"give {around} a {kind} of its own that leads to it"
+        hint = f"give {around} {kind}s of its own that lead to it"
         findings.error("RV-0808", origin, message, hint=hint)
     return not dot
 

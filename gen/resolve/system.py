@@ -314,11 +314,13 @@ class _Sections:
         lost = any(
             file.list_damaged("bindings") or file.lost("bindings") for file in self.model.files
         )
+        lost = lost or any(one.is_damaged for one in site.composites())
         if lost or scope.has_lost() or self.findings.count() > count or not self.whole:
             self.sound.discard("connections")
             return (), (), ()
         instances = site.instances.sound()
-        known += [f"{i.name}.{p.name}" for i in instances for p in i.component.provides]
+        for one in (one for one in site.owners.sound() if "." not in one.name):
+            known += [f"{one.name}.{interface}" for interface in devices.provided(one).names()]
         made = bindings_of(instances, given, known, self.findings)
         wires, polls = event_wires(instances, given, self.findings)
         if self.findings.count() > count:
@@ -400,9 +402,8 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     lines = sections.buses(site)
     damaged = {part.component.name for part in parts if part.is_damaged}
     bindings, wires, polls = sections.bindings(kinds, site, types, frozenset(damaged))
-    if any(
-        part.is_damaged and _hears_or_tells(part.component.name, model) for part in parts
-    ) or any(one.is_damaged for one in components.sound() if isinstance(one, Composite)):
+    lost = any(part.is_damaged and _hears_or_tells(part.component.name, model) for part in parts)
+    if lost or any(one.is_damaged for one in site.composites()):
         sections.sound.discard("connections")
     for part in parts:
         damaged |= {f"{part.component.name}.{one}" for one in part.damaged}

@@ -108,13 +108,14 @@ def connected_ends_agree(resolved: Resolved) -> Iterator[Diagnostic]:
             )
             yield error("RV-0605", connection.origin, message)
         if source.node != target.node:
+            sender, _ = source.outside(connection.source.port)
             message = (
-                f"{connection.source} is on {source.node}, but {connection.target} is on "
-                f"{target.node}"
+                f"{sender} is on {source.node}, but {target.outside(connection.target.port)[0]} "
+                f"is on {target.node}"
             )
             if system.buses:
                 bus = system.buses[0].name
-                hint = f"declare a message of {bus} with `from: {connection.source}`"
+                hint = f"declare a message of {bus} with `from: {sender}`"
             else:
                 hint = "declare a bus: between nodes, values travel as its messages"
             yield error("RV-0606", connection.origin, message, hint=hint)

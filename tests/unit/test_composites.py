@@ -1,0 +1,266 @@
+"""Components inside components: each composite is the same as its parts written out by hand."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.behaviour.interpreter import stimuli
+from ravenchart.gen.draw.structure import structure_dot
+from ravenchart.gen.draw.structure_text import mermaid, plantuml
+from ravenchart.gen.emit.clashes import clashes
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.system import System
+from ravenchart.gen.pipeline import Loaded, load
+from ravenchart.paths import ROOT
+
+NESTED = (ROOT / "tests/feature/composites/model.yaml").read_text(encoding="utf-8")
+
+FLAT_INSTANCES = """\
+instances:
+  operator: {component: Desk, node: board}
+  robot_left_shoulder: {component: Joint, node: board, parameters: {reach: 400}}
+  robot_left_elbow: {component: Joint, node: board, parameters: {reach: 500}}
+  robot_left_coordinator: {component: Coordinator, node: board}
+  robot_right_shoulder: {component: Joint, node: board, parameters: {reach: 300}}
+  robot_right_elbow: {component: Joint, node: board, parameters: {reach: 500}}
+  robot_right_coordinator: {component: Coordinator, node: board}
+  left_observer: {component: Observer, node: board}
+  right_observer: {component: Observer, node: board}
+connections:
+  - {from: operator.wanted, to: robot_left_coordinator.goal}
+  - {from: operator.wanted, to: robot_right_coordinator.goal}
+  - {from: robot_left_coordinator.shoulder_to, to: robot_left_shoulder.target}
+  - {from: robot_left_coordinator.elbow_to, to: robot_left_elbow.target}
+  - {from: robot_left_shoulder.position, to: robot_left_coordinator.shoulder_is}
+  - {from: robot_left_elbow.position, to: robot_left_coordinator.elbow_is}
+  - {from: robot_right_coordinator.shoulder_to, to: robot_right_shoulder.target}
+  - {from: robot_right_coordinator.elbow_to, to: robot_right_elbow.target}
+  - {from: robot_right_shoulder.position, to: robot_right_coordinator.shoulder_is}
+  - {from: robot_right_elbow.position, to: robot_right_coordinator.elbow_is}
+bindings:
+  - {from: robot_left_shoulder.Drive, to: Axis_1}
+  - {from: robot_left_elbow.Drive, to: Axis_2}
+  - {from: robot_right_shoulder.Drive, to: Axis_3}
+  - {from: robot_right_elbow.Drive, to: Axis_4}
+  - {from: left_observer.Arm, to: robot_left_coordinator.Motion}
+  - {from: right_observer.Arm, to: robot_right_coordinator.Motion}
+"""
+
+ARM = """\
+system: Nested
+types:
+  Level: {range: [0, 1000]}
+components:
+  Source:
+    ports: {level: {out: Level}}
+    activities:
+      tell: {period: 10 ms, wcet: 20 us, body: [{send: level, with: 1}]}
+  Sink:
+    parameters: {limit: {type: Level, default: 5}}
+    ports: {level: {in: Level}}
+    port_region: {period: 10 ms, wcet: 20 us}
+    data: {peak: {type: Level, initial: 0}}
+    activities:
+      note: {period: 10 ms, wcet: 20 us, body: [{set: peak, to: "min(limit, level)"}]}
+  Pair:
+    parameters: {most: {type: Level, default: 7}}
+    ports: {told: {out: Level}, given: {in: Level}}
+    instances:
+      source: {component: Source}
+      sink: {component: Sink, parameters: {limit: most}}
+    connections:
+      - {from: source.level, to: told}
+      - {from: given, to: sink.level}
+nodes:
+  here: {context_switch: 5 us, critical_section: 2 us}
+  there: {context_switch: 5 us, critical_section: 2 us}
+buses:
+  line: {bit_rate: 500 kbit/s, driver_wcet: 20 us, receive_depth: 8, transmit_depth: 8}
+instances:
+  one: {component: Pair, node: here}
+  two: {component: Pair, node: there, parameters: {most: 9}}
+connections:
+  - {from: one.told, to: two.given}
+messages:
+  back: {bus: line, id: 0x10, from: two.told, to: one.given}
+processors:
+  reception: {released_by: line, period: 1 ms, stack: 16 KiB, activities: [line.receive]}
+  first: {stack: 16 KiB, activities: [one.source.tell, one.sink.ports, one.sink.note]}
+  second: {stack: 16 KiB, activities: [two.source.tell, two.sink.ports, two.sink.note]}
+"""
+
+
+def loaded(text: str, *replacements: tuple[str, str]) -> Loaded:
+    for old, new in replacements:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return load(Path("model.yaml"), lambda _path, limit: text.encode()[:limit])
+
+
+def system_of(text: str, *replacements: tuple[str, str]) -> System:
+    found = loaded(text, *replacements)
+    assert found.system is not None, found.diagnostics
+    return found.system
+
+
+def errors(text: str, *replacements: tuple[str, str]) -> list[tuple[str, str]]:
+    return [(one.code, one.message) for one in loaded(text, *replacements).diagnostics]
+
+
+def flat() -> System:
+    """The feature's model with its composites written out by hand."""
+    plain, _, rest = NESTED.partition("  Arm:\n")
+    others = rest[rest.index("  Desk:\n") :]
+    before, _, rest = others.partition("instances:\n")
+    after = rest[rest.index("processors:\n") :]
+    for path in re.findall(r"\brobot(?:\.\w+){2}", after):
+        after = after.replace(path, path.replace(".", "_"))
+    return system_of(plain + before + FLAT_INSTANCES + after)
+
+
+def joined(text: str) -> str:
+    """A text in which the paths of instances are one name."""
+    return re.sub(r"\brobot\.(\w+)\.(\w+)\b", r"robot_\1_\2", text)
+
+
+def words(text: str) -> list[str]:
+    """What a unit says, without comments: they have the lines of the model."""
+    return re.sub(r"--.*", "", text).split()
+
+
+def test_the_program_is_that_of_the_model_written_out() -> None:
+    nested, by_hand = system_of(NESTED), flat()
+    made, wanted = (generate(one, claims_of(analyse(one))) for one in (nested, by_hand))
+    assert list(made) == list(wanted)
+    own, other = nested.digest, by_hand.digest
+    for name, text in made.items():
+        if name.endswith((".ads", ".adb", ".gpr")):
+            assert words(joined(text)) == words(wanted[name].replace(other, own)), name
+
+
+def test_the_bounds_are_those_of_the_model_written_out() -> None:
+    nested, by_hand = analyse(system_of(NESTED)), analyse(flat())
+
+    def bounds(of: Analysis) -> dict[str, int | None]:
+        return {joined(row.row.name): row.bound for one in of.responses for row in one.rows}
+
+    assert bounds(nested) == bounds(by_hand)
+    assert len(bounds(nested)) == 21
+    chains = [[found.reaction for _, found in of.limited] for of in (nested, by_hand)]
+    assert chains[0] == chains[1]
+
+
+def test_instances_are_called_by_their_paths_and_stand_where_their_composite_names_them() -> None:
+    system = system_of(NESTED)
+    shoulder = system.instance("robot.left.shoulder")
+    lines = NESTED.splitlines()
+    assert lines[shoulder.origin.line - 1].strip().startswith("shoulder: {component: Joint")
+    assert shoulder.parameters == (("reach", 400),)
+    assert system.instance("robot.right.shoulder").parameters == (("reach", 300),)
+    assert {c.name for c in system.components} == {
+        "Joint", "Coordinator", "Desk", "Observer",
+    }  # fmt: skip
+
+
+def test_ports_of_composites_are_ends_of_messages_between_nodes() -> None:
+    system = system_of(ARM)
+    assert not list(clashes(system))
+    assert [(m.name, str(m.source), [str(t) for t in m.targets]) for m in system.messages] == [
+        ("back", "two.source.level", ["one.sink.level"]),
+        ("one_source_level", "one.source.level", ["two.sink.level"]),
+    ]
+    assert {i.name: i.node for i in system.instances} == {
+        "one.source": "here", "one.sink": "here", "two.source": "there", "two.sink": "there",
+    }  # fmt: skip
+    assert analyse(system).schedulable
+
+
+def test_a_parameter_is_passed_or_has_the_default_of_the_composite() -> None:
+    system = system_of(ARM)
+    assert system.instance("one.sink").parameters == (("limit", 7),)
+    assert system.instance("two.sink").parameters == (("limit", 9),)
+
+
+def test_a_port_without_source_is_told_where_it_can_be_connected() -> None:
+    found = loaded(ARM, ("  - {from: one.told, to: two.given}\n", "  []\n"))
+    told = {(one.code, one.message, one.origin.line) for one in found.diagnostics}
+    line = next(n for n, text in enumerate(ARM.splitlines(), 1) if text.startswith("  two: {"))
+    assert ("RV-0602", "two.given has no source", line) in told
+    assert (
+        "RV-0604",
+        "one.told is not connected: the values that it sends are lost",
+        line - 1,
+    ) in told
+
+
+@pytest.mark.parametrize(
+    ("draw", "frame", "inside"),
+    [
+        (
+            plantuml,
+            'component "robot.left" as robot_left {',
+            'component "robot.left.shoulder : Joint" as robot_left_shoulder {',
+        ),
+        (
+            mermaid,
+            'subgraph instance_robot_left["robot.left"]',
+            'instance_robot_left_shoulder["robot.left.shoulder : Joint"]',
+        ),
+        (
+            structure_dot,
+            'subgraph "cluster composite robot.left" {',
+            '"robot.left.shoulder" [label=',
+        ),
+    ],
+)
+def test_drawings_frame_what_is_inside_a_composite(
+    draw: Callable[[System], str], frame: str, inside: str
+) -> None:
+    text = draw(system_of(NESTED))
+    assert text.index(frame) < text.index(inside)
+
+
+def test_an_event_file_puts_a_value_to_an_instance_inside() -> None:
+    text = "- {at: 10 ms, put: robot.left.shoulder.target, value: 5}\n- {until: 50 ms}\n"
+    found, wrong = stimuli.read(text, "events.yaml", system_of(NESTED))
+    assert found is not None and not wrong
+    assert "put: robot.left.shoulder.target" in stimuli.written(found)
+
+
+def test_a_component_of_ten_levels_is_flattened() -> None:
+    levels = "".join(
+        f"  Level_{n}:\n    ports: {{level: {{out: Level}}}}\n"
+        f"    instances: {{in_it: {{component: {f'Level_{n + 1}' if n < 10 else 'Source'}}}}}\n"
+        "    connections: [{from: in_it.level, to: level}]\n"
+        for n in range(1, 11)
+    )
+    path = "deep" + ".in_it" * 10
+    found = system_of(
+        ARM,
+        ("nodes:\n", f"{levels}nodes:\n"),
+        ("  one: {", "  deep: {component: Level_1, node: here}\n  one: {"),
+        ("[one.source.tell,", f"[{path}.tell, one.source.tell,"),
+        ("  back: {", "  deep_out: {bus: line, id: 0x11, from: deep.level}\n  back: {"),
+    )
+    assert found.instance(path).component.name == "Source"
+    assert [m.name for m in found.messages if m.source == End(path, "level")] == ["deep_out"]
+
+
+def test_composites_that_grow_without_measure_are_refused() -> None:
+    levels = "".join(
+        f"  Level_{n}:\n    instances:\n"
+        + "".join(
+            f"      inner_{k}: {{component: {f'Level_{n + 1}' if n < 40 else 'Source'}}}\n"
+            for k in range(2)
+        )
+        for n in range(1, 41)
+    )
+    found = errors(ARM, ("nodes:\n", f"{levels}nodes:\n"))
+    assert found == [("RV-0209", "Level_30 has 2,048 instances inside; the limit is 1,024")]
