@@ -29,8 +29,12 @@ class Placed:
     composite: Composite
 
 
-Owners = NameScope[Instance | Placed]
-"""All instances by their paths, composite ones among them."""
+class Owners(NameScope[Instance | Placed]):
+    """All instances by their paths, composite ones among them."""
+
+    def names(self) -> list[str]:
+        """Those with which a path can begin."""
+        return [name for name, _, _ in self.items.values() if "." not in name]
 
 
 @dataclass(frozen=True, slots=True)

@@ -376,7 +376,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     nodes = sections.named("nodes", "node", lambda key, form: node_of(key, form, findings))
     buses = sections.named("buses", "bus", lambda name, form: bus_of(name, form, findings))
     instances: NameScope[Instance] = sections.scope("instances", "instance")
-    owners: Owners = sections.scope("instances", "instance")
+    owners = Owners("instance", dict(instances.items), instances.open)
     site = DeploymentNames(nodes, buses, components, instances, owners, findings)
     sections.instances(site)
     _check_inner_units(model, name, site)

@@ -11,6 +11,8 @@ import pytest
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.behaviour.interpreter import stimuli
+from ravenchart.editing.edits import Document
+from ravenchart.editing.places import ModelPlaces
 from ravenchart.gen.draw.structure import structure_dot
 from ravenchart.gen.draw.structure_text import mermaid, plantuml
 from ravenchart.gen.emit.clashes import clashes
@@ -18,6 +20,7 @@ from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
+from ravenchart.language_server.completing import proposals
 from ravenchart.paths import ROOT
 
 NESTED = (ROOT / "tests/feature/composites/model.yaml").read_text(encoding="utf-8")
@@ -264,3 +267,51 @@ def test_composites_that_grow_without_measure_are_refused() -> None:
     )
     found = errors(ARM, ("nodes:\n", f"{levels}nodes:\n"))
     assert found == [("RV-0209", "Level_30 has 2,048 instances inside; the limit is 1,024")]
+
+
+@pytest.mark.parametrize(
+    ("behind", "proposed"),
+    [
+        ("- robot.left.", {"shoulder", "elbow", "coordinator"}),
+        ("- robot.left.shoulder.", {"ports", "follow"}),
+        ("{from: operator.wanted, to: robot.", {"goal"}),
+        ("{from: left.Shoulder_Drive, to: ", {
+            "Left_Shoulder", "Left_Elbow", "Right_Shoulder", "Right_Elbow", "left", "right",
+        }),
+    ],
+)  # fmt: skip
+def test_an_editor_proposes_what_can_stand_behind_a_path(behind: str, proposed: set[str]) -> None:
+    path = ROOT / "tests/feature/composites/model.yaml"
+    offset = NESTED.index(behind) + len(behind)
+    found = proposals(path, str(path), offset, {str(path): NESTED})
+    assert {one.word for one in found} <= proposed
+    assert found
+
+
+def test_the_workbench_finds_the_rows_of_instances_inside_others() -> None:
+    document = Document.of(NESTED)
+    places = ModelPlaces({"model.yaml": document})
+    joint = places.components["joint"]
+    assert places.instances_of(joint) == [
+        f"robot.{arm}.{joint}" for arm in ("left", "right") for joint in ("shoulder", "elbow")
+    ]
+    row = places.row("robot.right.coordinator.Motion_State")
+    assert row is not None
+    assert (row.owner, row.kind, row.text("period")) == ("Coordinator", "region", "10 ms")
+
+
+def test_names_of_24_characters_fit_the_lines_where_rows_have_several_periods() -> None:
+    text = NESTED.replace("left_observer", "l" * 24).replace("Watch", "W" * 24)
+    system = system_of(text)
+    made = generate(system, claims_of(analyse(system)))
+    lines = [line for file, text in made.items() if file[-1] in "sb" for line in text.split("\n")]
+    assert max(map(len, lines)) <= 79
+
+
+def test_a_path_that_no_line_holds_is_refused_where_the_instance_stands() -> None:
+    text = NESTED.replace("coordinator", "c" * 60)
+    found = list(clashes(system_of(text)))
+    assert {one.code for one in found} == {"RV-0304"}
+    assert f"`robot.left.{'c' * 60}`" in found[0].message
+    line = NESTED.splitlines()[found[0].origin.line - 1]
+    assert line.strip() == "coordinator: {component: Coordinator}"
