@@ -64,8 +64,13 @@ def split(
     """The path of an instance and the name behind it; reported where there are not both."""
     path, _, name = text.rpartition(".")
     first, dot, _ = path.partition(".")
-    inside = isinstance(owners.find(first), Placed) or not dot
-    if not name or "" in path.split(".") or not inside:
+    found = owners.find(first)
+    well_formed = name != "" and "" not in path.split(".")
+    if well_formed and dot and found is None and owners.knows(first):
+        owners.used(first, origin, findings)
+        findings.lose()
+        return None
+    if not well_formed or (dot and not isinstance(found, Placed)):
         findings.error("RV-0306", origin, f"`{text}` must have the form {shape}")
         return None
     return path, name
