@@ -161,8 +161,8 @@ OwnedReference = Annotated[str, WithJsonSchema({"type": "string", "pattern": f"{
 
 An instance inside another is a path: ``arm.shoulder.name``.
 """
-InnerReference = Annotated[str, WithJsonSchema({"type": "string", "pattern": f"{_path}?$"})]
-"""``name`` or ``owner.name``: something of a component itself, or of an instance inside it."""
+PathReference = Annotated[str, WithJsonSchema({"type": "string", "pattern": f"{_path}*$"})]
+"""``name`` or ``owner.name``: an element of its own, or something that belongs to an instance."""
 
 _duration_schema = {"type": "string", "pattern": pattern(NANOSECONDS)}
 Span = Annotated[int, BeforeValidator(_duration), WithJsonSchema(_duration_schema)]

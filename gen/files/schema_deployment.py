@@ -8,8 +8,8 @@ from .schema_base import (
     Constant,
     DatabaseName,
     Element,
-    InnerReference,
     OwnedReference,
+    PathReference,
     PositiveSpan,
     Reference,
     Span,
@@ -113,11 +113,11 @@ class ConnectionForm(Element):
 class InnerConnectionForm(ConnectionForm):
     """A connection inside a component; one with a port of the component itself delegates it."""
 
-    from_: InnerReference = key(
+    from_: PathReference = key(
         "`instance.port`, an output port, or `port`, an input port of the component itself.",
         alias="from",
     )
-    to: InnerReference = key(
+    to: PathReference = key(
         "`instance.port`, an input port, or `port`, an output port of the component itself."
     )
 
@@ -176,7 +176,7 @@ class ShutdownForm(Element):
 class ChainForm(Element):
     """A way from inputs to outputs, and how long values may be under way."""
 
-    path: list[Reference] = key(
+    path: list[PathReference] = key(
         "Messages and rows (`instance.activity`, `instance.Region`) on the way; "
         "between two of them the shortest way is meant.",
         min_length=2,

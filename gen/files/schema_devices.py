@@ -10,9 +10,9 @@ from pydantic import Tag
 from .schema_base import (
     Constant,
     Element,
-    InnerReference,
     Name,
     OwnedReference,
+    PathReference,
     PositiveSpan,
     Reference,
     key,
@@ -150,12 +150,12 @@ class DeviceForm(Element):
     array: list[Reference] | None = optional(
         "Devices of one kind as one: a command goes to all, and axes are counted on.", min_length=2
     )
-    facade: list[Reference] | None = optional(
+    facade: list[PathReference] | None = optional(
         "Devices, or `instance.interface`s, of several kinds as one: a command goes to the one "
         "that provides it.",
         min_length=1,
     )
-    choose: dict[Reference, Reference] | None = optional(
+    choose: dict[Reference, PathReference] | None = optional(
         "For a command that several of `facade` provide: which one is meant."
     )
 
@@ -174,10 +174,10 @@ class BindingForm(Element):
 class InnerBindingForm(BindingForm):
     """A binding inside a component; one with its own interface delegates that."""
 
-    from_: InnerReference = key(
+    from_: PathReference = key(
         "`instance.interface`, a required one, or `interface`, one that the component provides.",
         alias="from",
     )
-    to: InnerReference = key(
+    to: PathReference = key(
         "`instance.interface`, a provided one, or `interface`, one that the component requires."
     )
