@@ -15,6 +15,7 @@ class Box:
     """A composite instance by its path, with the boxes and instances inside."""
 
     name: str
+    component: str
     inside: tuple[Instance | Box, ...]
 
 
@@ -29,6 +30,8 @@ def boxed(instances: Iterable[Instance], depth: int = 1) -> tuple[Instance | Box
     for one in instances:
         found.setdefault(".".join(one.name.split(".")[:depth]), []).append(one)
     return tuple(
-        own[0] if own[0].name == name else Box(name, boxed(own, depth + 1))
+        own[0]
+        if own[0].name == name
+        else Box(name, own[0].composites[depth - 1], boxed(own, depth + 1))
         for name, own in found.items()
     )

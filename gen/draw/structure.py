@@ -126,7 +126,8 @@ class _Drawing:
             return Drawn(box.name, {"label": self._instance(box)})
         look = {"style": "rounded,filled", "fillcolor": SHADES[1]}
         inside = [self._box(one) for one in box.inside]
-        return _framed(f"composite {box.name}", f"{html(box.name, 'b')}{LEFT}", look, inside)
+        title = f"{html(box.name, 'b')} : {html(box.component)}{LEFT}"
+        return _framed(f"composite {box.name}", title, look, inside)
 
     def _bus(self, bus: Bus) -> Group:
         rates = _rate(bus.bit_rate)

@@ -61,7 +61,7 @@ def _boxed(box: Instance | Box) -> Iterator[str]:
     if isinstance(box, Instance):
         yield from _component(box)
         return
-    yield f'component "{box.name}" as {identifier(box.name)} {{'
+    yield f'component "{box.name} : {box.component}" as {identifier(box.name)} {{'
     for one in box.inside:
         yield from (f"  {line}" for line in _boxed(one))
     yield "}"
@@ -124,7 +124,7 @@ def _subgraph(box: Instance | Box) -> Iterator[str]:
     if isinstance(box, Instance):
         yield f'{_shape(box.name)}["{box.name} : {box.component.name}"]'
         return
-    yield f'subgraph {_shape(box.name)}["{box.name}"]'
+    yield f'subgraph {_shape(box.name)}["{box.name} : {box.component}"]'
     for one in box.inside:
         yield from (f"  {line}" for line in _subgraph(one))
     yield "end"

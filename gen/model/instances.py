@@ -47,6 +47,8 @@ class Instance:
     parameters: tuple[tuple[str, Scalar], ...]
     delegations: tuple[Delegation, ...] = ()
     """How its ports and required interfaces are reached from outside of composites."""
+    composites: tuple[str, ...] = ()
+    """The composite components around it, outermost first: one for each name before its own."""
 
     def outside(self, name: str) -> tuple[str, Origin]:
         """How a port or required interface is called where it can be joined, and where that is."""

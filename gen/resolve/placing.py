@@ -44,6 +44,8 @@ class _Placing:
 
     site: DeploymentNames
     node: str
+    composites: tuple[str, ...] = ()
+    """The composite components around, outermost first."""
 
     def declare(
         self,
@@ -62,7 +64,9 @@ class _Placing:
                 for p in of.component.parameters
                 if (value := values[p.name.lower()][1]) is not None
             )
-            made = Instance(path, origin, of.component, self.node, own, delegations)
+            made = Instance(
+                path, origin, of.component, self.node, own, delegations, self.composites
+            )
             if site.owners.declare(path, origin, made, site.findings):
                 site.instances.declare(path, origin, made)
             return
@@ -74,12 +78,13 @@ class _Placing:
             *delegations,
             *(one for one in own_ends if (one.end.instance, one.end.port) not in known),
         )
+        placing = replace(self, composites=(*self.composites, of.name))
         for inside in of.inside.sound():
             inner = f"{path}.{inside.name}"
             theirs = tuple(
                 one for one in all_of_them if f"{one.end.instance}.".startswith(f"{inner}.")
             )
-            self.declare(inner, inside.form, inside.of, values, theirs)
+            placing.declare(inner, inside.form, inside.of, values, theirs)
 
 
 def _delegations(

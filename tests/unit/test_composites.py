@@ -13,10 +13,13 @@ from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.behaviour.interpreter import stimuli
 from ravenchart.editing.edits import Document
 from ravenchart.editing.places import ModelPlaces
+from ravenchart.evidence.tracing import instances_inside
 from ravenchart.gen.draw.structure import structure_dot
 from ravenchart.gen.draw.structure_text import mermaid, plantuml
 from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.emit.program import generate
+from ravenchart.gen.files.links import links
+from ravenchart.gen.files.load import read_model
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
@@ -55,6 +58,8 @@ bindings:
   - {from: left_observer.Arm, to: robot_left_coordinator.Motion}
   - {from: right_observer.Arm, to: robot_right_coordinator.Motion}
 """
+
+ARMS, PARTS = ("left", "right"), ("shoulder", "elbow", "coordinator")
 
 ARM = """\
 system: Nested
@@ -208,12 +213,12 @@ def test_a_port_without_source_is_told_where_it_can_be_connected() -> None:
     [
         (
             plantuml,
-            'component "robot.left" as robot_left {',
+            'component "robot.left : Arm" as robot_left {',
             'component "robot.left.shoulder : Joint" as robot_left_shoulder {',
         ),
         (
             mermaid,
-            'subgraph instance_robot_left["robot.left"]',
+            'subgraph instance_robot_left["robot.left : Arm"]',
             'instance_robot_left_shoulder["robot.left.shoulder : Joint"]',
         ),
         (
@@ -315,3 +320,27 @@ def test_a_path_that_no_line_holds_is_refused_where_the_instance_stands() -> Non
     assert f"`robot.left.{'c' * 60}`" in found[0].message
     line = NESTED.splitlines()[found[0].origin.line - 1]
     assert line.strip() == "coordinator: {component: Coordinator}"
+
+
+@pytest.mark.parametrize(
+    ("element", "instances"),
+    [
+        ("  Arm:", {f"robot.{arm}.{part}" for arm in ARMS for part in PARTS}),
+        ("      shoulder: {component: Joint", {f"robot.{arm}.shoulder" for arm in ARMS}),
+        ("      left: {component: Arm", {f"robot.left.{part}" for part in PARTS}),
+        ("  robot: {component: Robot", {f"robot.{arm}.{part}" for arm in ARMS for part in PARTS}),
+        ("      - {from: goal, to: coordinator.goal",
+         {f"robot.{arm}.{part}" for arm in ARMS for part in PARTS}),
+        ("  Joint:", set()),
+    ],
+)  # fmt: skip
+def test_a_requirement_of_a_composite_is_that_of_what_is_inside(
+    element: str, instances: set[str]
+) -> None:
+    req = "\n    req: [R-1]" if element.endswith(":") else ", req: [R-1]"
+    line = next(one for one in NESTED.splitlines() if one.startswith(element))
+    marked = f"{line}{req}" if element.endswith(":") else f"{line.removesuffix('}')}{req}}}"
+    text = NESTED.replace(f"{line}\n", f"{marked}\n")
+    content = read_model(Path("model.yaml"), lambda _path, limit: text.encode()[:limit])
+    (link,) = links(content.forms)
+    assert {one.name for one in instances_inside(system_of(text), link)} == instances
