@@ -190,6 +190,17 @@ def test_ports_of_composites_are_ends_of_messages_between_nodes() -> None:
     assert analyse(system).schedulable
 
 
+def test_events_of_instances_inside_are_named_by_paths() -> None:
+    event = "robot.left.coordinator.Goal_Came"
+    system = system_of(
+        NESTED,
+        ("shutdown: {raises: []", f"shutdown: {{raises: [{event}]"),
+        ("  joints:\n", f"  joints:\n    on_deadline_miss: [{event}]\n"),
+    )
+    assert system.shutdown.raises == (("robot.left.coordinator", "Goal_Came"),)
+    assert system.processors[0].on_deadline_miss == system.shutdown.raises
+
+
 def test_a_parameter_is_passed_or_has_the_default_of_the_composite() -> None:
     system = system_of(ARM)
     assert system.instance("one.sink").parameters == (("limit", 7),)
