@@ -59,6 +59,8 @@ bindings:
   - {from: right_observer.Arm, to: robot_right_coordinator.Motion}
 """
 
+PAGE = (ROOT / "docs/composites.md").read_text(encoding="utf-8")
+
 ARMS, PARTS = ("left", "right"), ("shoulder", "elbow", "coordinator")
 
 ARM = """\
@@ -188,6 +190,14 @@ def test_ports_of_composites_are_ends_of_messages_between_nodes() -> None:
         "one.source": "here", "one.sink": "here", "two.source": "there", "two.sink": "there",
     }  # fmt: skip
     assert analyse(system).schedulable
+
+
+def test_the_model_of_the_page_is_valid_and_in_time() -> None:
+    (text,) = re.findall(r"```yaml\n(.*?)```", PAGE, re.S)
+    found = loaded(text)
+    assert found.system is not None and found.diagnostics == ()
+    assert found.system.instance("lower_station.watch").parameters == (("limit", 700),)
+    assert analyse(found.system).schedulable
 
 
 def test_events_of_instances_inside_are_named_by_paths() -> None:
