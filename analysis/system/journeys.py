@@ -93,6 +93,6 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Sequenc
             yield [r.time for r in seen.of(kind, place.message)]
         elif place in inputs:
             yield [r.time for r in seen.of("arrived", place)]
-            yield [r.time for r in seen.of("activity", f"{place.partition('.')[0]}.ports")]
+            yield [r.time for r in seen.of("activity", f"{place.rpartition('.')[0]}.ports")]
         elif place in rows:
             yield [r.time for r in seen.of("activity", place)]

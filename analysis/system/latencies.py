@@ -155,7 +155,7 @@ class Latencies:
                 continue
             row, port = place, self._input(place)
             if port is not None:
-                row = f"{place.partition('.')[0]}.ports"
+                row = f"{place.rpartition('.')[0]}.ports"
             elif place not in self.rows:
                 continue
             if kept:
@@ -176,7 +176,7 @@ class Latencies:
 
     def _input(self, place: str) -> Port | None:
         """An input port; None for what is none."""
-        instance, _, name = place.partition(".")
+        instance, _, name = place.rpartition(".")
         for port in self.system.instance(instance).component.inputs():
             if port.name == name:
                 return port
@@ -184,7 +184,7 @@ class Latencies:
 
     def _kept(self, row: str, following: Stop | None) -> str:
         """Why jobs of a row may leave what it leads to as it was; "" where none does."""
-        owner, _, name = row.partition(".")
+        owner, _, name = row.rpartition(".")
         component = self.system.instance(owner).component
         item = named(component.runnables(), name)
         if following is None or component.renews(item, str(following).rpartition(".")[2]):
@@ -215,7 +215,7 @@ class Latencies:
         if len(senders) > 1:
             names = " and ".join(sender.name for sender in senders)
             made = replace(made, waits=f"{names} both send to {place}, which gives one in a job")
-        owner, _, name = row.partition(".")
+        owner, _, name = row.rpartition(".")
         regions = self.system.instance(owner).component.regions
         if any(region.name == name and region.takes_turns for region in regions):
             waits = f"{row} takes events, time-outs and completions one by one, oldest first"

@@ -230,7 +230,7 @@ class _Reading:
     def member(self, item: Map, key: str) -> tuple[Instance, str] | None:
         """The instance of ``instance.name``, and the name."""
         origin = item.values_at[key].origin
-        owner, dot, name = str(item[key]).partition(".")
+        owner, dot, name = str(item[key]).rpartition(".")
         if not isinstance(item[key], str) or not dot:
             self.wrong("RV-1002", origin, f"`{key}` takes `instance.name`")
             return None

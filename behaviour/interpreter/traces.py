@@ -49,7 +49,7 @@ def parsed(line: str) -> StepRecord:
     """The record that `StepRecord.text` printed as ``line``."""
     head, _, behaviours = line.partition(": ")
     time, _, element = head.partition(" ")
-    instance, _, region = element.partition(".")
+    instance, _, region = element.rpartition(".")
     whole, _, decimals = time.partition(".")
     at = Ns(int(whole) * 10**9 + int(decimals.ljust(9, "0")))
     return StepRecord(at, instance, region, tuple(behaviours.split(", ")))

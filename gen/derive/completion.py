@@ -209,6 +209,7 @@ def objects_of(system: System) -> tuple[SharedObject, ...]:
         return objects_on_node(parts[0])
     own = {instance.name for instance in system.instances} | {node.name for node in system.nodes}
     own |= {processor.name for processor in system.processors}
+    own = {name.partition(".")[0] for name in own}
     return tuple(
         item
         if item.element.partition(".")[0] in own

@@ -16,7 +16,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ravenchart.gen.language.names import problem_of
+from ravenchart.gen.language.names import identifier, problem_of
 from ravenchart.gen.language.terms import (
     BUILT_IN,
     NO_TIME,
@@ -111,12 +111,17 @@ def obstacle(system: System, binding: Binding) -> Obstacle | None:
 _RENAME = "give the instance, the command, or what is called so another name"
 
 
+def _called(binding: Binding) -> str:
+    """A command of an instance as one name."""
+    return f"{identifier(binding.instance)}_{binding.need.name}"
+
+
 def _names(binding: Binding) -> Iterator[str]:
     """The names of messages and types that a command between nodes has."""
     if published_by(binding) is not None:
-        yield from (_published_as(binding), f"{binding.instance}_{binding.need.name}")
+        yield from (_published_as(binding), _called(binding))
         return
-    own = f"{binding.instance}_{binding.need.name}"
+    own = _called(binding)
     yield own
     yield from (f"{own}_{what}" for what in ("Reply", "Call", "Answer"))
 
@@ -196,7 +201,7 @@ def _call(system: System, binding: Binding) -> _Call | None:
 def _published_as(binding: Binding) -> str:
     """The message that carries what is read."""
     assert isinstance(binding.provider, Server)
-    return f"{binding.provider.instance}_{binding.need.name}"
+    return f"{identifier(binding.provider.instance)}_{binding.need.name}"
 
 
 def _writer(system: System, binding: Binding) -> Region | Activity | None:
@@ -243,8 +248,7 @@ def _read(system: System, name: str, bindings: Sequence[Binding]) -> _Call:
             watcher=watcher.name,
         )
         path = (name, f"{one.instance}.{watcher.name}")
-        chain = f"{one.instance}_{one.need.name}"
-        chains.append(Chain(chain, one.origin, path, reaction=None, age=limit))
+        chains.append(Chain(_called(one), one.origin, path, reaction=None, age=limit))
     every = max(1, min(periods) // writer.timing.period)
     message = Message(
         name=name,

@@ -23,6 +23,7 @@ from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import Processor, System
 
+from .boxes import Box, boxed
 from .devices import (
     DASHED,
     DeviceLink,
@@ -103,10 +104,8 @@ class _Drawing:
 
     def _node(self, node: Node) -> Group:
         here = [i for i in self.system.instances if i.node == node.name]
-        items: list[DotItem] = [
-            Drawn(i.name, {"label": self._instance(i)})
-            for i in sorted(here, key=lambda i: self.position[i.name])
-        ]
+        ordered = sorted(here, key=lambda i: self.position[i.name])
+        items: list[DotItem] = [self._box(one) for one in boxed(ordered)]
         items += devices(self.system, node.name)
         items.append(Drawn(_rim(node), {"shape": "point", "width": "0.01", "style": "invis"}))
         items += (DotEdge(i.name, _rim(node), _HIDDEN) for i in here)
@@ -120,6 +119,15 @@ class _Drawing:
             items += (DotEdge(a, b, _HIDDEN) for a, b in pairwise((*row, _rim(node))))
         look = {"style": "rounded,filled", "fillcolor": SHADES[0]}
         return _framed(f"node {node.name}", f"node {html(node.name, 'b')}{LEFT}", look, items)
+
+    def _box(self, box: Instance | Box) -> DotItem:
+        """An instance, or the frame of a composite round those inside."""
+        if isinstance(box, Instance):
+            return Drawn(box.name, {"label": self._instance(box)})
+        look = {"style": "rounded,filled", "fillcolor": SHADES[1]}
+        inside = [self._box(one) for one in box.inside]
+        title = f"{html(box.name, 'b')} : {html(box.component)}{LEFT}"
+        return _framed(f"composite {box.name}", title, look, inside)
 
     def _bus(self, bus: Bus) -> Group:
         rates = _rate(bus.bit_rate)

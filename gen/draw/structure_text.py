@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.language.names import identifier
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.component import Direction
 from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.system import System
 
+from .boxes import Box, boxes
 from .devices import devices_of, kind_of, links
 
 
@@ -17,9 +19,8 @@ def plantuml(system: System) -> str:
     lines = ["@startuml", f"title {system.name}", "left to right direction"]
     for node in system.nodes:
         lines.append(f"node {node.name} {{")
-        for instance in system.instances:
-            if instance.node == node.name:
-                lines += [f"  {line}" for line in _component(instance)]
+        for box in boxes(system, node):
+            lines += [f"  {line}" for line in _boxed(box)]
         for device in devices_of(system, node.name):
             title = f"{device.name} : {kind_of(device)}"
             lines.append(f'  component "{title}" <<device>> as device_{device.name}')
@@ -27,10 +28,10 @@ def plantuml(system: System) -> str:
     lines += [f"queue {bus.name}" for bus in system.buses]
     for wire in system.connections:
         source, target = wire.source, wire.target
-        lines.append(f"{source.instance}_{source.port} --> {target.instance}_{target.port}")
+        lines.append(f"{_port(source)} --> {_port(target)}")
     for link in links(system):
-        provider = link.provider if link.interface else f"device_{link.provider}"
-        lines.append(f"{link.instance} ..> {provider} : {link.required}")
+        provider = identifier(link.provider) if link.interface else f"device_{link.provider}"
+        lines.append(f"{identifier(link.instance)} ..> {provider} : {link.required}")
     for device in system.devices:
         lines += [f"device_{device.name} o-- device_{one.name}" for one in device.members]
     for message in system.messages:
@@ -48,16 +49,32 @@ def _end(system: System, end: End) -> str:
     """A port, or the instance where a call or reply ends at none."""
     component = system.instance(end.instance).component
     ports = {port.name for port in component.ports if not port.is_command}
-    return f"{end.instance}_{end.port}" if end.port in ports else end.instance
+    return _port(end) if end.port in ports else identifier(end.instance)
+
+
+def _port(end: End) -> str:
+    return f"{identifier(end.instance)}_{end.port}"
+
+
+def _boxed(box: Instance | Box) -> Iterator[str]:
+    """An instance, or a composite with what is inside."""
+    if isinstance(box, Instance):
+        yield from _component(box)
+        return
+    yield f'component "{box.name} : {box.component}" as {identifier(box.name)} {{'
+    for one in box.inside:
+        yield from (f"  {line}" for line in _boxed(one))
+    yield "}"
 
 
 def _component(instance: Instance) -> Iterator[str]:
-    yield f'component "{instance.name} : {instance.component.name}" as {instance.name} {{'
+    own = identifier(instance.name)
+    yield f'component "{instance.name} : {instance.component.name}" as {own} {{'
     for port in instance.component.ports:
         if port.is_command:
             continue
         kind = "portin" if port.direction is Direction.IN else "portout"
-        yield f'  {kind} "{port.name}" as {instance.name}_{port.name}'
+        yield f'  {kind} "{port.name}" as {own}_{port.name}'
     yield "}"
 
 
@@ -67,10 +84,8 @@ def mermaid(system: System) -> str:
     lines.append("  %% Mermaid has no ports: the ends of an arrow are in its label.")
     for node in system.nodes:
         lines.append(f'  subgraph node_{node.name}["node {node.name}"]')
-        for instance in system.instances:
-            if instance.node == node.name:
-                label = f"{instance.name} : {instance.component.name}"
-                lines.append(f'    instance_{instance.name}["{label}"]')
+        for box in boxes(system, node):
+            lines += [f"    {line}" for line in _subgraph(box)]
         for device in devices_of(system, node.name):
             title = f"{device.name} : {kind_of(device)}"
             lines.append(f'    device_{device.name}(["{title}"])')
@@ -84,19 +99,35 @@ def mermaid(system: System) -> str:
     for wire in system.connections:
         source, target = wire.source, wire.target
         label = f"{source.port} to {target.port}"
-        lines.append(f'  instance_{source.instance} -->|"{label}"| instance_{target.instance}')
+        lines.append(f'  {_shape(source.instance)} -->|"{label}"| {_shape(target.instance)}')
     for link in links(system):
-        kind = "instance" if link.interface else "device"
-        lines.append(f'  instance_{link.instance} -.->|"{link.required}"| {kind}_{link.provider}')
+        provider = _shape(link.provider) if link.interface else f"device_{link.provider}"
+        lines.append(f'  {_shape(link.instance)} -.->|"{link.required}"| {provider}')
     for device in system.devices:
         lines += [f"  device_{device.name} o--o device_{one.name}" for one in device.members]
     for message in system.messages:
         label = _carried(message)
         if message.source is not None:
-            lines.append(f'  instance_{message.source.instance} -->|"{label}"| bus_{message.bus}')
+            lines.append(f'  {_shape(message.source.instance)} -->|"{label}"| bus_{message.bus}')
         for target in message.targets:
-            lines.append(f'  bus_{message.bus} -->|"{label}"| instance_{target.instance}')
+            lines.append(f'  bus_{message.bus} -->|"{label}"| {_shape(target.instance)}')
     return "".join(f"{line}\n" for line in lines)
+
+
+def _shape(instance: str) -> str:
+    """An instance as the chart knows it."""
+    return f"instance_{identifier(instance)}"
+
+
+def _subgraph(box: Instance | Box) -> Iterator[str]:
+    """An instance, or a composite with what is inside."""
+    if isinstance(box, Instance):
+        yield f'{_shape(box.name)}["{box.name} : {box.component.name}"]'
+        return
+    yield f'subgraph {_shape(box.name)}["{box.name} : {box.component}"]'
+    for one in box.inside:
+        yield from (f"  {line}" for line in _subgraph(one))
+    yield "end"
 
 
 def _carried(message: Message) -> str:

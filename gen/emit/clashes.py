@@ -18,7 +18,7 @@ from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.text import WIDTH, print_unit
-from ravenchart.gen.language.names import LONG_NAME
+from ravenchart.gen.language.names import LONG_NAME, identifier
 from ravenchart.gen.language.terms import EnumerationType
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.component import Component
@@ -61,6 +61,11 @@ class _Element:
     name: str
     origin: Origin
     owner: str = ""
+
+    @property
+    def unit(self) -> str:
+        """Its name as a part of those of the program, in lower case."""
+        return identifier(self.name).lower()
 
 
 def _elements(system: System) -> Iterator[_Element]:
@@ -120,9 +125,9 @@ def _members(component: Component) -> Iterator[_Element]:
 def _culprits(system: System, text: str, unit: str) -> list[_Element]:
     """The elements that gave a name: it is theirs, or theirs is part of it."""
     words = f"_{text.lower()}_"
-    near = [e for e in _elements(system) if f"_{e.name.lower()}_" in words]
+    near = [e for e in _elements(system) if f"_{e.unit}_" in words]
     parts = unit.lower().split(".")
-    kinds = {i.name.lower(): i.component.name.lower() for i in system.instances}
+    kinds = {identifier(i.name).lower(): i.component.name.lower() for i in system.instances}
     kinds |= {d.name.lower(): d.type.name.lower() for d in system.devices if d.type is not None}
     owners = {kinds.get(part, OF_DEVICE_TYPE.sub("", part)) for part in parts}
     apt = [e for e in near if e.owner.lower() in owners or not e.owner]
@@ -143,8 +148,8 @@ def _too_long(system: System) -> Iterator[Diagnostic]:
             if len(line) <= WIDTH:
                 continue
             #  where names stand below each other, the longest makes all their lines long
-            apt = [e for e in long if e.name.lower() in line.lower()]
-            apt = apt or [e for e in long if e.name.lower() in text.lower()]
+            apt = [e for e in long if e.unit in line.lower()]
+            apt = apt or [e for e in long if e.unit in text.lower()]
             found = max(apt or long, key=lambda e: len(e.name))
             if found.origin in reported:
                 continue

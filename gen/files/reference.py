@@ -52,6 +52,7 @@ TITLES: Mapping[str, str] = {
     "RegisterForm": "Register",
     "DeviceForm": "Device",
     "BindingForm": "Binding",
+    "InnerBindingForm": "Binding inside a component",
     "NodeForm": "Node",
     "ProbeForm": "Probe",
     "SupervisionForm": "Supervision",
@@ -62,7 +63,9 @@ TITLES: Mapping[str, str] = {
     "RequestedForm": "Recovery of a bus: on",
     "ErrorsForm": "Errors of a bus",
     "InstanceForm": "Instance",
+    "InnerInstanceForm": "Instance inside a component",
     "ConnectionForm": "Connection",
+    "InnerConnectionForm": "Connection inside a component",
     "MessageForm": "Message",
     "SignalForm": "Signal",
     "ProtectionForm": "Protection",
@@ -86,6 +89,7 @@ A model is one YAML file and those it includes. Numbers are decimal or `0x...`, 
 between digits if wished; `true` and `false` are Booleans; everything else is text. Anchors,
 aliases, tags and tabs are refused. Names are Ada identifiers of at most 60 characters, and case
 does not count; one of more than 24 may be refused where a generated line would not fit 79 columns.
+An instance inside another one is named by its path, `arm.shoulder`.
 A *duration* is a number with `ns`, `us`, `ms` or `s`, exact in nanoseconds and at
 most one hour; a *size* has `B`, `KiB` or `MiB`; a *bit rate* `bit/s`, `kbit/s` or `Mbit/s`.
 
@@ -228,7 +232,7 @@ def _text_kind(pattern: str) -> str:
         if mark in pattern:
             return word
     if "\\." in pattern:
-        return "`owner.name`"
+        return "`owner.name`" if pattern.endswith("+$") else "`name` or `owner.name`"
     return "name" if pattern else "text"
 
 

@@ -27,6 +27,8 @@ from .schema_base import (
 from .schema_deployment import (
     ChainForm,
     ConnectionForm,
+    InnerConnectionForm,
+    InnerInstanceForm,
     InstanceForm,
     NodeForm,
     ProcessorForm,
@@ -37,6 +39,7 @@ from .schema_devices import (
     CommandForm,
     DeviceForm,
     DeviceTypeForm,
+    InnerBindingForm,
     ProvidedForm,
     RequiredForm,
 )
@@ -414,6 +417,17 @@ class ComponentForm(Element):
     activities: dict[Name, ActivityForm] | None = optional("Activities.")
     never: dict[Name, NeverForm] | None = optional(
         "Invariants: conditions over states of any region and data that shall never hold."
+    )
+    instances: dict[Name, InnerInstanceForm] | None = optional(
+        "Instances of other components inside it. Then it is composite: beside them it has "
+        "parameters, ports, interfaces, `connections` and `bindings` only.",
+        min_length=1,
+    )
+    connections: list[InnerConnectionForm] | None = optional(
+        "Connections of the instances inside it, and of its own ports with theirs."
+    )
+    bindings: list[InnerBindingForm] | None = optional(
+        "Providers of the required interfaces inside it."
     )
 
 

@@ -155,10 +155,14 @@ DatabaseText = Annotated[
 Reference = Annotated[str, WithJsonSchema({"type": "string", "pattern": IDENTIFIER})]
 """The name of something declared elsewhere."""
 
-OwnedReference = Annotated[
-    str, WithJsonSchema({"type": "string", "pattern": f"{IDENTIFIER[:-1]}\\.{IDENTIFIER[1:]}"})
-]
-"""``owner.name``: something that belongs to an instance or region."""
+_path = f"{IDENTIFIER[:-1]}(\\.{IDENTIFIER[1:-1]})"
+OwnedReference = Annotated[str, WithJsonSchema({"type": "string", "pattern": f"{_path}+$"})]
+"""``owner.name``: something that belongs to an instance or region.
+
+An instance inside another is a path: ``arm.shoulder.name``.
+"""
+PathReference = Annotated[str, WithJsonSchema({"type": "string", "pattern": f"{_path}*$"})]
+"""``name`` or ``owner.name``: an element of its own, or something that belongs to an instance."""
 
 _duration_schema = {"type": "string", "pattern": pattern(NANOSECONDS)}
 Span = Annotated[int, BeforeValidator(_duration), WithJsonSchema(_duration_schema)]

@@ -9,6 +9,7 @@ from .schema_base import (
     DatabaseName,
     Element,
     OwnedReference,
+    PathReference,
     PositiveSpan,
     Reference,
     Span,
@@ -92,11 +93,33 @@ class InstanceForm(Element):
     parameters: dict[str, Constant] | None = optional("Values of the component's parameters.")
 
 
+class InnerInstanceForm(Element):
+    """An instance of a component inside another component, on the node of that one."""
+
+    component: Reference = key("The component, itself with `instances` or not.")
+    parameters: dict[str, Constant] | None = optional(
+        "Values of the component's parameters; a parameter of the component around it is passed by "
+        "its name."
+    )
+
+
 class ConnectionForm(Element):
     """An output port wired to an input port; between nodes it is a message of the bus."""
 
     from_: OwnedReference = key("`instance.port`, an output port.", alias="from")
     to: OwnedReference = key("`instance.port`, an input port.")
+
+
+class InnerConnectionForm(ConnectionForm):
+    """A connection inside a component; one with a port of the component itself delegates it."""
+
+    from_: PathReference = key(
+        "`instance.port`, an output port, or `port`, an input port of the component itself.",
+        alias="from",
+    )
+    to: PathReference = key(
+        "`instance.port`, an input port, or `port`, an output port of the component itself."
+    )
 
 
 class ProcessorForm(Element):
@@ -153,7 +176,7 @@ class ShutdownForm(Element):
 class ChainForm(Element):
     """A way from inputs to outputs, and how long values may be under way."""
 
-    path: list[Reference] = key(
+    path: list[PathReference] = key(
         "Messages and rows (`instance.activity`, `instance.Region`) on the way; "
         "between two of them the shortest way is meant.",
         min_length=2,

@@ -12,6 +12,7 @@ from .schema_base import (
     Element,
     Name,
     OwnedReference,
+    PathReference,
     PositiveSpan,
     Reference,
     key,
@@ -149,12 +150,12 @@ class DeviceForm(Element):
     array: list[Reference] | None = optional(
         "Devices of one kind as one: a command goes to all, and axes are counted on.", min_length=2
     )
-    facade: list[Reference] | None = optional(
+    facade: list[PathReference] | None = optional(
         "Devices, or `instance.interface`s, of several kinds as one: a command goes to the one "
         "that provides it.",
         min_length=1,
     )
-    choose: dict[Reference, Reference] | None = optional(
+    choose: dict[Reference, PathReference] | None = optional(
         "For a command that several of `facade` provide: which one is meant."
     )
 
@@ -167,4 +168,16 @@ class BindingForm(Element):
     time_limit: PositiveSpan | None = optional(
         "Longest time from the caller's release until a reply from another node has arrived, "
         "and age of what is read there; needed for these, without effect inside a node."
+    )
+
+
+class InnerBindingForm(BindingForm):
+    """A binding inside a component; one with its own interface delegates that."""
+
+    from_: PathReference = key(
+        "`instance.interface`, a required one, or `interface`, one that the component provides.",
+        alias="from",
+    )
+    to: PathReference = key(
+        "`instance.interface`, a provided one, or `interface`, one that the component requires."
     )

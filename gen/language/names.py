@@ -86,6 +86,11 @@ def problem_of(name: str) -> tuple[str, str] | None:
     return None
 
 
+def identifier(path: str) -> str:
+    """The path of an instance as one name: ``arm.shoulder`` as ``arm_shoulder``."""
+    return path.replace(".", "_")
+
+
 def database_problem_of(name: str) -> str | None:
     """Why ``name`` cannot name a message or signal of a CAN database (DBC); None when it can."""
     if len(name) > LONGEST_DATABASE_NAME:

@@ -23,14 +23,38 @@ class End:
 
 
 @dataclass(frozen=True, slots=True)
+class Delegation:
+    """A port or required interface that is reached by one of a composite instance around it."""
+
+    end: End
+    outside: str
+    """That of the outermost composite, ``instance.name``."""
+    origin: Origin
+    """Where that composite is named."""
+
+
+@dataclass(frozen=True, slots=True)
 class Instance:
-    """One component instance on a node, its parameters all set."""
+    """One component instance on a node, its parameters all set.
+
+    One inside a composite instance is called by its path: ``arm.shoulder``.
+    """
 
     name: str
     origin: Origin
     component: Component
     node: str
     parameters: tuple[tuple[str, Scalar], ...]
+    delegations: tuple[Delegation, ...] = ()
+    """How its ports and required interfaces are reached from outside of composites."""
+    composites: tuple[str, ...] = ()
+    """The composite components around it, outermost first: one for each name before its own."""
+
+    def outside(self, name: str) -> tuple[str, Origin]:
+        """How a port or required interface is called where it can be joined, and where that is."""
+        found = (one for one in self.delegations if one.end == End(self.name, name))
+        at = next(found, None)
+        return (f"{self.name}.{name}", self.origin) if at is None else (at.outside, at.origin)
 
 
 @dataclass(frozen=True, slots=True)

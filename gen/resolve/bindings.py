@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from ravenchart.gen.derive.completion import table_period
 from ravenchart.gen.files.schema_devices import BindingForm
-from ravenchart.gen.language.names import Findings, NameScope, meant
+from ravenchart.gen.language.names import Findings, meant
 from ravenchart.gen.language.quantities import LONGEST
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.commands import (
@@ -41,6 +41,7 @@ from .devices import (
     told_by,
     ungathered,
 )
+from .paths import owner_at, placed, reached, split
 
 Given = dict[tuple[str, str], tuple[BindingForm, Provider | None]]
 """The binding of (instance, interface), in lower case; no provider: it was wrong."""
@@ -50,32 +51,29 @@ def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
     """The bindings of a model, by what they bind."""
     findings, found = devices.findings, Given()
     for form in forms:
-        owner, dot, interface = form.from_.partition(".")
         at = form.at("from")
-        if not (dot and owner and interface) or "." in interface:
-            message = f"`{form.from_}` must have the form instance.interface"
-            findings.error("RV-0306", at, message)
+        pair = split(form.from_, "instance.interface", at, devices.owners, findings)
+        if pair is None:
             continue
-        instance = devices.instances.look_up(owner, at, findings)
+        owner = owner_at(pair[0], at, devices.owners, findings)
         provider = devices.provider(form.to, form.at("to"))
-        if instance is None:
+        if owner is None or not reached(owner, at, "interface", findings):
             continue
-        required: NameScope[str] = NameScope(f"required interface of {instance.component.name}")
-        required.open = instance.component.name in devices.damaged
-        for need in instance.component.needs:
-            required.declare(need.interface, None, need.interface)
-        for heard in instance.component.hears:
-            required.declare(heard.interface, None, heard.interface)
-        name = required.look_up(interface, at, findings)
-        if name is None:
+        required = devices.required(owner).look_up(pair[1], at, findings)
+        if required is None:
             continue
-        key = (instance.name.lower(), name.lower())
-        if key in found:
-            message = f"{instance.name}.{name} is bound twice"
-            notes = [(found[key][0].origin, "the first is here")]
-            hint = "several devices are joined to one by `facade` or `array`"
-            findings.error("RV-1203", form.origin, message, notes=notes, hint=hint)
-        found.setdefault(key, (form, provider))
+        for instance, name in required.requirers:
+            key = (instance.lower(), name.lower())
+            if key in found:
+                message = f"{owner.name}.{required.name} is bound twice"
+                notes = [(found[key][0].origin, "the first is here")]
+                hint = "several devices are joined to one by `facade` or `array`"
+                findings.error("RV-1203", form.origin, message, notes=notes, hint=hint)
+            found.setdefault(key, (form, provider))
+    for one in placed(devices.owners):
+        for inner in (binding.under(one.name) for binding in one.composite.bindings):
+            key = (inner.instance.lower(), inner.interface.lower())
+            found.setdefault(key, (inner.form, Server(*inner.server)))
     return found
 
 
@@ -102,14 +100,21 @@ def bindings_of(
                 made.append(Binding(instance.name, need.origin, need, None))
             elif need.interface not in unbound:
                 unbound.add(need.interface)
-                wanted = f"{instance.name}.{need.interface}"
+                wanted, at = instance.outside(need.interface)
                 message = f"nothing provides {wanted}, which needs {need.name}"
                 notes = [(need.origin, f"{need.name} is required here")]
-                hint = f"add `- {{from: {wanted}, to: ...}}` under `bindings:`"
+                hint = _binding(wanted)
                 if near := meant(need.interface, known):
                     hint += f"; {near}"
-                findings.error("RV-1203", instance.origin, message, notes=notes, hint=hint)
+                findings.error("RV-1203", at, message, notes=notes, hint=hint)
     return tuple(made)
+
+
+def _binding(wanted: str) -> str:
+    """How to bind what is unbound, in the model or in the composite around it."""
+    *around, instance, interface = wanted.split(".")
+    where = f" of the component of {'.'.join(around)}" if around else ""
+    return f"add `- {{from: {instance}.{interface}, to: ...}}` under `bindings:`{where}"
 
 
 def event_wires(
@@ -123,7 +128,7 @@ def event_wires(
     polls: list[Poll] = []
     for instance in instances:
         for heard in instance.component.hears:
-            wanted = f"{instance.name}.{heard.interface}"
+            wanted, at = instance.outside(heard.interface)
             form, provider = given.get((instance.name.lower(), heard.interface.lower()), _NOTHING)
             needed = any(
                 need.interface == heard.interface and not need.optional
@@ -132,8 +137,8 @@ def event_wires(
             if form is None and not needed:
                 message = f"nothing provides {wanted}, which requires the event {heard.name}"
                 notes = [(heard.origin, f"{heard.name} is required here")]
-                hint = f"add `- {{from: {wanted}, to: ...}}` under `bindings:`"
-                findings.error("RV-1203", instance.origin, message, notes=notes, hint=hint)
+                hint = _binding(wanted)
+                findings.error("RV-1203", at, message, notes=notes, hint=hint)
             elif form is not None and provider is not None:
                 told = tells(provider, heard.name)
                 notes = [(heard.origin, f"{heard.name} is required here")]

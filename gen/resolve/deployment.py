@@ -1,15 +1,13 @@
-"""Deployment resolved: nodes, buses, instances, connections, processors and chains."""
+"""Deployment resolved: nodes, buses, processors and chains."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ravenchart.gen.derive.completion import table_deadline, table_period
 from ravenchart.gen.files.schema_deployment import (
     ChainForm,
-    ConnectionForm,
-    InstanceForm,
     NodeForm,
     ProcessorForm,
     ShutdownForm,
@@ -22,10 +20,8 @@ from ravenchart.gen.files.schema_frames import (
 )
 from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.quantities import shown
-from ravenchart.gen.language.terms import Ns, Scalar
+from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus, BusErrors, Message
-from ravenchart.gen.model.component import Direction, Port
-from ravenchart.gen.model.instances import Connection, End, Instance
 from ravenchart.gen.model.nodes import Node, Supervision, Tick
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
@@ -37,19 +33,8 @@ from ravenchart.gen.model.system import (
 )
 from ravenchart.gen.origins import Origin
 
-from .components import Parts, timing_of
-from .values import constant
-
-
-@dataclass(frozen=True, slots=True)
-class DeploymentNames:
-    """What the elements of a deployment may refer to."""
-
-    nodes: NameScope[Node]
-    buses: NameScope[Bus]
-    parts: NameScope[Parts]
-    instances: NameScope[Instance]
-    findings: Findings
+from .components import timing_of
+from .paths import DeploymentNames, event_at, member, split
 
 
 def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
@@ -155,114 +140,6 @@ def with_events(bus: Bus, form: BusForm, site: DeploymentNames) -> tuple[Bus, bo
     )
 
 
-def instance_of(name: str, form: InstanceForm, site: DeploymentNames) -> Instance | None:
-    """An instance with all its parameters; None when its component or node is not sound."""
-    findings = site.findings
-    parts = site.parts.look_up(form.component, form.at("component"), findings)
-    node = site.nodes.look_up(form.node, form.at("node"), findings)
-    if parts is None:
-        return None
-    given = {key.lower(): key for key in form.parameters or {}}
-    lost = {key.lower() for key in form.dropped("parameters")}
-    values: list[tuple[str, Scalar]] = []
-    for _, key in given.items():
-        origin = form.entry_at("parameters", key)
-        parts.members.parameters.look_up(key, origin, findings)
-    for parameter in parts.component.parameters:
-        entry = given.get(parameter.name.lower())
-        value = parameter.default
-        if entry is not None and form.parameters is not None:
-            place = form.place("parameters", entry)
-            value = constant(
-                form.parameters[entry], place, parameter.name, parameter.type, findings
-            )
-        elif value is None and parameter.name.lower() not in lost and not form.lost("parameters"):
-            message = f"{name} does not set the parameter `{parameter.name}`, which has no default"
-            notes = [(parameter.origin, f"`{parameter.name}` is declared here")]
-            hint = f"add `parameters: {{{parameter.name}: ...}}`"
-            findings.error("RV-0314", form.origin, message, notes=notes, hint=hint)
-        if value is not None:
-            values.append((parameter.name, value))
-    if node is None:
-        return None
-    return Instance(name, form.origin, parts.component, node.name, tuple(values))
-
-
-def _split(text: str, shape: str, origin: Origin, findings: Findings) -> tuple[str, str] | None:
-    owner, dot, name = text.partition(".")
-    if not dot or not owner or not name or "." in name:
-        findings.error("RV-0306", origin, f"`{text}` must have the form {shape}")
-        return None
-    return owner, name
-
-
-def _member(
-    text: str, shape: str, origin: Origin, site: DeploymentNames
-) -> tuple[Instance, Parts, str] | None:
-    """The instance of ``instance.name``, what its component has, and the name."""
-    pair = _split(text, shape, origin, site.findings)
-    if pair is None:
-        return None
-    instance = site.instances.look_up(pair[0], origin, site.findings)
-    parts = None if instance is None else site.parts.find(instance.component.name)
-    return None if instance is None or parts is None else (instance, parts, pair[1])
-
-
-def port_at(text: str, origin: Origin, site: DeploymentNames) -> tuple[End, Port] | None:
-    """The port that ``instance.port`` names."""
-    found = _member(text, "instance.port", origin, site)
-    if found is None:
-        return None
-    instance, parts, own = found
-    ports = parts.members.ports.items.items()
-    named = NameScope(
-        f"port of {instance.component.name}",
-        {key: at for key, at in ports if at[2] is None or not at[2].is_command},
-    )
-    named.open = parts.members.ports.open
-    port = named.look_up(own, origin, site.findings)
-    return None if port is None else (End(instance.name, port.name), port)
-
-
-def event_at(text: str, origin: Origin, site: DeploymentNames) -> tuple[str, str] | None:
-    """The (instance, event) that ``instance.Event`` names."""
-    found = _member(text, "instance.Event", origin, site)
-    if found is None:
-        return None
-    instance, parts, own = found
-    named = NameScope(f"event of {instance.component.name}", parts.members.events.items)
-    named.open = parts.members.events.open
-    event = named.look_up(own, origin, site.findings)
-    if event is not None and event.type is not None:
-        message = f"the event {event.name} needs a value of type {event.type.name}"
-        site.findings.error("RV-0528", origin, message, hint="name an event without a type")
-    return None if event is None else (instance.name, event.name)
-
-
-def end_at(
-    text: str, origin: Origin, wanted: Direction, site: DeploymentNames
-) -> tuple[End, Port] | None:
-    """A port of the wanted direction."""
-    found = port_at(text, origin, site)
-    if found is None or found[1].direction is wanted:
-        return found
-    other = Direction.IN if wanted is Direction.OUT else Direction.OUT
-    key = "from" if wanted is Direction.OUT else "to"
-    message = f"{found[0]} is an {other.value}put port; `{key}` takes an {wanted.value}put port"
-    notes = [(found[1].origin, f"`{found[1].name}` is declared here")]
-    site.findings.error("RV-0601", origin, message, notes=notes)
-    return None
-
-
-def connection_of(form: ConnectionForm, site: DeploymentNames) -> Connection | None:
-    """A connection between two ports that exist, of the right directions."""
-    source = end_at(form.from_, form.at("from"), Direction.OUT, site)
-    target = end_at(form.to, form.at("to"), Direction.IN, site)
-    if source is None or target is None:
-        return None
-    return Connection(form.origin, source[0], target[0])
-
-
 def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Processor | None:
     """A processor with its table; divisors and priority are left to `derive`."""
     findings = site.findings
@@ -330,16 +207,17 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
 
 def _slot(text: str, origin: Origin, form: ProcessorForm, site: DeploymentNames) -> Slot | None:
     """One row of a table."""
-    pair = _split(text, "instance.name or bus.receive", origin, site.findings)
+    shape = "instance.name or bus.receive"
+    pair = split(text, shape, origin, site.owners, site.findings)
     if pair is None:
         return None
     owner, name = pair
-    if site.buses.knows(owner) and not site.instances.knows(owner):
+    if site.buses.knows(owner) and not site.owners.knows(owner):
         return _bus_slot(text, name, owner, origin, form, site)
-    instance = site.instances.look_up(owner, origin, site.findings)
-    parts = None if instance is None else site.parts.find(instance.component.name)
-    if instance is None or parts is None:
+    found = member(text, shape, origin, site)
+    if found is None:
         return None
+    instance, parts, name = found
     if name.lower() == "ports" and not parts.rows.knows(name):
         message = f"{instance.component.name} has no input ports, so no row `{text}`"
         site.findings.error("RV-0305", origin, message, hint="remove the row")
@@ -407,7 +285,7 @@ def chain_of(
 
 def _row_at(text: str, origin: Origin, site: DeploymentNames) -> str | None:
     """The id of the row ``instance.name``."""
-    found = _member(text, "a message or instance.row", origin, site)
+    found = member(text, "a message or instance.row", origin, site)
     if found is None:
         return None
     instance, parts, own = found

@@ -18,14 +18,15 @@ from ravenchart.gen.model.commands import (
     DeviceType,
     DriverCommand,
     InterfaceEvent,
-    Provided,
     Server,
 )
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.origins import Origin
 
+from .composites import Interface, provided_by, required_by
 from .equipment import address_of, apart, lifecycle_of, parameters_of, registers_of, values_of
 from .interfaces import at_axes
+from .paths import Owners, Placed, owner_at, reached, split
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +90,15 @@ def device_type_of(
     )
 
 
+def _seen(scope: NameScope[Interface], path: str) -> NameScope[Interface]:
+    """Interfaces of the instance at a path, seen from outside of it."""
+    items = {
+        key: (name, at, None if one is None else one.under(path))
+        for key, (name, at, one) in scope.items.items()
+    }
+    return NameScope(scope.kind, items, scope.open)
+
+
 @dataclass(slots=True)
 class Devices:
     """The devices of a model, each resolved when it is asked for first."""
@@ -97,7 +107,7 @@ class Devices:
     scope: NameScope[Provider]
     """Those that are known already; a name in it without an item is wrong."""
     kinds: NameScope[DeviceType]
-    instances: NameScope[Instance]
+    owners: Owners
     types: NameScope[Type]
     findings: Findings
     damaged: frozenset[str]
@@ -113,18 +123,34 @@ class Devices:
 
     def provider(self, text: str, origin: Origin) -> Provider | None:
         """The device, or the provided interface `instance.interface`, of that name."""
-        owner, dot, interface = text.partition(".")
-        if not dot:
+        if "." not in text:
             return self.look_up(text, origin)
-        instance = self.instances.look_up(owner, origin, self.findings)
-        if instance is None:
+        pair = split(text, "instance.interface", origin, self.owners, self.findings)
+        owner = None if pair is None else owner_at(pair[0], origin, self.owners, self.findings)
+        if pair is None or owner is None or not reached(owner, origin, "interface", self.findings):
             return None
-        scope: NameScope[Provided] = NameScope(f"provided interface of {instance.component.name}")
-        scope.open = instance.component.name in self.damaged
-        for one in instance.component.provides:
-            scope.declare(one.name, one.origin, one)
-        found = scope.look_up(interface, origin, self.findings)
-        return None if found is None else Server(instance.name, found)
+        found = self.provided(owner).look_up(pair[1], origin, self.findings)
+        if found is None or found.server is None:
+            return None
+        return Server(*found.server)
+
+    def provided(self, owner: Instance | Placed) -> NameScope[Interface]:
+        """The provided interfaces of an instance, as they are seen from outside."""
+        if isinstance(owner, Placed):
+            of = owner.composite.provides
+        else:
+            damaged = owner.component.name in self.damaged
+            of = provided_by(owner.component, damaged=damaged)
+        return _seen(of, owner.name)
+
+    def required(self, owner: Instance | Placed) -> NameScope[Interface]:
+        """The required interfaces of an instance, as they are seen from outside."""
+        if isinstance(owner, Placed):
+            of = owner.composite.requires
+        else:
+            damaged = owner.component.name in self.damaged
+            of = required_by(owner.component, damaged=damaged)
+        return _seen(of, owner.name)
 
     def look_up(self, name: str, origin: Origin) -> Provider | None:
         """The device of that name."""

@@ -114,7 +114,7 @@ def needs_of(
     found: NameScope[Need] = NameScope("required command")
     for interface, at in (form.requires or {}).items():
         space.claim("required interface", interface, at.origin)
-        for name, origin, said in _named(at):
+        for name, origin, said in named_commands(at):
             command = dictionary.look_up(name, origin, space.findings)
             made = None
             if command is not None and not _is_event(command, origin, space.findings):
@@ -126,10 +126,14 @@ def needs_of(
     return found.sound()
 
 
-def _named(form: RequiredForm) -> list[tuple[str, Origin, NeedForm | None]]:
-    if isinstance(form.commands, Mapping):
-        return [(n, form.entry_at("commands", n), said) for n, said in form.commands.items()]
-    return [(n, form.item_at("commands", i), None) for i, n in enumerate(form.commands)]
+def named_commands(
+    form: RequiredForm | ProvidedForm,
+) -> list[tuple[str, Origin, NeedForm | None]]:
+    """The commands of an interface, each with where it is named and its properties."""
+    given = form.commands or ()
+    if isinstance(given, Mapping):
+        return [(n, form.entry_at("commands", n), said) for n, said in given.items()]
+    return [(n, form.item_at("commands", i), None) for i, n in enumerate(given)]
 
 
 def _need(

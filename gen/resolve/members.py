@@ -95,7 +95,7 @@ def members_of(form: ComponentForm, types: NameScope[Type], space: Namespace) ->
         space.claim("activity", name, activity.origin)
     events = _events(form, types, space)
     data, data_types = _data(form, types, space)
-    parameters, ports = _parameters(form, types, space), _ports(form, types, events, space)
+    parameters, ports = parameters_of(form, types, space), _ports(form, types, events, space)
     carrying = next((event for event in events.sound() if event.type is not None), None)
     for scope in (parameters, ports, data):
         name, origin, _ = scope.items.get(EVENT, ("", None, None))
@@ -136,9 +136,10 @@ def _events(form: ComponentForm, types: NameScope[Type], space: Namespace) -> Na
     return scope
 
 
-def _parameters(
+def parameters_of(
     form: ComponentForm, types: NameScope[Type], space: Namespace
 ) -> NameScope[Parameter]:
+    """The constants that instances of a component set."""
     scope: NameScope[Parameter] = NameScope("parameter", open=form.lost("parameters"))
     for gone in form.dropped("parameters"):
         scope.declare(gone, None, None)

@@ -22,8 +22,8 @@ from ravenchart.gen.model.transport import Transport
 from ravenchart.gen.origins import Origin
 
 from .authentication import authentication_of
-from .deployment import DeploymentNames, end_at, event_at
 from .layouts import layout_of, size_of
+from .paths import DeploymentNames, ends_at, event_at
 from .protection import protection_of
 from .transmission import transmission_of
 from .transport import transport_of
@@ -38,14 +38,14 @@ def message_of(name: str, form: MessageForm, site: DeploymentNames) -> Message |
     bus = site.buses.look_up(form.bus, form.at("bus"), findings)
     source = None
     if form.from_ is not None:
-        source = end_at(form.from_, form.at("from"), Direction.OUT, site)
+        source = next(iter(ends_at(form.from_, form.at("from"), Direction.OUT, site)), None)
     texts: list[tuple[str, Origin]] = []
     if isinstance(form.to, str):
         texts = [(form.to, form.at("to"))]
     elif form.to is not None:
         texts = [(text, form.item_at("to", index)) for index, text in enumerate(form.to)]
-    targets = [end_at(text, origin, Direction.IN, site) for text, origin in texts]
-    sound = [target for target in targets if target is not None]
+    targets = [ends_at(text, origin, Direction.IN, site) for text, origin in texts]
+    sound = [end for ends in targets for end in ends]
     gone = form.lost("from") or form.lost("to") or form.list_damaged("to")
     foreign = form.from_ is None and not texts and not gone
     if foreign and form.bytes is None and not form.lost("bytes"):
@@ -68,7 +68,7 @@ def message_of(name: str, form: MessageForm, site: DeploymentNames) -> Message |
         why = "is sent by others to others" if foreign else f"is sent by {form.from_}"
         message = f"the message {name} {why}, and `sporadic` has no meaning"
         findings.error("RV-0210", form.at_key("sporadic"), message, hint="remove it")
-    broken = (form.from_ is not None and source is None) or len(sound) < len(targets)
+    broken = (form.from_ is not None and source is None) or () in targets
     if bus is None or broken or gone or period is None:
         return None
     if form.lost("bytes") or form.lost("id") or (foreign and form.id is None):
@@ -204,7 +204,7 @@ def _message_period(
     if source is None:
         return None
     instance = site.instances.find(source[0].instance)
-    parts = None if instance is None else site.parts.find(instance.component.name)
+    parts = None if instance is None else site.parts(instance)
     if instance is None or parts is None:
         return None
     period = instance.component.send_period(source[1].name)

@@ -15,7 +15,7 @@ from ravenchart.gen.derive.identifiers import identified
 from ravenchart.gen.derive.macs import with_macs
 from ravenchart.gen.derive.remote import calling
 from ravenchart.gen.derive.transport import with_flows
-from ravenchart.gen.files.schema import ModelFile
+from ravenchart.gen.files.schema import ComponentForm, ModelFile
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
 from ravenchart.gen.language.names import (
     CHILDREN,
@@ -23,6 +23,7 @@ from ravenchart.gen.language.names import (
     PREDEFINED_TYPES,
     Findings,
     NameScope,
+    identifier,
 )
 from ravenchart.gen.language.terms import BOOLEAN, EnumerationType, Type
 from ravenchart.gen.model.buses import Bus, Message
@@ -32,13 +33,12 @@ from ravenchart.gen.model.system import Shutdown, System
 from ravenchart.gen.origins import Origin
 
 from .bindings import bindings_of, event_wires, given_bindings, with_bindings
-from .components import parts_of
+from .components import Parts, parts_of
+from .composing import Components, is_composite
+from .composites import Composite
 from .deployment import (
-    DeploymentNames,
     bus_of,
     chain_of,
-    connection_of,
-    instance_of,
     node_of,
     processor_of,
     shutdown_of,
@@ -47,6 +47,8 @@ from .deployment import (
 from .devices import Devices, Provider, device_type_of
 from .interfaces import command_of, declare_vectors
 from .messages import message_of
+from .paths import DeploymentNames, Owners
+from .placing import connection_of, inner_connections, place
 from .values import types_of
 
 
@@ -161,37 +163,71 @@ def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
 
 def _check_units(model: Merged, system: str, findings: Findings) -> None:
     """Names that become child units of the system must differ from each other and from others."""
-    taken = {
-        f"{name}_{ending}".lower(): (f"{what} of the device type", name, form.origin)
-        for name, form in model.entries("device_types")
-        for ending, what in _parts_of_driver(form)
-    }
-    for section, kind in (
-        ("components", "component"),
-        ("buses", "bus"),
-        ("instances", "instance"),
-        ("processors", "processor"),
-        ("device_types", "device type"),
-        ("devices", "device"),
-    ):
+    taken = _Units(system, findings)
+    for name, form in model.entries("device_types"):
+        for ending, what in _parts_of_driver(form):
+            unit = f"{name}_{ending}".lower()
+            taken.known[unit] = (f"{what} of the device type", name, form.origin)
+    for kind, name, origin in _units(model):
+        taken.claim(kind, name, origin)
+
+
+def _check_inner_units(model: Merged, system: str, site: DeploymentNames) -> None:
+    """The units of instances inside others, whose names are their paths, must differ as well."""
+    taken = _Units(system, site.findings)
+    for kind, name, origin in _units(model):
+        taken.known.setdefault(name.lower(), (kind, name, origin))
+    for instance in site.instances.sound():
+        if "." in instance.name:
+            taken.claim("instance", instance.name, instance.origin)
+
+
+UNITS = (
+    ("components", "component"),
+    ("buses", "bus"),
+    ("instances", "instance"),
+    ("processors", "processor"),
+    ("device_types", "device type"),
+    ("devices", "device"),
+)
+"""The sections whose elements become units, and how messages call one of them."""
+
+
+def _units(model: Merged) -> Iterator[tuple[str, str, Origin]]:
+    """What becomes a unit; a composite component does not, but those inside it do."""
+    for section, kind in UNITS:
         for name, form in model.entries(section):
-            other = None
-            if name.lower() == system.lower():
-                other = f"the system {system}"
-            elif name.lower() in CHILDREN:
-                other = CHILDREN[name.lower()]
-            elif name.lower() in PREDEFINED_TYPES:
-                other = "a unit or type of Ada"
-            if other is not None:
-                message = f"the {kind} `{name}` is named like {other}"
-                findings.error("RV-0304", form.origin, message, hint="choose another name")
-                continue
-            known = taken.setdefault(name.lower(), (kind, name, form.origin))
-            if known[0] != kind:
-                message = f"the {kind} `{name}` is named like the {known[0]} `{known[1]}`"
-                notes = [(known[2], f"the {known[0]} is here")]
-                hint = "both become units of the generated program: rename one"
-                findings.error("RV-0304", form.origin, message, notes=notes, hint=hint)
+            if section != "components" or not is_composite(form):
+                yield kind, name, form.origin
+
+
+@dataclass(frozen=True, slots=True)
+class _Units:
+    """The child units of a system: what each is, its name in the model, and where it stands."""
+
+    system: str
+    findings: Findings
+    known: dict[str, tuple[str, str, Origin]] = field(default_factory=dict)
+
+    def claim(self, kind: str, name: str, origin: Origin) -> None:
+        """Report an element whose unit is named like that of another, or of every system."""
+        unit, other = identifier(name).lower(), None
+        if unit == self.system.lower():
+            other = f"the system {self.system}"
+        elif unit in CHILDREN:
+            other = CHILDREN[unit]
+        elif unit in PREDEFINED_TYPES:
+            other = "a unit or type of Ada"
+        if other is not None:
+            message = f"the {kind} `{name}` is named like {other}"
+            self.findings.error("RV-0304", origin, message, hint="choose another name")
+            return
+        known = self.known.setdefault(unit, (kind, name, origin))
+        if known[0] != kind or ("." in name and known[1] != name):
+            message = f"the {kind} `{name}` is named like the {known[0]} `{known[1]}`"
+            notes = [(known[2], f"the {known[0]} is here")]
+            hint = "both become units of the generated program: rename one"
+            self.findings.error("RV-0304", origin, message, notes=notes, hint=hint)
 
 
 def _parts_of_driver(form: DeviceTypeForm) -> Iterator[tuple[str, str]]:
@@ -236,18 +272,28 @@ class _Sections:
     def connections(self, site: DeploymentNames) -> tuple[Connection, ...]:
         """The connections, which have no names."""
         before, lost = self.findings.count(), False
-        made: list[Connection | None] = []
+        made: list[Connection] = []
         for file in self.model.files:
-            made += [connection_of(form, site) for form in file.connections or ()]
+            for form in file.connections or ():
+                made += connection_of(form, site)
             lost = lost or file.list_damaged("connections") or file.lost("connections")
-        if self.whole and self.findings.count() == before and None not in made and not lost:
+        made += inner_connections(site)
+        if self.whole and self.findings.count() == before and not lost:
             self.sound.add("connections")
-        return tuple(item for item in made if item is not None)
+        return tuple(made)
+
+    def instances(self, site: DeploymentNames) -> None:
+        """Add the instances, those inside composite ones by their paths."""
+        before = self.findings.count()
+        for name, form in self.model.entries("instances"):
+            place(name, form, site)
+        if self.findings.count() == before and not site.owners.has_lost():
+            self.sound.add("instances")
 
     def bindings(
         self,
         kinds: NameScope[DeviceType],
-        instances: NameScope[Instance],
+        site: DeploymentNames,
         types: NameScope[Type],
         damaged: frozenset[str],
     ) -> tuple[tuple[Binding, ...], tuple[Connection, ...], tuple[Poll, ...]]:
@@ -260,7 +306,7 @@ class _Sections:
         forms: NameScope[DeviceForm] = NameScope("device", open=scope.open)
         for name, form in self.model.entries("devices"):
             forms.declare(name, form.origin, form, self.findings)
-        devices = Devices(forms, scope, kinds, instances, types, self.findings, damaged)
+        devices = Devices(forms, scope, kinds, site.owners, types, self.findings, damaged)
         given = given_bindings(
             (form for file in self.model.files for form in file.bindings or ()), devices
         )
@@ -268,12 +314,15 @@ class _Sections:
         lost = any(
             file.list_damaged("bindings") or file.lost("bindings") for file in self.model.files
         )
+        lost = lost or any(one.is_damaged for one in site.composites())
         if lost or scope.has_lost() or self.findings.count() > count or not self.whole:
             self.sound.discard("connections")
             return (), (), ()
-        known += [f"{i.name}.{p.name}" for i in instances.sound() for p in i.component.provides]
-        made = bindings_of(instances.sound(), given, known, self.findings)
-        wires, polls = event_wires(instances.sound(), given, self.findings)
+        instances = site.instances.sound()
+        for one in (one for one in site.owners.sound() if "." not in one.name):
+            known += [f"{one.name}.{interface}" for interface in devices.provided(one).names()]
+        made = bindings_of(instances, given, known, self.findings)
+        wires, polls = event_wires(instances, given, self.findings)
         if self.findings.count() > count:
             self.sound.discard("connections")
         return made, wires, polls
@@ -311,16 +360,26 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         if isinstance(type_, EnumerationType)
         for literal in type_.literals
     )
-    parts = sections.named(
-        "components",
-        "component",
+    forms: NameScope[ComponentForm] = sections.scope("components", "component")
+    for key, form in model.entries("components"):
+        forms.declare(key, form.origin, form)
+    known = Components(
+        forms,
         lambda key, form: parts_of(key, form, types, literals, dictionary, name, findings),
+        types,
+        dictionary,
+        name,
+        findings,
     )
+    components: NameScope[Parts | Composite] = sections.named("components", "component", known.of)
+    parts = [one for one in components.sound() if isinstance(one, Parts)]
     nodes = sections.named("nodes", "node", lambda key, form: node_of(key, form, findings))
     buses = sections.named("buses", "bus", lambda name, form: bus_of(name, form, findings))
-    instances = sections.scope("instances", "instance")
-    site = DeploymentNames(nodes, buses, parts, instances, findings)
-    sections.fill("instances", instances, lambda key, form: instance_of(key, form, site))
+    instances: NameScope[Instance] = sections.scope("instances", "instance")
+    owners = Owners("instance", dict(instances.items), instances.open)
+    site = DeploymentNames(nodes, buses, components, instances, owners, findings)
+    sections.instances(site)
+    _check_inner_units(model, name, site)
     connections = sections.connections(site)
     kinds = sections.named(
         "device_types",
@@ -341,13 +400,12 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     )
     stop = sections.shutdown(site)
     lines = sections.buses(site)
-    damaged = {part.component.name for part in parts.sound() if part.is_damaged}
-    bindings, wires, polls = sections.bindings(kinds, instances, types, frozenset(damaged))
-    if any(
-        part.is_damaged and _hears_or_tells(part.component.name, model) for part in parts.sound()
-    ):
+    damaged = {part.component.name for part in parts if part.is_damaged}
+    bindings, wires, polls = sections.bindings(kinds, site, types, frozenset(damaged))
+    lost = any(part.is_damaged and _hears_or_tells(part.component.name, model) for part in parts)
+    if lost or any(one.is_damaged for one in site.composites()):
         sections.sound.discard("connections")
-    for part in parts.sound():
+    for part in parts:
         damaged |= {f"{part.component.name}.{one}" for one in part.damaged}
     carrier = Carrier({i.name: i for i in instances.sound()}, next(iter(buses.sound()), None))
     connections, carried = carrier.carried((*connections, *wires), messages.sound())
@@ -356,7 +414,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         origin=model.files[0].at_key("system"),
         digest=digest,
         types=_declared(types),
-        components=tuple(part.component for part in parts.sound()),
+        components=tuple(part.component for part in parts),
         nodes=nodes.sound(),
         buses=tuple(_with_family(bus, carried) for bus in lines),
         instances=instances.sound(),

@@ -52,7 +52,7 @@ def calls_can_be_carried(resolved: Resolved) -> Iterator[Diagnostic]:
             yield error(code, origin, text, hint=hint)
     for device in system.devices:
         homes = {
-            system.instance(row.partition(".")[0]).node: row for row in callers(system, device)
+            system.instance(row.rpartition(".")[0]).node: row for row in callers(system, device)
         }
         if len(homes) > 1:
             ends = " and ".join(f"{row} on {node}" for node, row in homes.items())
@@ -156,7 +156,7 @@ def devices_start_in_time(resolved: Resolved) -> Iterator[Diagnostic]:
 def _home(system: System, device: Device) -> str:
     """The node whose rows call a device."""
     row = callers(system, device)[0]
-    return system.instance(row.partition(".")[0]).node
+    return system.instance(row.rpartition(".")[0]).node
 
 
 def buffers_hold_what_is_sent(resolved: Resolved) -> Iterator[Diagnostic]:

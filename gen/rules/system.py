@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from itertools import product
 
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
+from ravenchart.gen.language.names import identifier
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import EnumerationType
 from ravenchart.gen.model.buses import Bus, Message
@@ -63,7 +64,11 @@ def types_do_not_hide_units(resolved: Resolved) -> Iterator[Diagnostic]:
         ("instance", system.instances),
         ("processor", system.processors),
     )
-    units = {item.name.lower(): (kind, item.origin) for kind, items in kinds for item in items}
+    units = {
+        identifier(item.name).lower(): (kind, item.origin)
+        for kind, items in kinds
+        for item in items
+    }
     types = {type_.name.lower(): type_ for type_ in system.types}
     for type_ in system.types:
         kind, origin = units.get(type_.name.lower(), ("", type_.origin))
@@ -103,13 +108,14 @@ def connected_ends_agree(resolved: Resolved) -> Iterator[Diagnostic]:
             )
             yield error("RV-0605", connection.origin, message)
         if source.node != target.node:
+            sender, _ = source.outside(connection.source.port)
             message = (
-                f"{connection.source} is on {source.node}, but {connection.target} is on "
-                f"{target.node}"
+                f"{sender} is on {source.node}, but {target.outside(connection.target.port)[0]} "
+                f"is on {target.node}"
             )
             if system.buses:
                 bus = system.buses[0].name
-                hint = f"declare a message of {bus} with `from: {connection.source}`"
+                hint = f"declare a message of {bus} with `from: {sender}`"
             else:
                 hint = "declare a bus: between nodes, values travel as its messages"
             yield error("RV-0606", connection.origin, message, hint=hint)
@@ -153,10 +159,11 @@ def inputs_have_one_source(resolved: Resolved) -> Iterator[Diagnostic]:
                 hint = "give the second an input port of its own"
                 yield error("RV-0603", origin, message, notes=notes, hint=hint)
             if not found and complete:
-                message = f"{instance.name}.{port.name} has no source"
+                unfed, at = instance.outside(port.name)
+                message = f"{unfed} has no source"
                 notes = [(port.origin, f"`{port.name}` is declared here")]
                 hint = "connect it under `connections:`, or let a message lead to it"
-                yield error("RV-0602", instance.origin, message, notes=notes, hint=hint)
+                yield error("RV-0602", at, message, notes=notes, hint=hint)
 
 
 def outputs_lead_somewhere(resolved: Resolved) -> Iterator[Diagnostic]:
@@ -170,10 +177,10 @@ def outputs_lead_somewhere(resolved: Resolved) -> Iterator[Diagnostic]:
     for instance in resolved.system.instances:
         for port in instance.component.outputs():
             if (instance.name, port.name) not in used and not port.is_command:
-                unused = f"{instance.name}.{port.name}"
+                unused, at = instance.outside(port.name)
                 message = f"{unused} is not connected: the values that it sends are lost"
                 notes = [(port.origin, f"`{port.name}` is declared here")]
-                yield warning("RV-0604", instance.origin, message, notes=notes)
+                yield warning("RV-0604", at, message, notes=notes)
 
 
 def identifiers_are_unique(resolved: Resolved) -> Iterator[Diagnostic]:

@@ -109,14 +109,43 @@ class ModelPlaces:
         return None
 
     def component_of(self, instance: str) -> NamedEntry | None:
-        """The component of an instance."""
-        found = self.instances.get(instance.lower())
-        name = None if found is None else found.mapping.scalar("component")
+        """The component of an instance, which may be inside others: ``arm.shoulder``."""
+        first, *inner = instance.lower().split(".")
+        found = self._kind(self.instances.get(first))
+        for name in inner:
+            inside = None if found is None else _inner(found, "instances")
+            found = None if inside is None else self._kind(_inner(inside, name))
+        return found
+
+    def instances_of(self, component: NamedEntry) -> list[str]:
+        """The paths of the instances of a component, also those inside others."""
+        return [
+            path
+            for entry in self.instances.values()
+            for path, kind in self._inside(entry.name, self._kind(entry), ())
+            if kind.key is component.key
+        ]
+
+    def _inside(
+        self, path: str, kind: NamedEntry | None, around: tuple[NamedEntry, ...]
+    ) -> Iterator[tuple[str, NamedEntry]]:
+        """An instance and those inside it, each with its component; no component twice."""
+        if kind is None or any(one.key is kind.key for one in around):
+            return
+        yield path, kind
+        found = kind.mapping.mapping("instances")
+        for key, mapping in () if found is None else found.mappings():
+            inner = self._kind(NamedEntry(kind.file, key, mapping))
+            yield from self._inside(f"{path}.{key.value}", inner, (*around, kind))
+
+    def _kind(self, instance: NamedEntry | None) -> NamedEntry | None:
+        """The component that an entry of `instances` names."""
+        name = None if instance is None else instance.mapping.scalar("component")
         return None if name is None else self.components.get(name.value.lower())
 
     def row(self, element: str) -> DeclaredRow | None:
         """What ``owner.name`` runs."""
-        owner, _, name = element.lower().partition(".")
+        owner, _, name = element.lower().rpartition(".")
         component = self.component_of(owner)
         if component is not None:
             return next((one for one in self.rows(component) if one.name.lower() == name), None)

@@ -15,6 +15,7 @@ from ravenchart.gen.emit.ada.naming import (
 )
 from ravenchart.gen.files.links import Link
 from ravenchart.gen.files.located import Map, Seq, grow
+from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 from ravenchart.running import scenarios
@@ -118,6 +119,8 @@ def claims_of(facts: Facts, link: Link, found: Sequence[Claim]) -> tuple[Claim, 
     instance = next((i for i in system.instances if i.name == link.element), None)
     if link.section == "instances" and instance is not None:
         names.add(instance.component.name.lower())
+    for inside in instances_inside(system, link):
+        names |= {inside.name.lower(), inside.component.name.lower()}
     own = _about(names, found)
     if not own and link.section == "components" and len(link.path) > 1:
         own = _about({str(link.path[1]).lower()}, found)  # a port, an event or data
@@ -148,11 +151,31 @@ def _overlap(element: str, about: str) -> bool:
 def code_of(facts: Facts, link: Link) -> tuple[str, ...]:
     """The generated files that implement an element."""
     system = facts.checked.system
+    inside = [instance_package(system, one) for one in instances_inside(system, link)]
+    if inside:
+        return tuple(
+            n for unit in inside for n in unit_files(facts, unit.lower().replace(".", "-"))
+        )
     for unit in _units(system, link):
         files = unit_files(facts, unit.lower().replace(".", "-"))
         if files:
             return files
     return ()
+
+
+def instances_inside(system: System, link: Link) -> tuple[Instance, ...]:
+    """The instances that an element of a composite stands for: one of it, or all that it has."""
+    name = str(link.path[1]) if len(link.path) > 1 else ""
+    if link.section == "instances":
+        return tuple(i for i in system.instances if i.name.startswith(f"{name}."))
+    own = str(link.path[3]) if link.path[2:3] == ("instances",) and len(link.path) > 3 else None
+    return tuple(
+        one
+        for one in system.instances
+        if link.section == "components"
+        and name in one.composites
+        and own in (None, one.name.split(".")[one.composites.index(name) + 1])
+    )
 
 
 def _units(system: System, link: Link) -> Iterator[str]:

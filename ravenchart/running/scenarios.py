@@ -254,7 +254,7 @@ class _Check:
 
     def owner(self, text: str, path: FormPath) -> tuple[Instance, str] | None:
         """The instance of ``instance.name``, and the name."""
-        owner, _, name = text.partition(".")
+        owner, _, name = text.rpartition(".")
         for instance in self.system.instances:
             if instance.name == owner:
                 return instance, name

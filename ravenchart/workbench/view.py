@@ -89,12 +89,7 @@ class _Where:
 def _components(where: _Where) -> Iterator[Json]:
     """The components with their rows, and where each instance runs them."""
     for component in where.places.components.values():
-        instances = [
-            entry.name
-            for entry in where.places.instances.values()
-            if (found := entry.mapping.scalar("component")) is not None
-            and found.value.lower() == component.name.lower()
-        ]
+        instances = where.places.instances_of(component)
         yield {
             "name": component.name,
             **where.at(component.file, component.key),

@@ -14,13 +14,14 @@ from ravenchart.paths import ROOT
 TWO_NODES = ROOT / "examples" / "two_nodes" / "model.yaml"
 KINDS = ROOT / "tests" / "feature" / "kinds" / "model.yaml"
 LAYOUTS = ROOT / "tests" / "feature" / "flexible" / "model.yaml"
+NESTED = ROOT / "tests" / "feature" / "composites" / "model.yaml"
 
 
 def _symbols(path: Path) -> list[ModelSymbol]:
     return [one for one in model(path, {}).symbols.all() if one.declared is not None]
 
 
-@pytest.mark.parametrize("path", [TWO_NODES, LAYOUTS])
+@pytest.mark.parametrize("path", [TWO_NODES, LAYOUTS, NESTED])
 def test_every_name_that_is_declared_can_be_changed(path: Path) -> None:
     now = model(path, {})
     symbols = _symbols(path)

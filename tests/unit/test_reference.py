@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import jsonschema
 import pytest
 import yaml
 
 from ravenchart.gen.diagnostics import CODES
+from ravenchart.gen.files.located import grow
 from ravenchart.gen.files.reference import TITLES, pages, schema
 from ravenchart.gen.pipeline import load
 
@@ -18,6 +20,23 @@ ROOT = Path(__file__).parent.parent.parent
 def test_page_is_up_to_date(name: str) -> None:
     written = (ROOT / "docs" / name).read_text(encoding="utf-8")
     assert written == pages()[name], "run `make docs`"
+
+
+MODELS = sorted(
+    path
+    for pattern in (
+        "examples/*/model.yaml",
+        "tests/feature/*/model.yaml",
+        "tests/nodes/*/model.yaml",
+    )
+    for path in ROOT.glob(pattern)
+)
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.parent.name)
+def test_an_editor_with_the_schema_takes_every_model_that_the_loader_takes(path: Path) -> None:
+    tree, _ = grow(path.read_text(encoding="utf-8"), path.name)
+    jsonschema.Draft202012Validator(schema()).validate(tree)
 
 
 def test_every_key_has_a_description() -> None:

@@ -49,6 +49,8 @@ Doc = str | LaidParts
 
 SOFT = LaidParts((" ",))
 """A blank, or the place where a line ends."""
+CUT = LaidParts(("",))
+"""Nothing, or the place where a line ends."""
 
 
 def cat(*docs: Doc) -> Doc:
@@ -88,7 +90,7 @@ def _head(doc: Doc) -> tuple[int, bool]:
     """Columns up to the first soft place of a document, and whether it has one."""
     if isinstance(doc, str):
         return len(doc), False
-    if doc is SOFT:
+    if doc is SOFT or doc is CUT:
         return 0, True
     columns = 0
     for part in doc.parts:
@@ -103,8 +105,8 @@ def _behind(parts: tuple[Doc, ...], broken: bool, outside: int) -> int:
     """Columns that stand on the same line in any case; ``outside`` is behind all the parts."""
     columns = 0
     for part in parts:
-        if part is SOFT and not broken:
-            columns += 1
+        if (part is SOFT or part is CUT) and not broken:
+            columns += len(part.flat)
             continue
         more, ends = _head(part)
         columns += more
@@ -126,7 +128,7 @@ def _put(
             out.append(part)
             column += len(part)
             continue
-        if part is SOFT and broken:
+        if (part is SOFT or part is CUT) and broken:
             out.append("\n" + " " * indent)
             column = indent
             continue

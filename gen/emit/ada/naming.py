@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import lru_cache
 
+from ravenchart.gen.language.names import identifier
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     EnumerationType,
@@ -26,8 +27,8 @@ from .syntax import Aggregate, Arg, Comment, Expr, Ref, number
 
 @lru_cache(maxsize=65_536)
 def ada_case(name: str) -> str:
-    """``joint_x`` as ``Joint_X``; capitals already there stay."""
-    return "_".join(word[:1].upper() + word[1:] for word in name.split("_"))
+    """``joint_x`` as ``Joint_X``, and so ``joint.x``; capitals already there stay."""
+    return "_".join(word[:1].upper() + word[1:] for word in identifier(name).split("_"))
 
 
 _IN_LETTERS = {
@@ -172,7 +173,7 @@ def row_name(slot: Slot) -> str:
 
 def constant_name(element: str) -> str:
     """An element id as one Ada name."""
-    return "_".join(ada_case(part) for part in element.split("."))
+    return ada_case(element)
 
 
 LONGEST = 60

@@ -6,10 +6,11 @@ expressions break one item a line (`layout` decides).
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
-from .layout import SOFT, Doc, cat, group, laid_out, nest, upright
+from .layout import CUT, SOFT, STEP, Doc, cat, group, laid_out, nest, upright
 from .syntax import (
     NULL,
     Aggregate,
@@ -55,6 +56,10 @@ from .syntax import (
 WIDTH = 79
 ONE_LINE = 60
 """Longer parameter lists go one to a line."""
+LONG_REFERENCE = 56
+"""Longer names do not fit where they stand deep in other constructs."""
+ADA_NAME = re.compile(r"[\w.]+( \(\w+\)(\.\w+)?)?")
+"""A name of one or several words, perhaps of a component of an array."""
 
 
 def _join(docs: Sequence[Doc], separator: str = "") -> list[Doc]:
@@ -140,12 +145,23 @@ def _choices(text: str) -> Doc:
     return cat(first, *(group(SOFT, "| ", choice) for choice in others)) if others else first
 
 
+def _reference(text: str) -> Doc:
+    """A name; one too long for some lines may break before its index, or else before its end."""
+    if len(text) <= LONG_REFERENCE or not ADA_NAME.fullmatch(text):
+        return text
+    head, paren, index = text.partition(" (")
+    if paren:
+        return group(head, nest(SOFT, f"({index}", by=2))
+    head, dot, end = text.rpartition(".")
+    return group(head, nest(CUT, f".{end}", by=2)) if dot else text
+
+
 @lru_cache(maxsize=8192)
 def expression(expr: Expr) -> Doc:
     """The layout of one expression; a program has few that it does not repeat."""
     match expr:
         case Ref(text):
-            return _choices(text) if " | " in text else text
+            return _choices(text) if " | " in text else _reference(text)
         case Old(name, part):
             return f"{name}'Old{part}"
         case OperatorChain(operator, operands):
@@ -302,6 +318,17 @@ def _subprogram(sub: Subprogram) -> Doc:
     )
 
 
+def _object(decl: Object) -> Doc:
+    """An object; its name and type stand below each other where no line holds both."""
+    words = " ".join(w for w in ("constant" if decl.constant else "", decl.type or "") if w)
+    start: list[Doc] = [f"{decl.name} : {words}"]
+    if len(f"{decl.name} : {words} :=") > WIDTH - STEP:
+        start = [upright(f"{decl.name} :", nest(SOFT, words, by=2))]
+    if decl.value is not None:
+        start += [" :=", nest(SOFT, expression(decl.value), by=2)]
+    return group(*start, _aspects(decl.aspects) if decl.aspects else "", ";")
+
+
 def _declaration(decl: Decl) -> Doc:
     match decl:
         case EnumType():
@@ -317,13 +344,8 @@ def _declaration(decl: Decl) -> Doc:
             width = max(len(c.name) for c in components)
             rows = [_component(f"{c.name:<{width}} : {c.type}", c.initial) for c in components]
             return upright(f"type {name} is record", _lines(rows), SOFT, "end record;")
-        case Object(name, type_name, value, constant, aspects):
-            words = [w for w in ("constant" if constant else "", type_name or "") if w]
-            head = f"{name} : {' '.join(words)}"
-            start = (
-                (head,) if value is None else (f"{head} :=", nest(SOFT, expression(value), by=2))
-            )
-            return group(*start, _aspects(aspects) if aspects else "", ";")
+        case Object():
+            return _object(decl)
         case Subprogram():
             return _subprogram(decl)
         case GenericInstance(name, generic, args, kind):

@@ -48,7 +48,7 @@ def hops_of(system: System, chain: Chain) -> tuple[ClaimedHop, ...]:
         if isinstance(place, Carried):
             hops += _message(system, place.message, following)
             continue
-        owner, _, name = place.partition(".")
+        owner, _, name = place.rpartition(".")
         component = system.instance(owner).component
         rows = {item.name: item for item in component.runnables()}
         handled = name in {port.name for port in component.inputs()}

@@ -119,7 +119,7 @@ class _Run:
                 case "transition":
                     self._mark(name, record.text, "transition", at)
                 case kind:
-                    owner = name.partition(".")[0]
+                    owner = name.rpartition(".")[0]
                     where = owner if record.element.kind in ("port", "event") else name
                     self._mark(where, f"{kind} {name}", kind, at, value=record.value)
         self._counts()
@@ -193,11 +193,13 @@ class _Run:
 
 def _around(instances: Sequence[Instance], name: str) -> tuple[str, str] | None:
     """Of a traced region ``instance.Region.Nested``: the region around it, and the state there."""
-    owner, _, rest = name.partition(".")
-    top, _, nested = rest.partition(".")
+    instance = next((one for one in instances if name.startswith(f"{one.name}.")), None)
+    if instance is None:
+        return None
+    owner = instance.name
+    top, _, nested = name.removeprefix(f"{owner}.").partition(".")
     if not nested:
         return None
-    instance = next(one for one in instances if one.name == owner)
     region = next(one for one in instance.component.regions if one.name == top)
     state = next(lane.owner for lane in region.lanes() if lane.owner and lane.name == nested)
     around = region.lane(state)

@@ -37,6 +37,6 @@ function Row({ row }) {
       send=${(value) => send({ kind: "time", row: first, key, value })} />`)}</div>
     <div class="runs">${row.runs.map((run) => html`<button key=${run.row} class="run"
       aria-pressed=${run.row === selected} onClick=${() => select(run.row)}>
-      ${run.row.split(".")[0]} <span class="on">${run.on ?? "not allocated"}</span></button>`)}</div>
+      ${run.row.split(".").slice(0, -1).join(".")} <span class="on">${run.on ?? "not allocated"}</span></button>`)}</div>
   </div>`;
 }
