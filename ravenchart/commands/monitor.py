@@ -217,7 +217,7 @@ def _way_to_show(
     live = stack.enter_context(Live(console=out, auto_refresh=False))
 
     def picture() -> None:
-        live.update(_Cropped(_tables(checked, watched)), refresh=True)
+        live.update(Cropped(_tables(checked, watched)), refresh=True)
 
     return picture
 
@@ -243,7 +243,7 @@ class _Lines:
         sys.stdout.flush()
 
 
-class _Cropped:
+class Cropped:
     """As much as a terminal has lines for; the last one says what is missing."""
 
     def __init__(self, whole: RenderableType) -> None:

@@ -77,9 +77,10 @@ class ControllerProcess:
         the process a file with its snapshots is beside it, which a monitor finds.
         """
         told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace), **environment}
-        self._snapshots = snapshots.new_file(executable)
+        given = snapshots.VARIABLE in told
+        self._snapshots = None if given else snapshots.new_file(executable)
         if self._snapshots is not None:
-            told.setdefault(snapshots.VARIABLE, str(self._snapshots))
+            told[snapshots.VARIABLE] = str(self._snapshots)
         try:
             self._process = children.popen(
                 [executable.absolute()],

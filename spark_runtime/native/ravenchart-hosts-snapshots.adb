@@ -207,18 +207,16 @@ is
          return;
       end if;
       File := C_Open (Path, Read_Write + Created, 8#644#);
-      if File < 0 then
+      if File >= 0 and then C_Lock (File, Try_Lock, 0) /= 0 then
+         File := No_File;
+         Failures.Put_Error
+           ("warning: the file named by RAVENCHART_MONITOR cannot be locked:"
+            & " no monitor can watch this run");
+      elsif File < 0 or else C_Truncate (File, 0) /= 0 then
          File := No_File;
          Failures.Put_Error
            ("warning: the file named by RAVENCHART_MONITOR cannot be written:"
             & " no monitor can watch this run");
-      elsif C_Lock (File, Try_Lock, 0) /= 0
-        or else C_Truncate (File, 0) /= 0
-      then
-         File := No_File;
-         Failures.Put_Error
-           ("warning: the file named by RAVENCHART_MONITOR belongs to another"
-            & " controller: no monitor can watch this run");
       end if;
    end Open;
 
