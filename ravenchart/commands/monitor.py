@@ -6,34 +6,24 @@ import argparse
 import json
 import sys
 import time
-from collections import deque
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import asdict
-from pathlib import Path
 
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.live import Live
 from rich.segment import Segment
 
 from ravenchart import terminal
-from ravenchart.analysis.system.observed import TraceError, of_model, read_map
-from ravenchart.building import programs
 from ravenchart.building.checking import Checked
-from ravenchart.failures import OK, WRONG, Refused, Unusable
-from ravenchart.running import monitor_text
-from ravenchart.running.monitored import NodeMonitor, WatchedEvent, WatchedNode
-from ravenchart.running.snapshots import VARIABLE, SnapshotFile, parsed, written
+from ravenchart.failures import OK, WRONG, Unusable
+from ravenchart.running import monitor_text, monitoring
+from ravenchart.running.monitoring import WatchedController
+from ravenchart.running.snapshots import VARIABLE
 
 from . import common
 from .answer import say
 from .run_results import MonitorResult
-
-PERIOD = 0.1
-"""Seconds between two looks, as between two snapshots."""
-
-FIRST = 10.0
-"""So long a controller may take to write its first snapshot, in s."""
 
 SECOND = 1.0
 """Seconds between two lines of the counts of a processor."""
@@ -53,20 +43,26 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Watch it until it ends; the exit status."""
     checked = common.checked(options, deadlines=False)
-    with ExitStack() as stack:
-        watched = [
-            _Watched(checked, program, path, stack) for program, path in _files(options, checked)
-        ]
-        _wait_for_all(watched)
+    if options.file:
+        files = monitoring.given(checked, options.file)
+    else:
+        files = monitoring.found(checked, lambda text: say(options.answer, text))
+        if not files:
+            raise Unusable(
+                f"{monitoring.none_runs(checked)}; start one, or name with --file the file that "
+                f"{VARIABLE} gave it"
+            )
+    with monitoring.watching(checked, files) as watched, ExitStack() as stack:
         if options.once:
-            _show_once(options, checked, watched)
+            options.answer.result = _result(checked, watched)
+            terminal.console().print(_tables(checked, watched))
             return _status(options, watched)
         show = _way_to_show(options, checked, watched, stack)
         while True:
             show()
             if all(one.node.process is None for one in watched):
                 break
-            time.sleep(PERIOD)
+            time.sleep(monitoring.PERIOD)
             for one in watched:
                 one.look()
     if options.json:
@@ -74,133 +70,15 @@ def execute(options: argparse.Namespace) -> int:
     return _status(options, watched)
 
 
-def _files(options: argparse.Namespace, checked: Checked) -> list[tuple[programs.Program, Path]]:
-    """The file of each node that runs; Unusable where none does."""
-    made = programs.programs_of(checked)
-    if options.file:
-        return list(_given(options.file, made))
-    found: list[tuple[programs.Program, Path]] = []
-    homes = programs.homes_of(options.model)
-    for program in made:
-        main = f"{checked.stem}_main"
-        running = written([home / program.folder for home in homes], main)
-        if running:
-            found.append((program, running[0]))
-        if running[1:]:
-            text = f"{len(running)} controllers run on {program.node}: the newest one is watched"
-            say(options.answer, f"note: {text}; --file names another", severity="note")
-    if not found:
-        raise Unusable(
-            f"no controller of {checked.system.name} runs that was started by `ravenchart run`, "
-            f"`shell` or `measure`; start one, or name the file that {VARIABLE} gave it with --file"
-        )
-    for missing in {one.node for one in made} - {one.node for one, _ in found}:
-        say(options.answer, f"warning: no controller of the node {missing} runs")
-    return found
-
-
-def _given(
-    words: Sequence[str], made: Sequence[programs.Program]
-) -> Iterator[tuple[programs.Program, Path]]:
-    by_name = {one.node.lower(): one for one in made}
-    for word in words:
-        node, equals, file = word.partition("=")
-        if equals and node.lower() in by_name:
-            yield by_name[node.lower()], Path(file)
-        elif len(made) == 1:
-            yield made[0], Path(word)
-        else:
-            known = ", ".join(f"{one.node}=FILE" for one in made)
-            raise Unusable(f"--file {word} names no node: the model has {known}")
-
-
-class _Watched:
-    """One node: its file, and what was last seen there."""
-
-    node: WatchedNode
-
-    def __init__(
-        self, checked: Checked, program: programs.Program, path: Path, stack: ExitStack
-    ) -> None:
-        names = program.generated / programs.TRACE_MAP
-        with _readable():
-            self._map = read_map(names.read_text("utf-8"), str(names))
-        self._digest = checked.system.digest
-        self._monitor = NodeMonitor(checked.analysis, program.node)
-        self._file = SnapshotFile(path)
-        stack.callback(self._file.close)
-        self._sequence = 0
-        self._came = time.monotonic()
-        self.name = program.node
-        self.last: deque[WatchedEvent] = deque(maxlen=monitor_text.KEPT)
-        self.is_new = False
-        if self._file.owner() is None:
-            raise Unusable(f"{path}: no controller writes this file now")
-
-    @property
-    def age(self) -> float:
-        """Since when there was no other snapshot, in s."""
-        return time.monotonic() - self._came
-
-    def look(self) -> bool:
-        """Look for another snapshot, once; whether there is any now."""
-        process = self._file.owner()  # first: what it wrote before its end is seen then
-        text = self._file.text()
-        if text is None:
-            return process is None and self._sequence > 0
-        with _readable():
-            snapshot = parsed(text, self._map, str(self._file.path))
-            if not self._sequence:
-                for digest in (self._digest, self._map.digest):
-                    of_model(snapshot.seen, digest, str(self._file.path))
-        self.is_new = snapshot.sequence != self._sequence
-        if self.is_new:
-            self._sequence, self._came = snapshot.sequence, time.monotonic()
-        self.node = self._monitor.shown(snapshot, process)
-        self.last.extend(self.node.events)
-        return True
-
-    @property
-    def has_ended(self) -> bool:
-        """Whether its controller is gone."""
-        return self._file.owner() is None
-
-
-@contextmanager
-def _readable() -> Iterator[None]:
-    """Refused where what is read in the block cannot be read."""
-    try:
-        yield
-    except TraceError as fault:
-        raise Refused(str(fault)) from None
-
-
-def _wait_for_all(watched: Sequence[_Watched]) -> None:
-    """Until each node has a snapshot; Refused where one does not come."""
-    limit = time.monotonic() + FIRST
-    for one in watched:
-        while not one.look():
-            if one.has_ended:
-                raise Refused(f"ravenchart: error: the controller of {one.name} ended at once")
-            if time.monotonic() > limit:
-                raise Refused(
-                    f"ravenchart: error: the controller of {one.name} has written no snapshot in "
-                    f"{FIRST:g} s: its main program, which has the lowest priority, does not run"
-                )
-            time.sleep(PERIOD / 4)
-
-
-def _result(checked: Checked, watched: Sequence[_Watched]) -> MonitorResult:
+def _result(checked: Checked, watched: Sequence[WatchedController]) -> MonitorResult:
     return MonitorResult(checked.system.name, [one.node for one in watched])
 
 
-def _show_once(options: argparse.Namespace, checked: Checked, watched: Sequence[_Watched]) -> None:
-    options.answer.result = _result(checked, watched)
-    terminal.console().print(_tables(checked, watched))
-
-
 def _way_to_show(
-    options: argparse.Namespace, checked: Checked, watched: Sequence[_Watched], stack: ExitStack
+    options: argparse.Namespace,
+    checked: Checked,
+    watched: Sequence[WatchedController],
+    stack: ExitStack,
 ) -> Callable[[], None]:
     """What shows the nodes as they are now: objects or lines for a pipe, tables in a terminal."""
     if options.json:
@@ -225,7 +103,7 @@ def _way_to_show(
 class _Lines:
     """Lines of text: events as they come, counts once in a second and at the end."""
 
-    def __init__(self, watched: Sequence[_Watched]) -> None:
+    def __init__(self, watched: Sequence[WatchedController]) -> None:
         self._watched = watched
         self._next = 0.0
 
@@ -261,7 +139,7 @@ class Cropped:
             yield Segment.line()
 
 
-def _tables(checked: Checked, watched: Sequence[_Watched]) -> RenderableType:
+def _tables(checked: Checked, watched: Sequence[WatchedController]) -> RenderableType:
     return Group(
         *(
             monitor_text.tables(
@@ -272,7 +150,7 @@ def _tables(checked: Checked, watched: Sequence[_Watched]) -> RenderableType:
     )
 
 
-def _status(options: argparse.Namespace, watched: Sequence[_Watched]) -> int:
+def _status(options: argparse.Namespace, watched: Sequence[WatchedController]) -> int:
     """WRONG where a controller has ended without its report."""
     killed = [one for one in watched if one.node.process is None and not one.node.ended]
     for one in killed:

@@ -13,9 +13,6 @@ from ravenchart.analysis.units import microseconds
 from .monitored import WatchedEvent, WatchedNode, WatchedProcessor
 from .summary import columns
 
-KEPT = 6
-"""So many of the last transitions and faults stay in the tables."""
-
 LATE = 1.0
 """A snapshot that is older, in s, is said to be."""
 
@@ -31,7 +28,7 @@ def tables(
     if node.charts:
         parts.append(_charts(node))
     if last:
-        parts.append(_events(last[-KEPT:]))
+        parts.append(_events(last))
     if node.traffic or node.queues:
         parts.append(_traffic(node))
     parts.append(Text(f"not seen: {'; '.join(node.not_seen)}", style="dim"))
