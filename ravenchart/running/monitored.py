@@ -272,6 +272,8 @@ class NodeMonitor:
         yield from NEVER_SEEN
         if not snapshot.tallies:
             yield "states, transitions, messages and faults by element: no record of a trace came"
+        if snapshot.seen.losses.get("snapshot"):
+            yield "what found no room in a snapshot: `lost` counts it"
         if not snapshot.seen.processors:
             yield "processors: they are reported by a program that `ravenchart build` has linked"
 

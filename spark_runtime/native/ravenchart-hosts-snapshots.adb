@@ -55,7 +55,7 @@ is
 
    --  What there was of each element
 
-   subtype Kept_Element is Element_Id range 0 .. 4_095;
+   subtype Kept_Element is Element_Id range 0 .. 16_383;
 
    type Summary is record
       Count   : Event_Count := 0;

@@ -115,6 +115,10 @@ def test_what_is_not_seen_is_said(analysis: Analysis) -> None:
     full = seen(NodeMonitor(analysis, "board"), *taken(1, listed=1), *processors(1))
     assert full.not_seen == list(NEVER_SEEN)
     assert not any("bed" in text for text in full.not_seen)
+    cut = [line.replace("L snapshot 0", "L snapshot 4") for line in processors(1)]
+    dropped = seen(NodeMonitor(analysis, "board"), *taken(1, listed=1), *cut)
+    assert dropped.not_seen[-1] == "what found no room in a snapshot: `lost` counts it"
+    assert dropped.lost["snapshot"] == 4
     empty = seen(NodeMonitor(analysis, "board"), "N 5")
     assert [text.partition(":")[0] for text in empty.not_seen[len(NEVER_SEEN) :]] == [
         "states, transitions, messages and faults by element",
