@@ -143,6 +143,7 @@ def test_two_monitors_show_the_counts_of_the_report(watched: Watched) -> None:
 
 
 @pytest.mark.live
+@pytest.mark.slow
 @shows(
     "a controller is killed while a monitor watches it",
     found_by="its lock, which the kernel takes back",
@@ -160,6 +161,7 @@ def test_a_controller_that_is_killed_ends_its_monitor(watched: Watched) -> None:
 
 
 @pytest.mark.live
+@pytest.mark.slow
 def test_a_monitor_that_is_interrupted_leaves_the_controller_alone(watched: Watched) -> None:
     with monitoring("--file", watched.file) as one:
         assert first_line(one)
@@ -173,6 +175,7 @@ def test_a_monitor_that_is_interrupted_leaves_the_controller_alone(watched: Watc
 
 
 @pytest.mark.live
+@pytest.mark.slow
 @pytest.mark.parametrize("more", [{}, {"NO_COLOR": "1"}], ids=["colour", "NO_COLOR"])
 def test_a_terminal_is_drawn_over_and_given_back(watched: Watched, more: dict[str, str]) -> None:
     leader, follower = pty.openpty()
@@ -204,6 +207,7 @@ def test_a_terminal_is_drawn_over_and_given_back(watched: Watched, more: dict[st
 
 
 @pytest.mark.live
+@pytest.mark.slow
 def test_nodes_that_run_has_started_are_found(tmp_path: Path) -> None:
     run = Marked([LAUNCHER, "run", TWO_NODES, "--seconds", "600", "--report", tmp_path])
     try:

@@ -24,7 +24,10 @@ from tests.support.answers import answered
 from tests.support.snapshot_files import PUMP, held, number, processors, snapshot, trace_map
 
 PRINTED = pytest.CaptureFixture[str]
-EXAMPLES = sorted(path.parent.name for path in ROOT.glob("examples/*/model.yaml"))
+EXAMPLES = [
+    pytest.param(path.parent.name, marks=[] if path == PUMP else pytest.mark.slow)
+    for path in sorted(ROOT.glob("examples/*/model.yaml"))
+]
 
 
 @pytest.fixture(scope="module")
