@@ -250,7 +250,7 @@ def _take(words: list[str], seen: Observation) -> None:
     """Add one line to what was seen; ValueError says what is wrong with it."""
     match words:
         case ["T", time, kind, element, value]:
-            seen.records.append(_record(time, kind, element, value, seen.map))
+            seen.records.append(trace_record(time, kind, element, value, seen.map))
         case ["M", digest]:
             seen.digest = digest
         case ["E", clock]:
@@ -276,8 +276,8 @@ def _take(words: list[str], seen: Observation) -> None:
             raise ValueError(f"not a trace line: {' '.join(words)[:60]!r}")
 
 
-def _record(time: str, kind: str, number: str, value: str, trace_map: TraceMap) -> TraceRecord:
-    """One T line."""
+def trace_record(time: str, kind: str, number: str, value: str, trace_map: TraceMap) -> TraceRecord:
+    """The record in the words of a T line; ValueError says what is wrong with it."""
     if kind.lower() not in KINDS:
         raise ValueError(f"unknown kind {kind!r}")
     name = kind.lower()

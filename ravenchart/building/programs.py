@@ -142,7 +142,10 @@ class Program:
         if board:
             variables |= board.scenario()
             options = [*board.options(), *options]
-        options += ["-cargs:Ada", stacks.CALL_GRAPHS, "-gargs"]
+        options += ["-cargs:Ada", stacks.CALL_GRAPHS]
+        if not board:
+            options += ["-largs", f"-Wl,--defsym={stacks.PUT_ALL}={stacks.put_all(self.part)}"]
+        options.append("-gargs")
         image = self.home(chosen, target.name) / mode / f"{self.checked.stem}_main"
         return Compilation(tuple(options), self.project.parent, variables, image)
 

@@ -14,6 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from ravenchart.failures import Refused, ToolFailed, Unusable
 from ravenchart.gen.diagnostics import Diagnostic, error, render_all
+from ravenchart.gen.emit.ada.naming import root_package
 from ravenchart.gen.model.statechart import After, Every
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
@@ -33,6 +34,8 @@ FRAMES = ROOT / "spark_runtime" / "frames.toml"
 ENDINGS = frozenset({"__gnat_last_chance_handler"})
 ATTACHING = "system__interrupts__install_restricted_handlers"
 """What attaches handlers of interrupts. Which, the call graph does not say."""
+PUT_ALL = "ravenchart_put_all"
+"""By this name the runtime of this machine calls the report of a program, for its snapshots."""
 SAFE = 1_024
 """Sizes are suggested in whole KiB."""
 
@@ -177,6 +180,11 @@ def digests(folders: Iterable[Path], folder: Path) -> dict[str, str]:
     return {named(p, folder): digest(p) for p in files}
 
 
+def put_all(system: System) -> str:
+    """The symbol of the report of a program, which the linker gives the name `PUT_ALL`."""
+    return f"{root_package(system).lower()}__reports__put_all"
+
+
 def _said(made: BuiltProgram, tool: str, *options: str) -> str:
     words = [f"{made.tools}{tool}", *options, str(made.image)]
     done = children.run(words, errors="replace")
@@ -192,6 +200,9 @@ def _graph(made: BuiltProgram) -> graph.Graph:
         found = graph.read(texts)
     except ValueError as fault:
         raise ToolFailed(f"a call graph of {made.image} cannot be read: {fault}") from None
+    reports = put_all(made.system)
+    if reports in found:
+        found[PUT_ALL] = found[reports]
     if made.target.facts.stacks.library is None:
         ours = {graph.plain(one.name) for one in found.values()}
         code = machine.read(_said(made, "objdump", "-d", "--no-show-raw-insn").splitlines())

@@ -11,7 +11,7 @@ from ravenchart.described import Described, Result
 from ravenchart.running.measured import Measurement
 
 from .build_results import BuildResult, CheckResult, GenerateResult
-from .run_results import RunResult, ShellResult
+from .run_results import MonitorResult, RunResult, ShellResult
 
 
 @dataclass(slots=True)
@@ -438,6 +438,7 @@ RESULTS: dict[str, type[Result]] = {
     "allocate": AllocateResult,
     "run": RunResult,
     "shell": ShellResult,
+    "monitor": MonitorResult,
     "trace": TraceResult,
     "measure": MeasureResult,
     "draw": DrawResult,

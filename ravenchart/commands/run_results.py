@@ -1,10 +1,11 @@
-"""What `run` and `shell` answer with `--json`, beside the forms of `results`."""
+"""What `run`, `shell` and `monitor` answer with `--json`, beside the forms of `results`."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from ravenchart.described import Described, Result
+from ravenchart.running.monitored import WatchedNode
 
 
 @dataclass(slots=True)
@@ -69,3 +70,13 @@ class ShellResult(Result):
     """Its lines that were carried out, the last one perhaps without success."""
     status: dict[str, dict[str, int | float | str]]
     """The last values of each message that came, by field."""
+
+
+@dataclass(slots=True)
+class MonitorResult(Result):
+    """What is seen of running controllers: with `--once` the answer, else a line each."""
+
+    system: str
+    """The name of the system."""
+    nodes: list[WatchedNode]
+    """The controllers that are watched."""

@@ -16,6 +16,8 @@ from typing import IO
 
 from ravenchart.tools import children
 
+from . import snapshots
+
 ERROR = "error: "
 """How a controller begins a line about a failure of its own."""
 
@@ -71,9 +73,14 @@ class ControllerProcess:
     def __init__(self, executable: Path, trace: Path, core: int, **environment: str) -> None:
         """Start ``executable`` on ``core``, writing its trace to ``trace``. StartError.
 
-        ``environment`` is what it is told besides: by whom the bus is reached.
+        ``environment`` is what it is told besides: by whom the bus is reached. For the time of
+        the process a file with its snapshots is beside it, which a monitor finds.
         """
         told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace), **environment}
+        given = snapshots.VARIABLE in told
+        self._snapshots = None if given else snapshots.new_file(executable)
+        if self._snapshots is not None:
+            told[snapshots.VARIABLE] = str(self._snapshots)
         try:
             self._process = children.popen(
                 [executable.absolute()],
@@ -84,6 +91,7 @@ class ControllerProcess:
                 stderr=subprocess.PIPE,
             )
         except OSError as fault:
+            self._unlink_snapshots()
             raise StartError(f"{executable} cannot be started: {fault.strerror}") from None
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._warnings: list[str] = []
@@ -162,11 +170,16 @@ class ControllerProcess:
             killed = True
             self._process.kill()
             self._process.wait()
+        self._unlink_snapshots()
         for reader in self._readers:
             reader.join(timeout=1.0)
         stolen = stolen_time(self._core) - self._stolen
         warnings = tuple(self._warnings)
         return Ended(self._process.returncode, killed, self._real_time, warnings, stolen)
+
+    def _unlink_snapshots(self) -> None:
+        if self._snapshots is not None:
+            self._snapshots.unlink(missing_ok=True)
 
     def _early_end(self) -> str:
         """What happened when the output ended before the port was known."""

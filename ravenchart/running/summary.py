@@ -18,7 +18,7 @@ from .measured import WARNING, Measurement
 
 def print_steps(console: Console, steps: Sequence[StepRow]) -> None:
     """What was done, and how it went."""
-    table = _table("at s>", "step", "outcome")
+    table = columns("at s>", "step", "outcome")
     for step in steps:
         outcome = step.outcome if step.passed else f"FAILED: {step.outcome}"
         style = "" if step.passed else "bold red"
@@ -28,7 +28,7 @@ def print_steps(console: Console, steps: Sequence[StepRow]) -> None:
 
 def print_states(console: Console, states: dict[str, tuple[str, ...]]) -> None:
     """The states that each region visited."""
-    table = _table("region", "states visited, in order of the first visit")
+    table = columns("region", "states visited, in order of the first visit")
     for region, visited in states.items():
         table.add_row(region, ", ".join(visited) or "none")
     _section(console, "states", table)
@@ -36,7 +36,7 @@ def print_states(console: Console, states: dict[str, tuple[str, ...]]) -> None:
 
 def print_frames(console: Console, frames: Sequence[FrameRow]) -> None:
     """The CAN frames both ways."""
-    table = _table("message", "to controller>", "from controller>")
+    table = columns("message", "to controller>", "from controller>")
     names = dict.fromkeys(f.message for f in frames)
     counts = {(f.message, f.direction): f.count for f in frames}
     for name in names:
@@ -47,7 +47,7 @@ def print_frames(console: Console, frames: Sequence[FrameRow]) -> None:
 
 def print_comparison(console: Console, compared: Sequence[Comparison], *, comparable: bool) -> None:
     """Observed beside bound."""
-    table = _table("processor", "releases>", "misses>", "observed us>", "bound us>", "ratio>", "")
+    table = columns("processor", "releases>", "misses>", "observed us>", "bound us>", "ratio>", "")
     for row in compared:
         bad = row.word in ("MISS", "ABOVE") and (comparable or row.misses > 0)
         table.add_row(
@@ -67,7 +67,7 @@ def print_comparison(console: Console, compared: Sequence[Comparison], *, compar
 
 def print_journeys(console: Console, took: Sequence[Journey]) -> None:
     """The longest reaction of each chain beside its bound."""
-    table = _table("chain", "reactions>", "observed us>", "bound us>", "limit us>", "")
+    table = columns("chain", "reactions>", "observed us>", "bound us>", "limit us>", "")
     for row in took:
         table.add_row(
             row.chain,
@@ -84,8 +84,8 @@ def print_journeys(console: Console, took: Sequence[Journey]) -> None:
 def print_measurement(console: Console, found: Measurement) -> None:
     """Measured execution times beside those of the model, and what they leave out."""
     bounded = any(one.bound is not None for one in found.rows)
-    columns = ["row", "measured us>", f"+ {found.margin} % us>", "wcet us>", "ratio>", ""]
-    table = _table(*columns[:4], *(["bound us>"] if bounded else []), *columns[4:])
+    names = ["row", "measured us>", f"+ {found.margin} % us>", "wcet us>", "ratio>", ""]
+    table = columns(*names[:4], *(["bound us>"] if bounded else []), *names[4:])
     for one in found.rows:
         times = [one.measured, one.proposed, one.wcet, *([one.bound] if bounded else [])]
         ratio = "-" if one.measured is None else f"{100 * one.measured / one.wcet:.0f} %"
@@ -123,10 +123,10 @@ def print_verdict(console: Console, verdict: str, failures: Sequence[str]) -> No
         console.print(Text(f"         also: {reason}", style="red"), soft_wrap=True)
 
 
-def _table(*columns: str) -> Table:
+def columns(*names: str) -> Table:
     """A table without lines; a column ending in ``>`` is set to the right."""
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
-    for column in columns:
+    for column in names:
         right = column.endswith(">")
         table.add_column(
             column.removesuffix(">"),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
+
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from . import requests
 from .hub import Hub
+from .live import LiveView
 from .pages import Pages, error
 from .view import source
 
@@ -21,6 +24,7 @@ class WorkbenchPages(Pages):
         """For one session."""
         super().__init__(hub)
         self.hub = hub
+        self.live_view = LiveView(hub.session.path)
 
     def read(self, body: bytes) -> requests.PageRequest:
         """The message of a request, or `MalformedError`."""
@@ -32,7 +36,13 @@ class WorkbenchPages(Pages):
             Route("/diff", self.diff),
             Route("/source", self.source),
             Route("/growth", self.growth),
+            Route("/live", self.live),
         ]
+
+    async def live(self, request: Request) -> Response:
+        """The controllers of the saved model that run now."""
+        digest = await self.hub.ask(lambda session: session.saved_digest)
+        return JSONResponse(await asyncio.to_thread(self.live_view.look, digest))
 
     async def diff(self, request: Request) -> Response:
         """What a save would change."""

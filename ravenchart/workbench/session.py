@@ -91,6 +91,11 @@ class Session:
         return self.now.texts != self._disk.texts
 
     @property
+    def saved_digest(self) -> str | None:
+        """The digest of the saved model; None where it has errors."""
+        return None if self.saved.analysis is None else self.saved.analysis.system.digest
+
+    @property
     def outside(self) -> tuple[str, ...]:
         """Files that have changed outside while there were changes here."""
         return tuple(self._disk.outside)

@@ -1,5 +1,6 @@
 with Interfaces.C.Strings;
 with System;
+with Ravenchart.Hosts.Snapshots;
 
 package body Ravenchart.Hosts.Services
   with SPARK_Mode => Off
@@ -128,7 +129,8 @@ is
 
    procedure Put (Text : String) is
    begin
-      if Report_File /= No_File then
+      Snapshots.Note (Text);
+      if Report_File /= No_File and then not Snapshots.Is_Gathering then
          if Text'Length > Buffer'Last - Filled then
             Flush;
          end if;
@@ -168,14 +170,18 @@ is
             & " or grant CAP_SYS_NICE; response times are then not bounded"
             & ASCII.LF);
       end if;
+      Snapshots.Open;
    end Start;
 
    --------------------
    -- Stop_Requested --
    --------------------
 
-   function Stop_Requested return Boolean
-   is (Stop_Flag);
+   function Stop_Requested return Boolean is
+   begin
+      Snapshots.Refresh;
+      return Stop_Flag;
+   end Stop_Requested;
 
    ------------
    -- Finish --
@@ -185,6 +191,7 @@ is
       --  What the user's own bodies printed goes out as well.
       Ignored : constant C_Int := C_Flush (System.Null_Address);
    begin
+      Snapshots.Close;
       C_Exit (if Success then 0 else 1);
    end Finish;
 

@@ -28,6 +28,7 @@ OF_THE_HOST = {
     "ravenchart-can-tcp_sockets.adb",
     "ravenchart-failures.adb",
     "ravenchart-hosts-services.adb",
+    "ravenchart-hosts-snapshots.adb",
 }
 """Bodies that ask Linux, which a board replaces by its own."""
 

@@ -55,7 +55,7 @@ def bench(running_bench: Running, model: Path) -> Iterator[Running]:
 
 
 READS = ("", "state", "events", "diff", "source?file=model.yaml", "growth?row=joint_x.ports",
-         "drawing?name=structure", "app.js")  # fmt: skip
+         "drawing?name=structure", "live", "app.js")  # fmt: skip
 
 
 @pytest.mark.parametrize("token", ["", "x", "A" * 32, "%00", ".."])

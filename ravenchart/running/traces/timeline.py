@@ -159,10 +159,10 @@ class _Run:
 
     def _stays(self, name: str) -> Sequence[Visit]:
         """Those in a region of an orthogonal state are cut to the times of that state."""
-        visits, around = self.seen.visits(name), _around(self.system.instances, name)
-        if around is None:
+        visits, outside = self.seen.visits(name), around(self.system.instances, name)
+        if outside is None:
             return visits
-        outer, state = around
+        outer, state = outside
         return tuple(_common(visits, [v for v in self._stays(outer) if v.state == state]))
 
     def _counts(self) -> None:
@@ -191,7 +191,7 @@ class _Run:
         self.found.rows.append(TraceRow(None, self.node, kind, element, str(number)))
 
 
-def _around(instances: Sequence[Instance], name: str) -> tuple[str, str] | None:
+def around(instances: Sequence[Instance], name: str) -> tuple[str, str] | None:
     """Of a traced region ``instance.Region.Nested``: the region around it, and the state there."""
     instance = next((one for one in instances if name.startswith(f"{one.name}.")), None)
     if instance is None:
@@ -202,8 +202,8 @@ def _around(instances: Sequence[Instance], name: str) -> tuple[str, str] | None:
         return None
     region = next(one for one in instance.component.regions if one.name == top)
     state = next(lane.owner for lane in region.lanes() if lane.owner and lane.name == nested)
-    around = region.lane(state)
-    inside = "" if around.owner is None else f".{around.name}"
+    lane = region.lane(state)
+    inside = "" if lane.owner is None else f".{lane.name}"
     return f"{owner}.{top}{inside}", state
 
 

@@ -3,6 +3,7 @@
 import { html, useEffect, useRef, useState } from "./preact.js";
 import { Bar, Place, Word, useBench } from "./parts.js";
 import { get, time } from "./link.js";
+import { Live } from "./live.js";
 
 export function Outcomes({ tab, setTab, at }) {
   const { state } = useBench();
@@ -12,6 +13,7 @@ export function Outcomes({ tab, setTab, at }) {
   const tabs = [
     ["findings", "Findings", errors, Findings], ["chains", "Chains", late, Chains],
     ["buses", "Buses", missed, Buses], ["advice", "Room and advice", 0, Advice],
+    ["live", "Live", 0, Live],
     ["source", "Source", 0, () => html`<${Source} at=${at} />`],
   ];
   function key(event) {

@@ -1,0 +1,154 @@
+"""What a monitor shows, as text: tables in 80 columns, or lines for a pipe."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from ravenchart.analysis.units import microseconds
+
+from .monitored import WatchedEvent, WatchedNode, WatchedProcessor
+from .summary import columns
+
+LATE = 1.0
+"""A snapshot that is older, in s, is said to be."""
+
+
+def tables(
+    title: str, node: WatchedNode, last: Sequence[WatchedEvent], age: float
+) -> RenderableType:
+    """One node; ``last`` are its last transitions and faults, ``age`` is that of the snapshot."""
+    parts: list[RenderableType] = [_head(title, node, age)]
+    if node.processors:
+        parts.append(_processors(node.processors))
+    parts.append(_losses(node))
+    if node.charts:
+        parts.append(_charts(node))
+    if last:
+        parts.append(_events(last))
+    if node.traffic or node.queues:
+        parts.append(_traffic(node))
+    parts.append(Text(f"not seen: {'; '.join(node.not_seen)}", style="dim"))
+    return Group(*parts)
+
+
+def state_of(node: WatchedNode) -> str:
+    """How the controller is doing, in words."""
+    if node.process is not None:
+        return f"process {node.process}" if node.process else "running"
+    return "ended in order" if node.ended else "ENDED WITHOUT ITS REPORT"
+
+
+def lines(node: WatchedNode, name: str, *, counts: bool) -> Iterator[str]:
+    """One node as lines: what happened, and with ``counts`` how each processor and chart is."""
+    where = f"{name} " if name else ""
+    for event in node.events:
+        yield f"{where}{_seconds(event.at)} {event.element} {event.kind} {event.what}"
+    now = _seconds(node.now)
+    if node.unlisted:
+        yield f"{where}{now} {node.unlisted} more transitions and faults, not listed"
+    if not counts:
+        return
+    for one in node.processors:
+        due = "" if one.due is None else f"due {one.due} "
+        bound = "-" if one.bound is None else microseconds(one.bound)
+        yield (
+            f"{where}{now} {one.name} processor {due}completed {one.completed} misses "
+            f"{one.misses} worst {microseconds(one.worst_response)} us R {bound} us {one.word}"
+        )
+    for chart in node.charts:
+        if chart.state is not None:
+            yield f"{where}{now} {chart.name} state {chart.state}"
+    for queue in node.queues:
+        waiting = "?" if queue.waiting is None else queue.waiting
+        yield f"{where}{now} {queue.name} queue {waiting} of {queue.depth}"
+    for what, number in node.lost.items():
+        yield f"{where}{now} {what} lost {number}"
+
+
+def _head(title: str, node: WatchedNode, age: float) -> Text:
+    head = Text()
+    head.append(f"{title}: ", style="bold")
+    bad = node.process is None and not node.ended
+    head.append(state_of(node), style="bold red" if bad else "bold")
+    head.append(f", {_seconds(node.now)} s, snapshot {node.sequence}")
+    if node.process is not None and age > LATE:
+        head.append(f", no news for {age:.1f} s", style="bold red")
+    if node.real_time is False:
+        head.append("\nno real-time priorities: responses are not comparable with bounds")
+    return head
+
+
+def _processors(found: Sequence[WatchedProcessor]) -> Table:
+    table = columns(
+        "processor", "due>", "completed>", "misses>", "worst us>", "R us>", "ratio>", ""
+    )
+    for one in found:
+        bad = one.misses > 0 or one.word == "ABOVE"
+        table.add_row(
+            one.name,
+            "-" if one.due is None else str(one.due),
+            str(one.completed),
+            str(one.misses),
+            microseconds(one.worst_response),
+            "-" if one.bound is None else microseconds(one.bound),
+            f"{100 * one.worst_response / one.bound:.0f} %" if one.bound else "-",
+            one.word,
+            style="bold red" if bad else "",
+        )
+    return table
+
+
+def _losses(node: WatchedNode) -> Text:
+    text = Text()
+    for word, found in (("faults", node.faults), ("lost", node.lost)):
+        listed = ", ".join(f"{what} {number}" for what, number in found.items())
+        text.append(f"{word}: {listed or 'none'}\n", style="bold red" if found else "")
+    text.right_crop(1)
+    return text
+
+
+def _charts(node: WatchedNode) -> Table:
+    table = columns("chart", "state", "for s>", "transitions>")
+    for one in node.charts:
+        spent = "-" if one.since is None else f"{(node.now - one.since) / 1e9:.1f}"
+        style = "dim" if one.state is None else ""
+        table.add_row(one.name, one.state or "-", spent, str(one.transitions), style=style)
+    return table
+
+
+def _events(found: Sequence[WatchedEvent]) -> Table:
+    table = columns("at s>", "last transitions and faults", "")
+    for one in found:
+        what = one.what if one.kind == "transition" else f"FAULT {one.what}"
+        style = "" if one.kind == "transition" else "red"
+        table.add_row(_seconds(one.at), one.element, what, style=style)
+    return table
+
+
+def _traffic(node: WatchedNode) -> Table:
+    kinds = ("arrived", "handled", "sent", "raised")
+    table = columns("port, event, message", *(f"{kind}>" for kind in kinds), "s ago>", "waiting>")
+    waiting = {
+        one.name: f"{'?' if one.waiting is None else one.waiting} of {one.depth}"
+        for one in node.queues
+    }
+    counts: dict[str, dict[str, str]] = {}
+    last: dict[str, int] = {}
+    for one in node.traffic:
+        counts.setdefault(one.name, {})[one.what] = one.state or str(one.count)
+        last[one.name] = max(one.last, last.get(one.name, 0))
+    for name, found in counts.items():
+        cells = (found.get(kind, "") for kind in kinds) if "state" not in found else (
+            found["state"], "", "", "",
+        )  # fmt: skip
+        ago = f"{max(0, node.now - last[name]) / 1e9:.1f}"
+        table.add_row(name, *cells, ago, waiting.get(name, ""))
+    return table
+
+
+def _seconds(time: int) -> str:
+    return f"{time / 1e9:.3f}"

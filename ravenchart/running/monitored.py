@@ -1,0 +1,297 @@
+"""What a monitor shows of a running controller: a snapshot beside the model and its bounds."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+
+from ravenchart.analysis.present.report import compare
+from ravenchart.analysis.system.observed import TraceRecord
+from ravenchart.analysis.system.timing import Analysis
+from ravenchart.described import Described
+from ravenchart.gen.model.component import PortKind
+
+from .snapshots import Snapshot, Tally
+from .traces.timeline import around
+
+LISTED = ("transition", "fault")
+"""The kinds of records that a snapshot lists one by one."""
+
+REAL_TIME = (os.SCHED_FIFO, os.SCHED_RR)
+
+NEVER_SEEN = (
+    "the last response of a processor: it keeps the longest",
+    "values of ports, data and events",
+    "how many events wait in the queues of charts",
+)
+"""What no controller reports."""
+
+
+@dataclass(slots=True)
+class WatchedProcessor(Described):
+    """A processor, from its start to the snapshot."""
+
+    name: str
+    """Its name."""
+    due: int | None
+    """How many releases were due, by the model; null where a bus releases it."""
+    completed: int
+    """How many releases have completed."""
+    misses: int
+    """How many of these completed after their deadline."""
+    worst_response: int
+    """The longest response, in ns."""
+    bound: int | None
+    """The response-time bound R, in ns; null where the analysis has none."""
+    word: str
+    """`ok`, `MISS`, `ABOVE` the bound, or `host`: no more above it than the host withheld."""
+
+
+@dataclass(slots=True)
+class WatchedRow(Described):
+    """An activity of a processor's table."""
+
+    name: str
+    """Its name."""
+    executions: int
+    """How many executions have begun."""
+    longest_execution: int
+    """The longest that has completed, in ns of processor time."""
+
+
+@dataclass(slots=True)
+class WatchedChart(Described):
+    """A region: the chart of an instance, or a region of an orthogonal state."""
+
+    name: str
+    """Instance and region."""
+    state: str | None
+    """The active leaf state; null while the state around the region is not active."""
+    since: int | None
+    """When it was entered, in ns; null as `state`."""
+    transitions: int
+    """How many transitions were taken, those of its orthogonal states included."""
+
+
+@dataclass(slots=True)
+class WatchedEvent(Described):
+    """A transition that was taken, or a fault."""
+
+    at: int
+    """When, in ns."""
+    element: str
+    """The chart; of a fault the processor, port, chart or message."""
+    what: str
+    """The name of the transition or the fault."""
+    kind: str
+    """`transition` or `fault`."""
+
+
+@dataclass(slots=True)
+class WatchedTraffic(Described):
+    """What came to or left a port, event, message or controller of a bus."""
+
+    name: str
+    """Its name."""
+    kind: str
+    """`port`, `event`, `message` or `bus`."""
+    what: str
+    """`sent`, `arrived`, `handled`, `raised`, or the `state` of a controller."""
+    count: int
+    """How often."""
+    last: int
+    """When it was so last, in ns."""
+    state: str | None
+    """Of a controller its state; else null."""
+
+
+@dataclass(slots=True)
+class WatchedQueue(Described):
+    """The queue of a port, from what has arrived and was handled."""
+
+    name: str
+    """The port."""
+    waiting: int | None
+    """How many elements wait; null where it is not known: trace records were lost, or the port
+    has `max_age`."""
+    depth: int
+    """How many it holds."""
+    faults: int
+    """How many faults it had: overflows, and stale values where the port has `max_age`."""
+
+
+@dataclass(slots=True)
+class WatchedNode(Described):
+    """A controller, by its last snapshot. Times count from its start."""
+
+    node: str
+    """The name of the node."""
+    process: int | None
+    """The number of the process; null when it has ended, 0 where it cannot be seen."""
+    ended: bool
+    """Whether it ended in order: then the counts are those of its report."""
+    real_time: bool | None
+    """Whether its threads have real-time priorities; null where that cannot be seen."""
+    sequence: int
+    """The number of the snapshot, from 1."""
+    now: int
+    """The time of the snapshot, in ns."""
+    processors: list[WatchedProcessor]
+    """The one closest to its bound first."""
+    rows: list[WatchedRow]
+    """In the order of the model."""
+    charts: list[WatchedChart]
+    """In the order of the model."""
+    events: list[WatchedEvent]
+    """Transitions and faults that no line before had, the oldest first."""
+    unlisted: int
+    """How many more there were since the line before: too many for a snapshot."""
+    traffic: list[WatchedTraffic]
+    """In the order of the model."""
+    queues: list[WatchedQueue]
+    """Those of queued ports."""
+    faults: dict[str, int]
+    """How many faults of each kind there were."""
+    lost: dict[str, int]
+    """What was lost: trace records, frames, and what found no room in the snapshot."""
+    not_seen: list[str]
+    """What a monitor cannot see of this controller."""
+
+
+class NodeMonitor:
+    """Turns the snapshots of one node into what is shown; it knows what was shown before."""
+
+    def __init__(self, analysis: Analysis, node: str) -> None:
+        self._analysis = analysis
+        self._system = analysis.system
+        self._node = node
+        self._listed: int | None = None
+        self._processors = {p.name.lower(): p for p in self._system.processors}
+
+    def shown(self, snapshot: Snapshot, process: int | None) -> WatchedNode:
+        """What a snapshot says, of a controller whose process is that."""
+        seen = snapshot.seen
+        now = seen.now or 0
+        events, unlisted = self._new(snapshot)
+        tallies = {(t.last.element.name, t.last.kind): t for t in snapshot.tallies}
+        return WatchedNode(
+            node=self._node,
+            process=process,
+            ended=seen.complete,
+            real_time=_has_real_time(process),
+            sequence=snapshot.sequence,
+            now=now,
+            processors=[
+                WatchedProcessor(
+                    one.task, self._due(one.task, now), one.releases, one.misses, one.observed,
+                    one.bound, one.word,
+                )
+                for one in compare(self._analysis, seen)
+            ],
+            rows=[
+                WatchedRow(name, _count(tallies.get((name, "activity"))), longest)
+                for name, longest in seen.executions.items()
+            ],
+            charts=list(self._charts(snapshot, tallies)),
+            events=[_event(one, tuple(seen.faults)) for one in events],
+            unlisted=unlisted,
+            traffic=[
+                WatchedTraffic(
+                    t.last.element.name, t.last.element.kind, t.last.kind, t.count, t.last.time,
+                    t.last.text if t.last.kind == "state" else None,
+                )
+                for t in snapshot.tallies
+                if t.last.kind in ("sent", "arrived", "handled", "raised")
+                or t.last.element.kind == "bus"
+            ],
+            queues=list(self._queues(snapshot, tallies)),
+            faults={kind: n for kind, n in seen.faults.items() if n},
+            lost={what: n for what, n in seen.losses.items() if n},
+            not_seen=list(self._not_seen(snapshot)),
+        )  # fmt: skip
+
+    def _new(self, snapshot: Snapshot) -> tuple[list[TraceRecord], int]:
+        """The transitions and faults since the snapshot before, and how many are not listed."""
+        total = sum(t.count for t in snapshot.tallies if t.last.kind in LISTED)
+        records = snapshot.seen.records
+        came = len(records) if self._listed is None else total - self._listed
+        self._listed = total
+        new = records[-came:] if came > 0 else []
+        return new, came - len(new)
+
+    def _due(self, name: str, now: int) -> int | None:
+        """How many releases of a processor were due by then."""
+        processor = self._processors.get(name.lower())
+        if processor is None or processor.released_by is not None:
+            return None
+        return max(0, (now - processor.offset) // processor.period + 1)
+
+    def _charts(
+        self, snapshot: Snapshot, tallies: dict[tuple[str, str], Tally]
+    ) -> Iterator[WatchedChart]:
+        if not tallies:
+            return
+        states = {name: t.last for (name, kind), t in tallies.items() if kind == "state"}
+        for element in snapshot.seen.map.of_kind("region"):
+            last = states.get(element.name) if self._active(element.name, states) else None
+            yield WatchedChart(
+                element.name,
+                None if last is None else last.text,
+                None if last is None else last.time,
+                _count(tallies.get((element.name, "transition"))),
+            )
+
+    def _active(self, region: str, states: Mapping[str, TraceRecord]) -> bool:
+        """Whether all states around a region are active."""
+        outside = around(self._system.instances, region)
+        if outside is None:
+            return True
+        outer, state = outside
+        return outer in states and states[outer].text == state and self._active(outer, states)
+
+    def _queues(
+        self, snapshot: Snapshot, tallies: dict[tuple[str, str], Tally]
+    ) -> Iterator[WatchedQueue]:
+        gaps = snapshot.seen.trace_lost > 0
+        names = {element.name for element in snapshot.seen.map.of_kind("port")}
+        for instance in self._system.instances:
+            for port in instance.component.inputs():
+                name = f"{instance.name}.{port.name}"
+                if port.kind is not PortKind.QUEUED or name not in names or not tallies:
+                    continue
+                arrived, handled, lost = (
+                    _count(tallies.get((name, kind))) for kind in ("arrived", "handled", "fault")
+                )
+                unknown = gaps or port.max_age is not None  # staleness is a fault, too
+                waiting = None if unknown else max(0, arrived - handled - lost)
+                yield WatchedQueue(name, waiting, port.depth, lost)
+
+    def _not_seen(self, snapshot: Snapshot) -> Iterator[str]:
+        yield from NEVER_SEEN
+        if not snapshot.tallies:
+            yield "states, transitions, messages and faults by element: no record of a trace came"
+        if snapshot.seen.losses.get("snapshot"):
+            yield "what found no room in a snapshot: `lost` counts it"
+        if not snapshot.seen.processors:
+            yield "processors: they are reported by a program that `ravenchart build` has linked"
+
+
+def _count(tally: Tally | None) -> int:
+    return 0 if tally is None else tally.count
+
+
+def _event(record: TraceRecord, faults: Sequence[str]) -> WatchedEvent:
+    """``faults`` are the names of faults, in the order of their numbers."""
+    what = record.text
+    if record.kind == "fault" and 0 <= record.value < len(faults):
+        what = faults[record.value]
+    return WatchedEvent(record.time, record.element.name, what, record.kind)
+
+
+def _has_real_time(process: int | None) -> bool | None:
+    if process:
+        with suppress(OSError):
+            return os.sched_getscheduler(process) in REAL_TIME
+    return None

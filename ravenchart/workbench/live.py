@@ -1,0 +1,66 @@
+"""The running controllers of the model, for the page: as `ravenchart monitor` shows them."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import asdict
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from ravenchart.building import checking
+from ravenchart.building.checking import Checked
+from ravenchart.failures import Failure
+from ravenchart.running import monitoring
+from ravenchart.running.monitoring import WatchedController
+
+
+class LiveView:
+    """What pages see of the controllers; any thread may look."""
+
+    def __init__(self, path: Path) -> None:
+        """For the model at ``path``."""
+        self._path = path
+        self._lock = Lock()
+        self._checked: Checked | None = None
+        self._digest: str | None = None
+        self._stack = ExitStack()
+        self._watched: list[WatchedController] = []
+
+    def look(self, digest: str | None) -> dict[str, Any]:
+        """The nodes as they are now; ``text`` says why there is none, or no other.
+
+        ``digest`` is that of the saved model, None where it has errors.
+        """
+        with self._lock:
+            text = ""
+            for one in self._watched:
+                one.look()
+            if digest is None:
+                text = "The saved model has errors: its controllers are not looked for."
+            elif all(one.node.process is None for one in self._watched) or digest != self._digest:
+                text = self._attached(digest)
+            nodes = [
+                asdict(one.node) | {"last": [asdict(e) for e in one.last], "age": one.age}
+                for one in self._watched
+            ]
+            return {"text": text, "nodes": nodes}
+
+    def _attached(self, digest: str) -> str:
+        """Watch what runs now, in place of what has ended; why there is nothing to watch."""
+        try:
+            if self._checked is None or digest != self._digest:
+                self._checked, self._digest, self._watched = None, digest, []
+                self._stack.close()
+                self._checked = checking.check(self._path, deadlines=False)
+            files = monitoring.found(self._checked, lambda text: None)
+            if not files:
+                text = monitoring.none_runs(self._checked)
+                return f"{text[0].upper()}{text[1:]}."
+            with ExitStack() as made:
+                watched = made.enter_context(monitoring.watching(self._checked, files))
+                self._stack.close()
+                self._stack, self._watched = made.pop_all(), watched
+        except (Failure, OSError) as problem:
+            return str(problem).removeprefix("ravenchart: error: ")
+        return ""

@@ -1,0 +1,43 @@
+"""The running controller in a real browser, on the page of the workbench."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+from ravenchart.building import checking, generation, programs
+from ravenchart.paths import ROOT
+from ravenchart.running.process import ControllerProcess
+from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
+from tests.support.workbench import running
+
+pytestmark = [*IN_BROWSER, pytest.mark.live]
+
+PUMP = ROOT / "examples" / "pump" / "model.yaml"
+
+
+def test_the_live_tab_follows_a_controller_to_its_end(tmp_path: Path) -> None:
+    checked = checking.check(PUMP)
+    generation.write_program(checked)
+    executable = programs.programs_of(checked)[0].build()
+    with running(PUMP) as bench, launched() as browser:
+        pane = BrowserPage(browser, bench.address)
+        pane.page.get_by_role("tab", name="Live").click()
+        shown = pane.page.locator("#outcome")
+        expect(shown).to_contain_text("No controller of Infusion_System runs")
+        process = ControllerProcess(executable, tmp_path / "trace.txt", 0)
+        try:
+            live = pane.page.get_by_role("region", name="Controller of board")
+            expect(live.locator("h3")).to_contain_text("snapshot")
+            expect(live.get_by_role("row", name="bed.Infusion Self_Test")).to_be_visible()
+            expect(live).to_contain_text("Not seen: ")
+            first = live.locator("h3").text_content() or ""
+            expect(live.locator("h3")).not_to_have_text(first)
+            assert serious(pane.page) == []
+        finally:
+            ended = process.stop(0.0)
+        assert ended.exit_code == 0, ended.warnings
+        expect(live.locator("h3")).to_contain_text("ended in order")
+        pane.closed(bench.address)
