@@ -460,81 +460,127 @@ is
            Moved (Active_Walkers, Chart.On_The_Road, Chart.Leaving);
          Self.Data.Walkers_See := Crossing_System.Wait;
       end Enter_Leaving;
+
+      function Is_Agreed return Boolean is
+        (Active_Cars = Chart.Innermost_Cars (Self)
+         and then Active_Walkers = Chart.Innermost_Walkers (Self)
+         and then Active_Top = Chart.Innermost_Top (Self)) with Ghost;
+
+      subtype From_Stopped is Selection range Stopped .. Stop;
+
+      procedure Fire_From_Stopped (Chosen : From_Stopped)
+      with
+        Pre => Is_Ready (Self, Item, Chosen) and then Is_Agreed,
+        Post => Is_Fired (Self'Old, Self, Chosen) and then Is_Agreed
+      is
+      begin
+         case Chosen is
+            when Stopped =>
+               Exit_Stopping;
+               Enter_Held;
+            when Get_Ready =>
+               Exit_Held;
+               Active_Cars := Moved (Active_Cars, Chart.Red, Chart.Nowhere);
+               Enter_Red_Yellow;
+            when Long_Enough =>
+               Exit_Least;
+               Active_Cars :=
+                 Moved (Active_Cars, Chart.Green, Chart.Longer);
+               Self.Place.In_Cars := Lights_States.Longer;
+            when Slow_Down =>
+               Active_Cars :=
+                 Moved (Active_Cars, Chart.Longer, Chart.Nowhere);
+               Enter_Yellow;
+            when Start =>
+               Exit_Red_Yellow;
+               Enter_Green;
+               Enter_Least;
+            when Stop =>
+               Exit_Yellow;
+               Enter_Red;
+               Enter_Stopping;
+         end case;
+      end Fire_From_Stopped;
+
+      subtype From_Ask is Selection range Ask .. Out_Of_Service;
+
+      procedure Fire_From_Ask (Chosen : From_Ask)
+      with
+        Pre => Is_Ready (Self, Item, Chosen) and then Is_Agreed,
+        Post => Is_Fired (Self'Old, Self, Chosen) and then Is_Agreed
+      is
+      begin
+         case Chosen is
+            when Ask =>
+               Active_Walkers :=
+                 Moved (Active_Walkers, Chart.Nobody, Chart.Dont_Walk);
+               Enter_Waiting;
+            when Walk =>
+               Active_Walkers :=
+                 Moved (Active_Walkers, Chart.Waiting, Chart.Nowhere);
+               Enter_On_The_Road;
+               Enter_Walking;
+            when Last_Call =>
+               Exit_Walking;
+               Enter_Leaving;
+            when Gone =>
+               Leave_On_The_Road;
+               Exit_On_The_Road;
+               Enter_Dont_Walk;
+               Enter_Nobody;
+            when Into_Service =>
+               Exit_Blinking;
+               Active_Top :=
+                 Moved (Active_Top, Chart.Nowhere, Chart.Working,
+                    Active_Cars = Chart.Nowhere
+                    and then Active_Walkers = Chart.Nowhere);
+               Self.Place.Top := Lights_States.Working;
+               Self.Place.In_Cars := Lights_States.Stopping;
+               Self.Place.In_Walkers := Lights_States.Nobody;
+               Enter_Red;
+               Enter_Stopping;
+               Enter_Dont_Walk;
+               Enter_Nobody;
+            when Out_Of_Service =>
+               Leave_Cars;
+               Leave_Walkers;
+               Active_Top :=
+                 Moved (Active_Top, Chart.Working, Chart.Nowhere,
+                    Active_Cars = Chart.Nowhere
+                    and then Active_Walkers = Chart.Nowhere);
+               Enter_Blinking;
+         end case;
+      end Fire_From_Ask;
+
+      subtype From_Blink is Selection range Blink .. Blink;
+
+      procedure Fire_From_Blink (Chosen : From_Blink)
+      with
+        Pre => Is_Ready (Self, Item, Chosen) and then Is_Agreed,
+        Post => Is_Fired (Self'Old, Self, Chosen) and then Is_Agreed
+      is
+      begin
+         case Chosen is
+            when Blink =>
+               Self.Data.Cars_See :=
+                 (if Self.Data.Cars_See = Crossing_System.Slow
+                     then Crossing_System.Dark
+                  else Crossing_System.Slow);
+         end case;
+      end Fire_From_Blink;
    begin
       case Chosen is
          when Initial_Entry =>
             Self.Started := True;
             Enter_Blinking;
-         when Stopped =>
-            Exit_Stopping;
-            Enter_Held;
-         when Get_Ready =>
-            Exit_Held;
-            Active_Cars := Moved (Active_Cars, Chart.Red, Chart.Nowhere);
-            Enter_Red_Yellow;
-         when Long_Enough =>
-            Exit_Least;
-            Active_Cars := Moved (Active_Cars, Chart.Green, Chart.Longer);
-            Self.Place.In_Cars := Lights_States.Longer;
-         when Slow_Down =>
-            Active_Cars := Moved (Active_Cars, Chart.Longer, Chart.Nowhere);
-            Enter_Yellow;
-         when Start =>
-            Exit_Red_Yellow;
-            Enter_Green;
-            Enter_Least;
-         when Stop =>
-            Exit_Yellow;
-            Enter_Red;
-            Enter_Stopping;
-         when Ask =>
-            Active_Walkers :=
-              Moved (Active_Walkers, Chart.Nobody, Chart.Dont_Walk);
-            Enter_Waiting;
-         when Walk =>
-            Active_Walkers :=
-              Moved (Active_Walkers, Chart.Waiting, Chart.Nowhere);
-            Enter_On_The_Road;
-            Enter_Walking;
-         when Last_Call =>
-            Exit_Walking;
-            Enter_Leaving;
-         when Gone =>
-            Leave_On_The_Road;
-            Exit_On_The_Road;
-            Enter_Dont_Walk;
-            Enter_Nobody;
-         when Into_Service =>
-            Exit_Blinking;
-            Active_Top :=
-              Moved (Active_Top, Chart.Nowhere, Chart.Working,
-                 Active_Cars = Chart.Nowhere
-                 and then Active_Walkers = Chart.Nowhere);
-            Self.Place.Top := Lights_States.Working;
-            Self.Place.In_Cars := Lights_States.Stopping;
-            Self.Place.In_Walkers := Lights_States.Nobody;
-            Enter_Red;
-            Enter_Stopping;
-            Enter_Dont_Walk;
-            Enter_Nobody;
-         when Out_Of_Service =>
-            Leave_Cars;
-            Leave_Walkers;
-            Active_Top :=
-              Moved (Active_Top, Chart.Working, Chart.Nowhere,
-                 Active_Cars = Chart.Nowhere
-                 and then Active_Walkers = Chart.Nowhere);
-            Enter_Blinking;
-         when Blink =>
-            Self.Data.Cars_See :=
-              (if Self.Data.Cars_See = Crossing_System.Slow
-                  then Crossing_System.Dark
-               else Crossing_System.Slow);
+         when Stopped .. Stop =>
+            Fire_From_Stopped (Chosen);
+         when Ask .. Out_Of_Service =>
+            Fire_From_Ask (Chosen);
+         when Blink .. Blink =>
+            Fire_From_Blink (Chosen);
       end case;
-      pragma Assert
-        (Active_Cars = Chart.Innermost_Cars (Self)
-         and then Active_Walkers = Chart.Innermost_Walkers (Self)
-         and then Active_Top = Chart.Innermost_Top (Self));
+      pragma Assert (Is_Agreed);
    end Fire;
 
    procedure Step

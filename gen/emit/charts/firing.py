@@ -57,7 +57,8 @@ from .safety import Safety, used
 from .shape import START, RegionShape
 
 MANY = 24
-"""More transitions than so many are fired by procedures of a few each (`BATCH`)."""
+"""More transitions than so many, counted once for each lane, are fired by procedures of a few
+each (`BATCH`)."""
 BATCH = 6
 """So many transitions each of them fires: what the prover must see at a time stays small."""
 
@@ -116,7 +117,7 @@ class Moves:
         rows = rows or [("None", (NULL,))]
         agreed: Expr = self.nodes.agreed()
         batches: tuple[Decl, ...] = ()
-        if len(rows) > MANY:
+        if len(rows) * len(self.shape.lanes) > MANY:
             agrees = Subprogram(_AGREED, (), "Boolean", (Aspect("Ghost"),), expression=agreed)
             agreed = Ref(_AGREED)
             past = [equal(Ref("Self.Past"), Ref("Past"))] if self.shape.memories else []
