@@ -73,6 +73,10 @@ class Deployment:
         self.nodes = model.section("nodes")
         self.buses = model.section("buses")
         self.instances = model.section("instances")
+        for name, component in model.section("components").maps():
+            if "instances" in component:
+                where = f"{component.file}:{component.line}"
+                raise UnusableError(f"{where}: the instances inside {name} are not derived again")
         for name, node in self.nodes.maps():
             if node.number("cores", 1) > 1:
                 raise UnusableError(f"{name} has several cores, and no program is generated")
