@@ -143,7 +143,7 @@ def arms(text: str, statement: Span) -> list[Branch]:
     start = text.rfind("\n", 0, statement.start) + 1
     indent = " " * (statement.start - start)
     last = text.find(f"\n{indent}end case;", statement.start) + 1
-    mark = re.compile(rf"^{indent}   when (.*) =>\n", re.M)
+    mark = re.compile(rf"^{indent}   when ([^=]*?)\s=>\n", re.M)
     marks = list(mark.finditer(text, statement.start, last))
     ends = [*(m.start() for m in marks[1:]), last]
     return [Branch(Span(*m.span(1)), Span(m.end(), e)) for m, e in zip(marks, ends, strict=True)]

@@ -46,6 +46,7 @@ def test_a_command_is_sent_with_its_fields_and_those_sent_last(
     near.send("Move", x=300_000)
     near.send("robot_command", kind="Halt", y=7)
     near.wait_for("robot_status.condition", "Ready", 2)
+    far.hears("robot_command", kind="Halt")
     assert [values for _, values in far.heard] == [
         {"kind": "Home", **ZERO},
         {"kind": "Move", **ZERO, "x": 300_000},

@@ -44,7 +44,7 @@ from .lasting import declared_domains
 from .operations import operations
 from .records import region_types
 from .safety import Safety
-from .selection import is_selected, is_selection, when_enabled
+from .selection import is_selected, is_selection
 from .shape import START, RegionShape
 from .stepping import body_of
 
@@ -84,7 +84,7 @@ the program grow with the square of the chart."""
 def _declared(shape: RegionShape) -> list[Decl]:
     chosen = Param("T", "in", "Transition")
     place = Param(shape.place, "in", shape.place_type)
-    lines = tuple((f.literal, when_enabled(shape, f)) for f in shape.firings)
+    lines = tuple((f.literal, shape.enabled_when[f.literal]) for f in shape.firings)
     sources = tuple((f.literal, shape.in_sources(f)) for f in shape.firings)
     if not lines:
         lines = sources = (("None", FALSE),)
@@ -104,7 +104,7 @@ def _declared(shape: RegionShape) -> list[Decl]:
         Comment("The declared chart: the source of each transition. Is it the leaf, or around it?"),
         Subprogram(
             "Enabled",
-            (chosen, *shape.situation()),
+            (chosen, *shape.situation),
             "Boolean",
             expression=both(in_source, CaseExpr(Ref("T"), lines)),
         ),
@@ -158,7 +158,7 @@ def _selections(shape: RegionShape) -> list[Decl]:
         Comment(first),
         Subprogram(
             "Is_Choice",
-            (Param("C", "in", "Choice"), *shape.situation()),
+            (Param("C", "in", "Choice"), *shape.situation),
             "Boolean",
             aspects=(Aspect("Ghost"),),
             expression=both(*flat(lines)),

@@ -74,7 +74,7 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
     items: list[Decl] = [*_starts_with(shape, fired)]
     if shape.single:
         return items
-    params = shape.situation()
+    params = shape.situation
     chosen = Call("Is_Choice", (Arg(None, Ref("Choose'Result")), *shape.situation_args()))
     found = ForSome("I", _FIRED, equal(Ref(_ITEM), Ref("T")))
     earlier = OperatorChain("<", (Ref("Fired.Items (J)"), Ref(_ITEM)))

@@ -34,11 +34,10 @@ from ravenchart.gen.emit.ada.syntax import (
     member,
     number,
 )
-from ravenchart.gen.emit.language.compound import PASSED, TOP, Firing, FiringKind
+from ravenchart.gen.emit.language.compound import PASSED, TOP, Firing
 from ravenchart.gen.emit.language.places import flat
-from ravenchart.gen.emit.language.terms import emit_expression
 from ravenchart.gen.model.chart.tree import Place
-from ravenchart.gen.model.statechart import Lane, When
+from ravenchart.gen.model.statechart import Lane
 
 from .safety import used
 from .shape import PASSING, RegionShape
@@ -51,25 +50,6 @@ _BOUNDS = (Param("First", "in", "Transition"), Param("Last", "in", "Transition")
 
 
 # --- the declared form
-
-
-def when_enabled(shape: RegionShape, firing: Firing) -> Expr:
-    """Trigger and guard of a firing; where it has several sources, that all are complete."""
-    scope = shape.scope("Self.Data")
-    triggers = shape.triggers(firing)
-    parts: list[Expr] = [
-        equal(Ref("Now"), Ref(triggers[0]))
-        if len(triggers) == 1
-        else member(Ref("Now"), " | ".join(triggers))
-    ]
-    parts += [emit_expression(scope, t.condition) for t in firing.triggers if isinstance(t, When)]
-    if firing.kind is FiringKind.RESTORE:
-        memory = shape.memory(shape.compounds.place(firing.sources[0]))
-        parts.append(Ref(f"Self.Past.{memory.known}"))
-    parts += [emit_expression(scope, guard) for guard in firing.guards]
-    if len(firing.sources) > 1:
-        parts += [p for s in firing.sources if (p := shape.is_complete(s)) is not None]
-    return both(*flat(parts))
 
 
 def enabled(shape: RegionShape, chosen: str, **replaced: Expr) -> Call:
@@ -87,7 +67,7 @@ def is_selection(shape: RegionShape) -> Subprogram:
     bounds = () if shape.single else _BOUNDS
     return Subprogram(
         "Is_Selection",
-        (Param("Chosen", "in", "Selection"), *bounds, *shape.situation()),
+        (Param("Chosen", "in", "Selection"), *bounds, *shape.situation),
         "Boolean",
         aspects=(Aspect("Ghost"),),
         expression=both(rule, ForAll("T", among, denied)),
@@ -122,7 +102,7 @@ def whole(shape: RegionShape, lane: Lane) -> Call:
 
 def segment(shape: RegionShape) -> Expr:
     """The selection of a segment, over the state of the region."""
-    return call("Select_Segment", *(Ref(p.name) for p in shape.situation() if p.name != "Now"))
+    return call("Select_Segment", *(Ref(p.name) for p in shape.situation if p.name != "Now"))
 
 
 def _segments(shape: RegionShape) -> list[Decl]:
@@ -140,7 +120,7 @@ def _segments(shape: RegionShape) -> list[Decl]:
     return [
         Subprogram(
             "Select_Segment",
-            tuple(p for p in shape.situation() if p.name != "Now"),
+            tuple(p for p in shape.situation if p.name != "Now"),
             "Transition",
             aspects=(Aspect("Pre", waits), Aspect("Post", post)),
             expression=chosen,
@@ -156,7 +136,7 @@ def _of_lane(shape: RegionShape, lane: Lane) -> list[Decl]:
     for state in shape.region.states:
         if shape.region.lane(state.name) == lane and _has_own(shape, lane, state.name):
             chosen = _selected(shape, lane, state.name)
-            params = used(shape.situation(), chosen)
+            params = used(shape.situation, chosen)
             name = f"Around_{ada_case(state.name)}"
             around.append(Subprogram(name, params, "Selection", expression=chosen))
     return [*around, *_of_place(shape, lane, place)]
@@ -164,7 +144,7 @@ def _of_lane(shape: RegionShape, lane: Lane) -> list[Decl]:
 
 def _around(shape: RegionShape, lane: Lane, state: str) -> Expr:
     """A call of the function of a composite state."""
-    params = used(shape.situation(), _selected(shape, lane, state))
+    params = used(shape.situation, _selected(shape, lane, state))
     return call(f"Around_{ada_case(state)}", *(Ref(p.name) for p in params))
 
 
@@ -227,7 +207,7 @@ def _of_place(shape: RegionShape, lane: Lane, place: Place) -> list[Decl]:
         chosen = IfExpr(((active, chosen),), Ref("None"))
     name = _whole_name(shape, lane)
     right = Aspect("Post", is_selected(shape, f"{name}'Result", lane))
-    params = shape.situation()
+    params = shape.situation
     return [*items, Subprogram(name, params, "Selection", aspects=(right,), expression=chosen)]
 
 
@@ -237,7 +217,7 @@ def _function(shape: RegionShape, lane: Lane, state: str, chosen: Expr) -> Subpr
     active = Aspect("Pre", shape.in_state(f"Self.{shape.place}", state))
     right = Aspect("Post", is_selected(shape, f"{name}'Result", lane))
     aspects = (active, right)
-    return Subprogram(name, shape.situation(), "Selection", aspects=aspects, expression=chosen)
+    return Subprogram(name, shape.situation, "Selection", aspects=aspects, expression=chosen)
 
 
 def _whole_name(shape: RegionShape, lane: Lane) -> str:
@@ -248,7 +228,7 @@ def _condition(shape: RegionShape, firing: Firing) -> Expr:
     """When a firing is enabled, given that its first source is active."""
     held = f"Self.{shape.place}"
     more = [shape.in_state(held, s) for s in firing.sources[1:]]
-    return both(*flat([*more, when_enabled(shape, firing)]))
+    return both(*flat([*more, shape.enabled_when[firing.literal]]))
 
 
 def _choose(shape: RegionShape) -> Subprogram:
@@ -260,7 +240,7 @@ def _choose(shape: RegionShape) -> Subprogram:
         steps.append(IfStatement(((chain("and then", idle), (take,)),)) if idle else take)
     return Subprogram(
         "Choose",
-        shape.situation(),
+        shape.situation,
         "Choice",
         declarations=(Object("C", "Choice"),),
         body=(*steps, Return(Ref("C"))),

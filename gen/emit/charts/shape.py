@@ -19,6 +19,8 @@ from ravenchart.gen.emit.ada.syntax import (
     both,
     call,
     chain,
+    equal,
+    member,
 )
 from ravenchart.gen.emit.language.compound import PASSED, TOP, EntryStep, Firing, FiringKind
 from ravenchart.gen.emit.language.events import carries, event_value
@@ -28,6 +30,7 @@ from ravenchart.gen.emit.language.terms import (
     Scope,
     asks_event,
     compared_states,
+    emit_expression,
     expressions_in,
     names_in,
     raise_in_list,
@@ -357,6 +360,31 @@ class RegionShape(Places):
                     found.append("Conditions")
         return tuple(found)
 
+    @cached_property
+    def enabled_when(self) -> dict[str, Expr]:
+        """For each firing its trigger and guard; where it has several sources, that all are
+        complete."""
+        return {firing.literal: self._enabled_when(firing) for firing in self.firings}
+
+    def _enabled_when(self, firing: Firing) -> Expr:
+        scope = self.scope("Self.Data")
+        triggers = self.triggers(firing)
+        now = Ref("Now")
+        parts: list[Expr] = [
+            equal(now, Ref(triggers[0]))
+            if len(triggers) == 1
+            else member(now, " | ".join(triggers))
+        ]
+        whens = (t for t in firing.triggers if isinstance(t, When))
+        parts += [emit_expression(scope, when.condition) for when in whens]
+        if firing.kind is FiringKind.RESTORE:
+            memory = self.memory(self.compounds.place(firing.sources[0]))
+            parts.append(Ref(f"Self.Past.{memory.known}"))
+        parts += [emit_expression(scope, guard) for guard in firing.guards]
+        if len(firing.sources) > 1:
+            parts += [p for s in firing.sources if (p := self.is_complete(s)) is not None]
+        return both(*flat(parts))
+
     def deferred_item(self, firing: Firing) -> Ref:
         """What a deferral keeps: the event with its value, where events have one."""
         (event,) = firing.triggers
@@ -393,6 +421,7 @@ class RegionShape(Places):
         flows = (e for flow in flows_of(self.region) for e in expressions_in(flow))
         return carries(self.component) and (any(map(asks_event, flows)) or self.deferring)
 
+    @cached_property
     def situation(self) -> tuple[Param, ...]:
         """What decides whether a transition is enabled: the region, the occurrence, and what
         guards read besides."""
@@ -406,7 +435,7 @@ class RegionShape(Places):
 
     def situation_args(self, **replaced: Expr) -> tuple[Arg, ...]:
         """The same as arguments, some replaced."""
-        return plain_args(self.situation(), **replaced)
+        return plain_args(self.situation, **replaced)
 
     def target_params(self) -> tuple[Param, ...]:
         """Target looks at the place and the past only when it needs to."""
