@@ -19,9 +19,9 @@ pytestmark = pytest.mark.skipif(
 
 FILLING = "never_feature-unit-filling.adb"
 BROKEN = {
-    "an effect": ("Data.Tank.Level + 20, 80)", "Data.Tank.Level + 20, 100)", "Is_Safe"),
-    "an entry": ("Self.Data.Pump := Never_Feature.Slow;", "null;", "Is_Safe"),
-    "an exit": ("Self.Data.Tank.Open := False;", "null;", "Is_Safe"),
+    "an effect": ("Data.Tank.Level + 20, 80)", "Data.Tank.Level + 20, 100)"),
+    "an entry": ("Self.Data.Pump := Never_Feature.Slow;", "null;"),
+    "an exit": ("Self.Data.Tank.Open := False;", "null;"),
 }
 
 
@@ -36,12 +36,12 @@ def program(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("what", BROKEN)
 def test_an_effect_that_breaks_an_invariant_is_not_proved(program: Path, what: str) -> None:
-    old, new, claim = BROKEN[what]
+    old, new = BROKEN[what]
     body = program / FILLING
     text = body.read_text()
     assert old in text
     body.write_text(text.replace(old, new))
     variables = {"RAVENCHART_BUILD": str(program.parent / "build")}
     options = ["-P", "never_feature.gpr", "-q", "--output=oneline", "--no-subprojects"]
-    with pytest.raises(ToolFailed, match=rf"might fail, cannot prove .*{claim}"):
+    with pytest.raises(ToolFailed, match=f"^{FILLING}:.* postcondition might fail"):
         ages.run([*options, "-u", FILLING], program, variables)
