@@ -234,12 +234,12 @@ class Safety:
         """That the region is safe, in the middle of a step too."""
         return [] if self.safe is None else [_of(self._is_safe, "Self.")]
 
-    def guarded(self, chosen: str, prefix: str = "Self.") -> list[Expr]:
+    def guarded(self, chosen: str) -> list[Expr]:
         """That the guard of a transition holds."""
         if self.safe is None or self._guards is None:
             return []
         names = [p.name for p in self._guards.params[1:]]
-        args = (Ref(f"{prefix}{n}" if n == "Data" else n) for n in names)
+        args = (Ref("Self.Data" if n == "Data" else n) for n in names)
         return [call("Guards_Hold", Ref(chosen), *args)]
 
     def reads(self) -> set[str]:
