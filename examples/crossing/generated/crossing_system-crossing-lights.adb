@@ -197,16 +197,17 @@ is
      return Boolean is
      (Self.Started
       and then Self.Place = Target (Chosen, Before.Place)
-      and then Is_Lasting (Before, Self, Chosen)
-      and then Is_Safe (Self.Place, Self.Data)) with Ghost;
-   --  Is the region after it as declared, and safe?
+      and then Is_Lasting (Before, Self, Chosen)) with Ghost;
+   --  Is the region after it as declared?
 
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
 
    procedure Fire (Self : in out Region; Item : Event; Chosen : Firing)
    with
      Pre => Is_Ready (Self, Item, Chosen),
-     Post => Is_Fired (Self'Old, Self, Chosen)
+     Post =>
+       Is_Fired (Self'Old, Self, Chosen)
+       and then Is_Safe (Self.Place, Self.Data)
    is
       use type Chart.Node;
 
@@ -471,7 +472,10 @@ is
       procedure Fire_From_Stopped (Chosen : From_Stopped)
       with
         Pre => Is_Ready (Self, Item, Chosen) and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is
@@ -507,7 +511,10 @@ is
       procedure Fire_From_Ask (Chosen : From_Ask)
       with
         Pre => Is_Ready (Self, Item, Chosen) and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is
@@ -557,7 +564,10 @@ is
       procedure Fire_From_Blink (Chosen : From_Blink)
       with
         Pre => Is_Ready (Self, Item, Chosen) and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is

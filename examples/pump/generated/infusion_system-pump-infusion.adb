@@ -353,9 +353,8 @@ is
      return Boolean is
      (Self.Started
       and then Self.Place = Target (Chosen, Before.Place, Before.Past)
-      and then Is_Lasting (Before, Self, Item, Chosen)
-      and then Is_Safe (Self.Place, Self.Data)) with Ghost;
-   --  Is the region after it as declared, and safe?
+      and then Is_Lasting (Before, Self, Item, Chosen)) with Ghost;
+   --  Is the region after it as declared?
 
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
 
@@ -366,7 +365,9 @@ is
       Chosen : Firing)
    with
      Pre => Is_Ready (Self, Ins, Item, Chosen),
-     Post => Is_Fired (Self'Old, Self, Item, Chosen)
+     Post =>
+       Is_Fired (Self'Old, Self, Item, Chosen)
+       and then Is_Safe (Self.Place, Self.Data)
    is
       use type Chart.Node;
 
@@ -671,7 +672,10 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Item, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is
@@ -718,7 +722,10 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Item, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is
@@ -762,7 +769,10 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Item, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is
@@ -835,7 +845,10 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Item, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is
@@ -889,7 +902,10 @@ is
           Is_Ready (Self, Ins, Item, Chosen)
           and then Self.Past = Past
           and then Is_Agreed,
-        Post => Is_Fired (Self'Old, Self, Item, Chosen) and then Is_Agreed
+        Post =>
+          Is_Fired (Self'Old, Self, Item, Chosen)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Is_Agreed
       is
       begin
          case Chosen is

@@ -155,19 +155,21 @@ class Moves:
         if self._lasts is not None:
             told = "Are time-outs, memory and kept events after it as declared?"
             lasting = [self._lasts, Comment(told)]
-        told_of = f"Is the region after it as declared{', and safe' if self.safety else ''}?"
         return [
             *in_one_word(self._ready("Chosen"), "May it be fired? At first only the start may."),
             *lasting,
-            *in_one_word(self._fired, told_of),
+            *in_one_word(self._fired, "Is the region after it as declared?"),
         ]
 
     def _claims(self, *inside: Expr) -> tuple[Aspect, ...]:
-        """Both of a procedure that fires; ``inside`` holds of what only Fire knows."""
+        """Both of a procedure that fires; ``inside`` holds of what only Fire knows.
+
+        `Is_Safe` stands beside `Is_Fired`: gnatprove then names it where an invariant breaks.
+        """
         fired = asked(self._fired, Before=Old("Self"))
         return (
             Aspect("Pre", both(self.ready("Chosen"), *inside)),
-            Aspect("Post", both(fired, *inside[-1:])),
+            Aspect("Post", both(fired, *self.safety.holds(), *inside[-1:])),
         )
 
     def ready(self, chosen: str) -> Expr:
@@ -189,7 +191,6 @@ class Moves:
             Ref("Self.Started"),
             of_before(equal(Ref(self.held), self.shape.target("Chosen"))),
             *([] if self._lasts is None else [asked(self._lasts)]),
-            *self.safety.holds(),
         )
         return self._claim_of("Is_Fired", done, _CHOSEN, _BEFORE)
 
