@@ -88,7 +88,7 @@ CODES: Mapping[str, str] = {
     "RV-0412": "A data item has two writers.",
     "RV-0413": "One step or execution may send twice on the same port.",
     "RV-0414": "An activity does not declare what its flow reads, writes, sends, calls or raises.",
-    "RV-0415": "A record is set or sent incompletely, or as a whole where fields are wanted.",
+    "RV-0415": "A record is sent incompletely, or is set or sent as a whole from another type.",
     "RV-0416": "A region asks for its own state.",
     "RV-0417": "A comparison has one outcome: it reads nothing, or compares a value with itself.",
     "RV-0418": "A value is set to itself.",

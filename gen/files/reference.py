@@ -109,11 +109,12 @@ or given to; where that has the literal, it goes before a name of another type. 
 zero.
 
 Bounds are computed from the ranges of the types. `if`, `and` and `or` let what stands behind a
-comparison use it: in `if x < 1000 then x + 1 else 0`, `x + 1` is at most 1000. A value that is
-set or sent must provably fit its target. A divisor must provably differ from 0, and every
-intermediate result must fit 64 bits. `+ - = /= < <= > >= min max clamp if` take operands of one
-unit or plain numbers; of the operands of `*` one has no unit, and so has the divisor of `/`. A
-comparison of constants, or of a value with itself, is an error: its outcome never changes.
+comparison use it: in `if x < 1000 then x + 1 else 0`, `x + 1` is at most 1000. The actions under
+`if` use its condition too, until one of them sets the name. A value that is set or sent must
+provably fit its target. A divisor must provably differ from 0, and every intermediate result must
+fit 64 bits. `+ - = /= < <= > >= min max clamp if` take operands of one unit or plain numbers; of
+the operands of `*` one has no unit, and so has the divisor of `/`. A comparison of constants, or of
+a value with itself, is an error: its outcome never changes.
 
 In guard and effect of a transition `on` an event with a type, `event` is the value that came with
 it, or `event.field` a field of it.

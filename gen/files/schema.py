@@ -110,7 +110,9 @@ class SetForm(Element):
     """Give a data item, or one field of it, a value."""
 
     set: str = key("The data item `item`, or a field of it: `item.field`.")
-    to: ExpressionText = key("Expression that provably fits the target's range.")
+    to: ExpressionText = key(
+        "Expression that provably fits the target's range; for a whole record a name of its type."
+    )
 
 
 Carried = Annotated[

@@ -54,32 +54,49 @@ def flow_of(
     forms: ActionForms | None, words: Vocabulary, targets: Targets, findings: Findings
 ) -> Flow:
     """The sound actions of a flow; what is wrong with the others is reported."""
-    actions = (_action(form, words, targets, findings) for form in forms or ())
-    return tuple(action for action in actions if action is not None)
+    actions: list[Action] = []
+    for form in forms or ():
+        found = _actions(form, words, targets, findings)
+        actions += found
+        sets = {(one.data, one.field) for one in actions_of(found) if isinstance(one, Set)}
+        words = words.after(sets)
+    return tuple(actions)
 
 
-def _action(
+def _actions(
     form: SetForm | SendForm | CallForm | RaiseForm | IfForm,
     words: Vocabulary,
     targets: Targets,
     findings: Findings,
-) -> Action | None:
+) -> Flow:
+    """What a form stands for: one action, but for a record one for each field."""
+    action: Action | None
     match form:
         case SetForm():
             return _set(form, words, targets, findings)
         case SendForm():
-            return _send(form, words, targets, findings)
+            action = _send(form, words, targets, findings)
         case CallForm():
-            return _call(form, words, targets, findings)
+            action = _call(form, words, targets, findings)
         case RaiseForm():
-            return _raise(form, words, targets, findings)
+            action = _raise(form, words, targets, findings)
+        case IfForm():
+            action = _if(form, words, targets, findings)
+    return () if action is None else (action,)
+
+
+def _if(form: IfForm, words: Vocabulary, targets: Targets, findings: Findings) -> Action | None:
+    """Each branch knows what the condition says."""
     guard = condition(form.if_, form.place("if"), words, findings, "if")
-    then = flow_of(form.then, words, targets, findings)
-    otherwise = flow_of(form.else_, words, targets, findings)
+    holds, fails = (
+        (words, words) if guard is None else (words.where(guard, h) for h in (True, False))
+    )
+    then = flow_of(form.then, holds, targets, findings)
+    otherwise = flow_of(form.else_, fails, targets, findings)
     return None if guard is None else If(form.at_key("if"), guard, then, otherwise)
 
 
-def _set(form: SetForm, words: Vocabulary, targets: Targets, findings: Findings) -> Action | None:
+def _set(form: SetForm, words: Vocabulary, targets: Targets, findings: Findings) -> Flow:
     item, _, member = form.set.partition(".")
     origin = form.at("set")
     hint: str | None
@@ -93,39 +110,53 @@ def _set(form: SetForm, words: Vocabulary, targets: Targets, findings: Findings)
             message = f"there is no data item named `{item}`"
             hint = meant(item, targets.data.names())
         findings.error("RV-0411", origin, message, hint=hint)
-        return None
+        return ()
     type_ = targets.data.find(item)
     if type_ is None:
         findings.lose()
-        return None
+        return ()
     name = targets.data.items[item.lower()][0]
     target: ScalarType
     if isinstance(type_, RecordType):
+        if not member:
+            return _set_record(form, name, type_, words, findings)
         fields = {one.name.lower(): one for one in type_.fields}
         if member.lower() not in fields:
             hint = meant(member, (one.name for one in type_.fields))
-            if member:
-                message = f"`{name}` is of type {type_.name}, which has no field `{member}`"
-                findings.error("RV-0403", origin, message, hint=hint)
-            else:
-                message = f"`{name}` is a record: set its fields one by one"
-                findings.error("RV-0415", origin, message, hint=f"`set: {name}.<field>`")
-            return None
+            message = f"`{name}` is of type {type_.name}, which has no field `{member}`"
+            findings.error("RV-0403", origin, message, hint=hint)
+            return ()
         chosen = fields[member.lower()]
         findings.uses.append(NameUse(chosen.name, origin, "field", chosen.origin))
         target, member = chosen.type, chosen.name
     elif member:
         findings.error("RV-0403", origin, f"`{name}` is a scalar and has no field `{member}`")
-        return None
+        return ()
     else:
         target = type_
     shown = f"{name}.{member}" if member else name
     value = fitting(form.to, form.place("to"), shown, target, words, findings)
     if value == Name(Reading.DATA, name, member or None, target):
-        message = f"`{shown}` is set to itself"
-        findings.error("RV-0418", form.at("to"), message, hint="remove this action")
-        return None
-    return None if value is None else Set(form.at_key("set"), name, member or None, value)
+        return _refuse_itself(form, shown, findings)
+    return () if value is None else (Set(form.at_key("set"), name, member or None, value),)
+
+
+def _set_record(
+    form: SetForm, name: str, type_: RecordType, words: Vocabulary, findings: Findings
+) -> Flow:
+    """A record set to another one: field by field, for no field of one depends on another."""
+    message = f"`{name}` is a record: `to` must be a name of the type {type_.name}"
+    refusal = (message, f"or set its fields one by one: `set: {name}.{type_.fields[0].name}`")
+    values = _whole(form.to, form.place("to"), type_, refusal, words, findings)
+    if values == _fields_of(Reading.DATA, name, type_):
+        return _refuse_itself(form, name, findings)
+    return tuple(Set(form.at_key("set"), name, member, value) for member, value in values or ())
+
+
+def _refuse_itself(form: SetForm, shown: str, findings: Findings) -> Flow:
+    message = f"`{shown}` is set to itself"
+    findings.error("RV-0418", form.at("to"), message, hint="remove this action")
+    return ()
 
 
 def _send(form: SendForm, words: Vocabulary, targets: Targets, findings: Findings) -> Action | None:
@@ -250,7 +281,10 @@ def _fields(
 ) -> FlowValues | None:
     """The values of a record, in the type's field order."""
     if not isinstance(given, Mapping):
-        return _whole(given, form.place("with"), carrier, type_, words, findings)
+        fields = ", ".join(f"{one.name}: ..." for one in type_.fields[:4])
+        message = f"`{carrier}` carries {type_.name}: give its fields, or a name of that type"
+        refusal = (message, f"`with: {{{fields}}}`")
+        return _whole(given, form.place("with"), type_, refusal, words, findings)
     before = findings.count()
     names = {name.lower(): name for name in given}
     lost = {name.lower() for name in form.dropped("with")}
@@ -279,23 +313,26 @@ def _fields(
 def _whole(
     text: int | bool | str,
     place: TextPlace,
-    carrier: str,
     type_: RecordType,
+    refusal: tuple[str, str],
     words: Vocabulary,
     findings: Findings,
 ) -> FlowValues | None:
-    """A record given as it was read from something of the same type."""
+    """A record given as it was read from something of the same type; else message and hint."""
     checked = read(text, place, words, findings)
     if checked is None:
         return None
     source = checked.expression
     if checked.type is not type_ or not isinstance(source, Name):
-        fields = ", ".join(f"{one.name}: ..." for one in type_.fields[:4])
-        message = f"`{carrier}` carries {type_.name}: give its fields, or a name of that type"
-        findings.error("RV-0415", place.origin, message, hint=f"`with: {{{fields}}}`")
+        message, hint = refusal
+        findings.error("RV-0415", place.origin, message, hint=hint)
         return None
-    fields_of = (Name(source.kind, source.name, one.name, one.type) for one in type_.fields)
-    return tuple((name.field, name) for name in fields_of)
+    return _fields_of(source.kind, source.name, type_)
+
+
+def _fields_of(kind: Reading, name: str, type_: RecordType) -> FlowValues:
+    """All fields of something that is read."""
+    return tuple((one.name, Name(kind, name, one.name, one.type)) for one in type_.fields)
 
 
 # --- What flows do ---------------------------------------------------------------

@@ -398,7 +398,7 @@ def read(
     if isinstance(text, bool):
         return CheckedExpression(Literal(str(text), BOOLEAN), BOOLEAN)
     term = parse(str(text))
-    checker = Checker(vocabulary, findings, place)
+    checker = Checker(vocabulary, findings, place, vocabulary.known)
     if isinstance(term, Malformed):
         where = checker.at(Term("name", term.at, ""))
         findings.error(term.code, where, term.message, hint=term.hint)

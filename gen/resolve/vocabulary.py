@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Container
+from dataclasses import dataclass, field, replace
 
 from ravenchart.gen.language.intervals import Interval
 from ravenchart.gen.language.names import NameScope, NameUse
+from ravenchart.gen.language.narrowing import Known, narrowed
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     EnumerationType,
@@ -35,6 +37,21 @@ class Vocabulary:
     """States of the own region that lie in one of several regions of a state, in lower case."""
     no_event: str = "there is no triggering event here"
     """Why ``event`` has no value."""
+    known: Known = field(default_factory=dict)
+    """What the conditions around a place say about names."""
+
+    def where(self, condition: Expression, holds: bool) -> Vocabulary:
+        """The same, where it is known whether the condition holds."""
+        return replace(self, known=narrowed(self.known, condition, holds))
+
+    def after(self, written: Container[tuple[str, str | None]]) -> Vocabulary:
+        """The same, after these data items or fields were set: no condition holds of them now."""
+        kept = {
+            key: bounds
+            for key, bounds in self.known.items()
+            if key[0] is not Reading.DATA or key[1:] not in written
+        }
+        return replace(self, known=kept)
 
     def with_event(self, event: str, type_: Type | None) -> Vocabulary:
         """The same, where ``event`` is the value of the triggering event; silent without type."""
