@@ -71,5 +71,6 @@ def execute(options: argparse.Namespace) -> int:
     with progress("draw"):
         write(drawings, folder)
     options.answer.result = DrawResult(str(folder), options.format, list(drawings))
-    print(f"{folder}: {len(drawings)} drawings")
+    noun = "drawing" if len(drawings) == 1 else "drawings"
+    print(f"{folder}: {len(drawings)} {noun}")
     return OK
