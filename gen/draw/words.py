@@ -59,7 +59,8 @@ def _bound(item: Expression) -> tuple[int, str]:
             return _ATOM, value.lower() if value in ("True", "False") else str(value)
         case Name(kind, name, field):
             base = "event" if kind is Reading.EVENT else name
-            return _ATOM, f"{base}.{field}" if field else base
+            text = f"{base}.{field}" if field else base
+            return _ATOM, f"old({text})" if kind is Reading.OLD else text
         case PortTest(port, state):
             return _ATOM, f"{state}({port})"
         case InState(region, state):

@@ -116,6 +116,9 @@ fit 64 bits. `+ - = /= < <= > >= min max clamp if` take operands of one unit or 
 the operands of `*` one has no unit, and so has the divisor of `/`. A comparison of constants, or of
 a value with itself, is an error: its outcome never changes.
 
+In a [contract](contracts.md) a name is something that the activity reads, writes or sends. In its
+`ensures`, `old(item)` or `old(item.field)` is a data item before the execution.
+
 In guard and effect of a transition `on` an event with a type, `event` is the value that came with
 it, or `event.field` a field of it.
 

@@ -345,6 +345,13 @@ class RegionForm(Element):
     )
 
 
+Conditions = Annotated[
+    Annotated[ExpressionText, Tag("<one>")] | Annotated[list[ExpressionText], Tag("<list>")],
+    shaped("a condition or a list of conditions"),
+]
+"""One side of a contract."""
+
+
 class ActivityForm(Element):
     """A named, bounded piece of work."""
 
@@ -362,6 +369,13 @@ class ActivityForm(Element):
     calls: list[Reference] | None = optional("Required commands it calls.")
     raises: list[Reference] | None = optional(
         "Events it raises; with `while` also `done`, which completes the state."
+    )
+    requires: Conditions | None = optional(
+        "Contract: conditions on what it reads, which hold whenever an execution begins."
+    )
+    ensures: Conditions | None = optional(
+        "Contract: conditions on what it reads, writes and sends, which hold when an execution "
+        "ends; `old(item)` is a data item before it."
     )
     body: Annotated[
         Annotated[Literal["user"], Tag("<one>")] | Annotated[list[ActionForm], Tag("<list>")],

@@ -304,10 +304,14 @@ class Element(BaseModel):
 
     def item_at(self, name: str, index: int) -> Origin:
         """Where an item of the list under the key stands."""
+        return self.item_place(name, index).origin
+
+    def item_place(self, name: str, index: int) -> TextPlace:
+        """The place of an item of the list under the key."""
         value = self.tree.get(name)
         if isinstance(value, Seq) and index < len(value.items_at):
-            return value.items_at[index].origin
-        return self.at(name)
+            return value.items_at[index]
+        return self.place(name)
 
     def entry_at(self, name: str, entry: str) -> Origin:
         """Where the key ``entry`` of the mapping under the key ``name`` stands."""

@@ -119,7 +119,11 @@ def decided(operator: str, left: Expression, right: Expression) -> Decided | Non
 def _holds(operator: str, left: Literal, right: Literal) -> bool:
     if isinstance(left.type, EnumerationType):
         return operator == "/="  # the same literals are the same expressions
-    first, second = int(left.value), int(right.value)
+    return compared_numbers(operator, int(left.value), int(right.value))
+
+
+def compared_numbers(operator: str, first: int, second: int) -> bool:
+    """The outcome of a comparison of two numbers."""
     return {
         "=": first == second,
         "/=": first != second,

@@ -109,6 +109,10 @@ class Reading(Enum):
     PORT = "port"
     EVENT = "event"
     """The value that the triggering event carries; ``name`` is the event's."""
+    OUTPUT = "output"
+    """The value that an execution sends on an output port, or gives a command that it calls."""
+    OLD = "old"
+    """A data item as it was before the execution."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -116,6 +116,14 @@ class StateRef:
 
 
 @dataclass(frozen=True, slots=True)
+class Clause:
+    """One condition of an activity's contract: of what it requires, or of what it ensures."""
+
+    origin: Origin
+    condition: Expression
+
+
+@dataclass(frozen=True, slots=True)
 class Activity:
     """A named, bounded piece of work: the user's SPARK procedure, or a flow.
 
@@ -136,6 +144,8 @@ class Activity:
     while_in: StateRef | None
     flow: Flow | None
     """None: the body is the user's."""
+    requires: tuple[Clause, ...] = ()
+    ensures: tuple[Clause, ...] = ()
 
     @property
     def completes(self) -> StateRef | None:

@@ -17,13 +17,14 @@ from ravenchart.gen.language.names import Findings, NameScope, Unknown, meant
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Flow, Ns, Type
 from ravenchart.gen.model.commands import Command, Need
-from ravenchart.gen.model.component import Activity, Component, Direction, StateRef
+from ravenchart.gen.model.component import Activity, Clause, Component, Direction, StateRef
 from ravenchart.gen.model.statechart import DONE, Region, Timing
 from ravenchart.gen.origins import Origin
 
 from .chart_names import States, concurrent_states, names_of
 from .chart_structure import structure_errors
 from .charts import region_of
+from .contracts import contract_of
 from .flows import Targets, Use, called, flow_of
 from .interfaces import heard_of, needs_of, provided_of, servers_serve_once, stand_ins_agree
 from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
@@ -212,6 +213,7 @@ def _activity(
     if form.while_ is not None:
         while_in = _state_ref(form.while_, form.at("while"), words, findings)
     targets = replace(targets, do_activity=form.while_ is not None)
+    before = findings.count()
     lists = _lists(form, words, targets, findings)
     flow: Flow | None = None
     if not isinstance(form.body, str):
@@ -221,6 +223,10 @@ def _activity(
         use.flow(flow)
         if findings.count() == count and not form.damaged:
             lists = _agreed(name, form, lists, use, targets, findings)
+    requires: tuple[Clause, ...] = ()
+    ensures: tuple[Clause, ...] = ()
+    if findings.count() == before:
+        requires, ensures = contract_of(name, form, lists, words, targets, findings)
     return Activity(
         name=name,
         origin=form.origin,
@@ -231,6 +237,8 @@ def _activity(
         raises=lists["raises"],
         while_in=while_in,
         flow=flow,
+        requires=requires,
+        ensures=ensures,
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from ravenchart.gen.files.located import TextPlace
@@ -38,6 +38,8 @@ FUNCTIONS: Mapping[str, int] = {
     "never_received": 1,
 }
 """Functions with the number of their arguments."""
+OLD = "old"
+"""The function that gives a data item before the execution."""
 PORT_TESTS = ("fresh", "stale", "never_received")
 
 
@@ -48,7 +50,12 @@ class Checker:
     vocabulary: Vocabulary
     findings: Findings
     place: TextPlace
-    known: Known = field(default_factory=dict)
+    known: Known = field(init=False)
+    """What the conditions around a term say about names."""
+
+    def __post_init__(self) -> None:
+        """Begin with what is known around the text."""
+        self.known = self.vocabulary.known
 
     def at(self, term: Term) -> Origin:
         """Where a term stands in the model file."""
@@ -178,6 +185,8 @@ class Checker:
     def call(self, term: Term) -> CheckedExpression | None:
         """A function applied."""
         function = term.word.lower()
+        if function == OLD:
+            return self.old(term)
         if function not in FUNCTIONS:
             message = f"there is no function `{term.word}`"
             self.refuse("RV-0409", term, message, meant(function, (*FUNCTIONS, "in")))
@@ -195,6 +204,12 @@ class Checker:
             found = self.vocabulary.inputs.look_up(port.word, self.at(port), self.findings)
             return None if found is None else CheckedExpression(PortTest(found, function), BOOLEAN)
         return self.arithmetic(function, term, self.numbers(term, term.operands))
+
+    def old(self, term: Term) -> CheckedExpression | None:
+        """``old(item)``, which only a checker of `ensures` knows."""
+        message = f"`{OLD}` has a meaning only in `ensures`"
+        self.refuse("RV-0419", term, message, "name the data item itself")
+        return None
 
     def operator(self, term: Term, expected: EnumerationType | None) -> CheckedExpression | None:
         """An operator applied."""
@@ -393,12 +408,13 @@ def read(
     vocabulary: Vocabulary,
     findings: Findings,
     expected: EnumerationType | None = None,
+    checks: Callable[[Vocabulary, Findings, TextPlace], Checker] = Checker,
 ) -> CheckedExpression | None:
     """The typed expression that a value in a model stands for; None after an error."""
     if isinstance(text, bool):
         return CheckedExpression(Literal(str(text), BOOLEAN), BOOLEAN)
     term = parse(str(text))
-    checker = Checker(vocabulary, findings, place, vocabulary.known)
+    checker = checks(vocabulary, findings, place)
     if isinstance(term, Malformed):
         where = checker.at(Term("name", term.at, ""))
         findings.error(term.code, where, term.message, hint=term.hint)
@@ -407,10 +423,15 @@ def read(
 
 
 def condition(
-    text: int | bool | str, place: TextPlace, vocabulary: Vocabulary, findings: Findings, taker: str
+    text: int | bool | str,
+    place: TextPlace,
+    vocabulary: Vocabulary,
+    findings: Findings,
+    taker: str,
+    checks: Callable[[Vocabulary, Findings, TextPlace], Checker] = Checker,
 ) -> Expression | None:
     """A Boolean expression for ``taker``, such as ``guard``."""
-    checked = read(text, place, vocabulary, findings, BOOLEAN)
+    checked = read(text, place, vocabulary, findings, BOOLEAN, checks)
     if checked is None:
         return None
     if checked.type is not BOOLEAN:

@@ -10,7 +10,13 @@ import hashlib
 from collections.abc import Iterator
 
 from ravenchart.behaviour.limits import ON_MODEL, UNFINISHED
-from ravenchart.gen.emit.ada.naming import component_package, region_package, root_package
+from ravenchart.gen.emit.ada.naming import (
+    component_package,
+    instance_package,
+    region_package,
+    root_package,
+)
+from ravenchart.gen.emit.components.packages import activity_package
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region
 
@@ -188,6 +194,7 @@ def _charts(facts: Facts) -> Iterator[Claim]:
                 )
             yield from _invariants(facts, component, node, suffix)
             yield from _bodies(facts, component, node, suffix)
+            yield from _contracts(facts, component, node, suffix)
 
 
 def _invariants(
@@ -235,9 +242,12 @@ def _bodies(facts: Facts, component: Component, node: NodeFacts, suffix: str) ->
             continue
         unit = f"{package}.{child}"
         verdict, problems, told = _proved_unit(node, unit, may_be_simple=True)
-        if mine and verdict is Shown.MET:
+        unstated = [a.name for a in component.activities if a.flow is None and not a.ensures]
+        if mine and unstated and verdict is Shown.MET:
             verdict = Shown.PARTLY
             problems = ("what the user's bodies compute is not stated by a contract",)
+            if len(unstated) < len(names):
+                problems = (f"no contract states what these compute: {', '.join(unstated)}",)
         yield Claim(
             f"activities-{component.name}.{child.lower()}{suffix}",
             ClaimKind.PROGRAM,
@@ -252,6 +262,44 @@ def _bodies(facts: Facts, component: Component, node: NodeFacts, suffix: str) ->
             problems,
             _inputs(node),
         )
+
+
+def _contracts(facts: Facts, component: Component, node: NodeFacts, suffix: str) -> Iterator[Claim]:
+    """What activities require is shown at each call, and what they ensure of their bodies."""
+    system, part = facts.checked.system, node.program.part
+    for activity in component.activities:
+        home = f"{component_package(system, component)}.{activity_package(component, activity)}"
+        callers = [
+            instance_package(system, one)
+            for one in part.instances
+            if any(slot.name == activity.name for slot in part.slots_of(one.name))
+            and one.component.name == component.name
+        ]
+        for side, clauses, when, units, theorem in (
+            ("requires", activity.requires, "begins", callers, _PRE),
+            ("ensures", activity.ensures, "ends", callers and [home], _POST),
+        ):
+            if not clauses or not units:
+                continue
+            found = [_proved_unit(node, unit) for unit in units]
+            verdict, problems, told = next((f for f in found if f[0] is not Shown.MET), found[0])
+            yield Claim(
+                f"{side}-{component.name}.{activity.name}{suffix}",
+                ClaimKind.PROGRAM,
+                (f"{component.name}.{activity.name}",),
+                f"{component.name}.{activity.name}: the conditions of `{side}` hold when an "
+                f"execution {when}{_on(facts, node)}",
+                theorem + (told if len(units) == 1 else ""),
+                "proof",
+                _tool(node.record),
+                verdict,
+                problems,
+                _inputs(node),
+            )
+
+
+_PRE = "precondition of the activity's procedure, proved where each instance calls it."
+_POST = "postcondition of the activity's procedure, proved of its body."
 
 
 def _frames(facts: Facts) -> Iterator[Claim]:

@@ -22,7 +22,8 @@ LIMITS = (
      "as correct (ASM-006, ASM-009)."),
     ("invariants", "`never` is a contract of the generated code only where a claim says so "
      "(code-never-...). Any other is checked on the model."),
-    ("effects", "No postcondition states what an effect or a user's body does to the data."),
+    ("effects", "No postcondition states what an effect does to the data, nor what a body of an "
+     "activity without `ensures` does."),
     ("mutation", "No mutation score is part of this folder."),
     ("records", "A proof record is a text file: whoever can write it can lie. Who does not trust "
      "it runs `ravenchart prove MODEL --fresh` and compares."),

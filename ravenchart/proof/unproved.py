@@ -16,6 +16,7 @@ from pathlib import Path
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
+from . import contracts
 from .spark_results import Open
 
 _MESSAGE = re.compile(r"(?P<file>[^:\n]+):(?P<line>\d+):(?P<column>\d+): \w+: (?P<text>.*)")
@@ -107,6 +108,11 @@ def _finding(
     element, origin = element_of(system, one.entity)
     generated = shown.startswith("generated")
     help_ = next((text for word, text in HELPS.items() if word in check), OTHERWISE)
+    help_ = IN_GENERATED if generated else help_
+    part = contracts.part_of(one, check, system, places)
+    if part is not None:
+        element, origin = f"{part.element}.{part.side}", part.origin
+        help_ = contracts.HELPS[part.side]
     return UnprovedCheck(
         shown,
         one.line,
@@ -116,7 +122,7 @@ def _finding(
         "" if example is None else example["values"],
         element,
         origin,
-        IN_GENERATED if generated else help_,
+        help_,
     )
 
 

@@ -462,3 +462,27 @@ def test_every_fault_of_the_matrix_is_in_the_folder(home: Path) -> None:
     text = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
     rows = [line for line in text.splitlines() if line.startswith("| ")]
     assert len(made(home).evidence.faults) == len(rows) - 2
+
+
+def _with_contract(home: Path) -> None:
+    contract = "requires: fresh(level) or stale(level), ensures: noted = level"
+    seen = "seen: {type: Level, initial: 0}"
+    _edit(home / "model.yaml", seen, f"{seen}, noted: {{type: Level, initial: 0}}")
+    old = "body: user, reads: [level]"
+    _edit(home / "model.yaml", old, f"{old}, writes: [noted], {contract}")
+    assert main(["generate", str(home / "model.yaml")]) == 0
+
+
+def test_each_side_of_a_contract_is_a_claim(home: Path) -> None:
+    """What is required is shown by the instances, and what is ensured by the body."""
+    _with_contract(home)
+    evidence.record(home, (*evidence.UNITS, "Valve_House.Valve_1.Run_Look"))
+    found = made(home)
+    verdict = verdicts(found)
+    for side in ("requires", "ensures"):
+        assert verdict[f"{side}-Valve.look"] == "met"
+    assert verdict["activities-Valve.activities"] == "met"
+    evidence.record(home)
+    assert verdicts(made(home))["requires-Valve.look"] == "not met"
+    evidence.record(home, [one for one in evidence.UNITS if not one.endswith("Look")])
+    assert verdicts(made(home))["ensures-Valve.look"] == "not met"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from ravenchart.gen.emit.ada.naming import (
     ada_case,
     component_name,
@@ -46,6 +48,8 @@ from ravenchart.gen.language.terms import RecordType, Type, always, named
 from ravenchart.gen.model.component import Activity, Component, Data, Direction, Port
 from ravenchart.gen.model.statechart import RAISED_PER_STEP, Region
 from ravenchart.gen.model.system import System
+
+from .contracts import contract, kept_types, needed_before, used_types
 
 
 def leaf_type(component: Component, region: Region) -> str:
@@ -110,6 +114,7 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
             )
         )
         items.append(PlainType(f"{name}_View", f"{name}_Port.Port", subtype=True))
+    items += kept_types(system, component)
     withs = ["Ravenchart.Event_Lists"] if component.events else []
     withs += ["Ravenchart.Port_Regions"] if component.inputs() else []
     package = component_package(system, component)
@@ -142,6 +147,12 @@ def _raised(event: str, given: Expr | None) -> tuple[Stmt, ...]:
 def send_flag(port: Port) -> str:
     """The parameter by which a flow says that it sends, or a body that it calls."""
     return f"{'Call' if port.is_command else 'Send'}_{ada_case(port.name)}"
+
+
+def _sent_flag(component: Component, activity: Activity, port: str) -> str | None:
+    """The parameter that tells whether an execution sends on a port; None: each does."""
+    found = component.port(port)
+    return send_flag(found) if has_flag(activity, found) else None
 
 
 def has_flag(activity: Activity, port: Port) -> bool:
@@ -203,15 +214,16 @@ def emit_activities(system: System, component: Component, header: str) -> tuple[
     units: list[Unit] = []
     for home in dict.fromkeys(activity_package(component, a) for a in users):
         inside = tuple(a for a in users if activity_package(component, a) == home)
-        items = _specs(system, component, inside, Aspect("Global", Ref("null")))
+        items = _specs(system, component, inside)
         units.append(Unit(header, (), Package(f"{package}.{home}", items, (SPARK,))))
     if flows:
-        items = _specs(system, component, flows, Aspect("Global", Ref("null")))
+        items = _specs(system, component, flows)
         units.append(Unit(header, (), Package(f"{package}.Flows", items, (SPARK,))))
         operators = {name for a in flows for name in flow_operators(a.flow or ())}
         operators |= compared_states(
             component, [e for a in flows for e in expressions_in(a.flow or ())]
         )
+        operators -= {*used_types(component, flows)}  # the spec uses these
         bodies: tuple[Decl, ...] = (
             *(UseType(name) for name in sorted(operators)),
             *(_flow_body(system, component, a) for a in flows),
@@ -224,6 +236,8 @@ def _write_mode(activity: Activity, data: Data) -> str:
     """``in out`` for what is read as well, or not always set; ``out`` otherwise."""
     if activity.flow is None:
         return "in out" if data.name in activity.reads else "out"
+    if data.name in needed_before(activity):
+        return "in out"
     parts = {data.name}
     if isinstance(data.type, RecordType):
         parts = {f"{data.name}.{field.name}" for field in data.type.fields}
@@ -232,12 +246,16 @@ def _write_mode(activity: Activity, data: Data) -> str:
 
 
 def _specs(
-    system: System, component: Component, activities: tuple[Activity, ...], aspect: Aspect
+    system: System, component: Component, activities: tuple[Activity, ...]
 ) -> tuple[Decl, ...]:
-    items: list[Decl] = []
+    items: list[Decl] = [UseType(name) for name in used_types(component, activities)]
     for activity in activities:
         params = activity_params(system, component, activity)
-        items.append(Subprogram(ada_case(activity.name), params, aspects=(aspect,)))
+        aspects = (
+            Aspect("Global", Ref("null")),
+            *contract(system, component, activity, partial(_sent_flag, component, activity)),
+        )
+        items.append(Subprogram(ada_case(activity.name), params, aspects=aspects))
         timing = activity.timing
         items.append(
             Comment(

@@ -60,6 +60,7 @@ from ravenchart.gen.emit.commands.remote_calls import (
     watch_body,
 )
 from ravenchart.gen.emit.commands.remote_reads import copies, copy_name, copy_objects, read_units
+from ravenchart.gen.emit.components.contracts import stored_type
 from ravenchart.gen.emit.components.packages import activity_package, leaf_type
 from ravenchart.gen.emit.language.events import event_value, name_of, null_event
 from ravenchart.gen.emit.language.own_names import event_literal
@@ -295,7 +296,7 @@ class Glue(Site):
         for data in self.instance.component.data:
             name = ada_case(data.name)
             initial = value(self.system, data.type, data.initial)
-            of_type = type_name(self.system, data.type)
+            of_type = stored_type(self.system, self.instance.component, data)
             writer = self._writer(data)
             if data.is_command or (writer is None and not self.instance.component.users(data.name)):
                 continue

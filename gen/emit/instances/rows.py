@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ravenchart.gen.emit.ada.naming import ada_case, scalar, type_name
 from ravenchart.gen.emit.ada.syntax import (
     Arg,
@@ -43,6 +45,7 @@ from ravenchart.gen.emit.components.packages import (
 )
 from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.places import Places
+from ravenchart.gen.emit.language.terms import names_in
 from ravenchart.gen.model.commands import Binding, Device, Poll, RemoteRead, Server
 from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
@@ -330,7 +333,7 @@ class Rows(Site):
         if activity.completes is not None:
             declarations.append(Object("Visit", "Ravenchart.Event_Count"))
             before.append(do(f"{ada_case(activity.name)}_Visit_Board.Read", Ref("Visit")))
-        self._take_in(reads, declarations, before, args)
+        self._take_in(reads, _told(activity), declarations, before, args)
         for name in activity.writes:
             own = f"{ada_case(name)}_Own"
             args.append(Arg(ada_case(name), Ref(own)))
@@ -373,12 +376,20 @@ class Rows(Site):
         )
 
     def _take_in(
-        self, reads: list[str], declarations: list[Decl], before: list[Stmt], args: list[Arg]
+        self,
+        reads: list[str],
+        known: Mapping[str, str],
+        declarations: list[Decl],
+        before: list[Stmt],
+        args: list[Arg],
     ) -> None:
-        """Copies of what an activity reads."""
+        """Copies of what an activity reads, except of what is ``known``."""
         component = self.instance.component
         for name in reads:
             read_as = reading_type(self.system, component, name)
+            if name in known:
+                args.append(Arg(ada_case(name), Ref(known[name])))
+                continue
             constant = self._parameter(name)
             if constant is not None and read_as == "Boolean":
                 #  the compiler warns of a variable that it knows to be true
@@ -414,3 +425,12 @@ class Rows(Site):
         states = f"{self.component}.{places.states}"
         declarations += [UseType(f"{states}.{t}") for t in places.compared_types(state)]
         return places.in_state(now, state, f"{self.component}.")
+
+
+def _told(activity: Activity) -> dict[str, str]:
+    """What the test of a do activity's state has read, where the contract requires that state."""
+    if activity.while_in is None:
+        return {}
+    region = activity.while_in.region
+    required = {name for clause in activity.requires for name in names_in(clause.condition)}
+    return {region: f"{ada_case(region)}_Now"} if region in required else {}

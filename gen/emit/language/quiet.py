@@ -136,6 +136,7 @@ def _of_region(region: Region) -> Iterator[m.Expression]:
 def _of_activities(component: Component) -> Iterator[m.Expression]:
     for activity in component.activities:
         yield from expressions_in(activity.flow or ())
+        yield from (clause.condition for clause in (*activity.requires, *activity.ensures))
 
 
 def _is_decided(expression: m.Expression, *, computed: bool = False) -> bool:

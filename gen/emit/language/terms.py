@@ -17,6 +17,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Expr,
     IfExpr,
     IfStatement,
+    Old,
     OperatorChain,
     Prefix,
     Ref,
@@ -209,6 +210,8 @@ def emit_expression(scope: Scope, expression: m.Expression, unit: str | None = N
     match expression:
         case m.Literal(value, of_type):
             return _literal(scope, value, of_type, unit)
+        case m.Name(m.Reading.OLD, name, field):
+            return Old(scope.variable(name), "" if field is None else f".{ada_case(field)}")
         case m.Name():
             return Ref(_name(scope, expression))
         case m.PortTest(port, state):
