@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from .composites import written_out
 from .declared import check_component
 from .deployment import Deployment
 from .findings import Report, UnusableError
@@ -32,7 +33,7 @@ def checked(main: Path, generated: Path | None = None) -> Report:
     name = "generated" if usual else f"generated-{main.name.removesuffix('.yaml')}"
     folder = main.parent / name if generated is None else generated
     try:
-        deployment = Deployment(model)
+        deployment = Deployment(written_out(model))
         programs = deployment.programs(folder)
     except MALFORMED as problem:
         raise UnusableError(f"{main} is no valid model: {problem}") from problem
