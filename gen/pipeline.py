@@ -18,6 +18,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.resolve.system import resolve
 from ravenchart.gen.rules.buses import names_in_databases
 from ravenchart.gen.rules.cores import shared_across_cores
+from ravenchart.gen.rules.folding import folded
 from ravenchart.gen.rules.system import violations
 
 
@@ -52,6 +53,7 @@ def _valid(
         return None
     resolved = resolve(forms, whole, digest, findings)
     findings.items.extend(violations(resolved))
+    findings.items[:] = folded(findings.items, resolved.system.instances)
     if _has_error(findings):
         return None
     system = completed(resolved.system)

@@ -17,6 +17,7 @@ from ravenchart.gen.diagnostics import Diagnostic, Sources, render_all
 from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
+from ravenchart.gen.rules.folding import folded
 
 from . import check_cache
 from .garbage import without_collector
@@ -90,7 +91,7 @@ def check(
         raise Refused(_rendered(loaded, loaded.diagnostics), loaded.diagnostics)
     system, unordered = identified(system)
     analysis = analyse(system)
-    late = (unordered or findings(analysis)) if deadlines else ()
+    late = (unordered or folded(findings(analysis), system.instances)) if deadlines else ()
     behaviour = _behaviour(loaded, system, effort, finish)
     system = replace(system, safe_regions=behaviour.safe)
     everything = (*loaded.diagnostics, *behaviour.found, *late)
