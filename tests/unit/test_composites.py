@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.plain.bounds import function_of
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.behaviour.interpreter import stimuli
+from ravenchart.building import stacks
 from ravenchart.editing.edits import Document
 from ravenchart.editing.places import ModelPlaces
 from ravenchart.evidence.tracing import instances_inside
@@ -445,3 +447,12 @@ def test_an_error_at_two_levels_counts_the_instances_of_the_inner_one() -> None:
     assert lost.message.startswith("robot.left.shoulder.position is not connected")
     assert lost.message.endswith("(and 1 more instance)")
     assert NESTED.splitlines()[found.origin.line - 1].startswith("      coordinator: {component")
+
+
+def test_symbols_of_an_instance_inside_are_its_own() -> None:
+    system = system_of(NESTED)
+    symbol = "composites_feature__robot_left_shoulder__"
+    assert stacks._owners(system)[symbol].startswith("robot.left.shoulder: ")
+    slots = (slot for processor in system.processors for slot in processor.slots)
+    functions = {slot.element: function_of(slot, system) for slot in slots}
+    assert functions["robot.left.shoulder.follow"] == f"{symbol}run_follow"
