@@ -34,6 +34,7 @@ EXAMPLES = (
     "canopen_device",
     "cartesian_robot",
     "crossing",
+    "fatigue_rig",
     "j1939_node",
     "pump",
     "qhsmtst",

@@ -28,6 +28,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
 from ravenchart.language_server.completing import proposals
 from ravenchart.paths import ROOT
+from ravenchart.proof.unproved import element_of
 
 NESTED = (ROOT / "tests/feature/composites/model.yaml").read_text(encoding="utf-8")
 
@@ -456,3 +457,5 @@ def test_symbols_of_an_instance_inside_are_its_own() -> None:
     slots = (slot for processor in system.processors for slot in processor.slots)
     functions = {slot.element: function_of(slot, system) for slot in slots}
     assert functions["robot.left.shoulder.follow"] == f"{symbol}run_follow"
+    entity = "Composites_Feature.Robot_Left_Shoulder.Run_Follow"
+    assert element_of(system, entity)[0] == "robot.left.shoulder"
