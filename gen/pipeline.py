@@ -6,7 +6,7 @@ it, is looked for where a program is wanted (`emit.clashes`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ravenchart.gen.derive.completion import completed
@@ -40,6 +40,8 @@ def load(path: Path, read: Reader = read_file) -> Loaded:
     content = read_model(path, read)
     findings = Findings(list(content.found))
     system = _valid(content.forms, content.whole, content.digest, findings)
+    if system is not None:
+        system = replace(system, deployment=content.deployment)
     diagnostics = in_order(findings.items, content.sources)
     names = tuple(findings.uses), tuple(findings.unknown)
     return Loaded(system, diagnostics, content.sources, *names)

@@ -14,6 +14,7 @@ from ravenchart.behaviour.limits import EFFORT, Behaviour
 from ravenchart.failures import Refused
 from ravenchart.gen.derive.identifiers import with_order
 from ravenchart.gen.diagnostics import Diagnostic, Sources, render_all
+from ravenchart.gen.files import deployments
 from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
@@ -30,7 +31,9 @@ def is_usual(path: Path) -> bool:
 
 def generated_folder(path: Path) -> str:
     """The folder, beside the main file at ``path``, in which its program is written."""
-    return "generated" if is_usual(path) else f"generated-{path.name.removesuffix('.yaml')}"
+    main, chosen = deployments.parted(path)
+    own = "generated" if is_usual(main) else f"generated-{main.name.removesuffix('.yaml')}"
+    return own if chosen is None else f"{own}/{deployments.folder_of(chosen)}"
 
 
 @dataclass(frozen=True, slots=True)
