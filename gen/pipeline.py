@@ -6,7 +6,7 @@ it, is looked for where a program is wanted (`emit.clashes`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ravenchart.gen.derive.completion import completed
@@ -18,6 +18,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.resolve.system import resolve
 from ravenchart.gen.rules.buses import names_in_databases
 from ravenchart.gen.rules.cores import shared_across_cores
+from ravenchart.gen.rules.folding import folded
 from ravenchart.gen.rules.system import violations
 
 
@@ -39,6 +40,8 @@ def load(path: Path, read: Reader = read_file) -> Loaded:
     content = read_model(path, read)
     findings = Findings(list(content.found))
     system = _valid(content.forms, content.whole, content.digest, findings)
+    if system is not None:
+        system = replace(system, deployment=content.deployment)
     diagnostics = in_order(findings.items, content.sources)
     names = tuple(findings.uses), tuple(findings.unknown)
     return Loaded(system, diagnostics, content.sources, *names)
@@ -52,6 +55,7 @@ def _valid(
         return None
     resolved = resolve(forms, whole, digest, findings)
     findings.items.extend(violations(resolved))
+    findings.items[:] = folded(findings.items, resolved.system.instances)
     if _has_error(findings):
         return None
     system = completed(resolved.system)

@@ -24,7 +24,8 @@ ENVIRONMENT: Mapping[str, str] = {
 FILES: Mapping[str, str] = {
     "model.yaml": "The main file of a model.",
     "user/": "Beside the model: activities and drivers that the user writes.",
-    "generated/": "Beside the model: the program. `generated-NAME/` for a main file `NAME.yaml`.",
+    "generated/": "Beside the model: the program. `generated-NAME/` for a main file `NAME.yaml`; "
+    "below it a folder for each deployment.",
     "outside_spark.toml": "Beside the model: what may be outside SPARK, with the reasons.",
     "~/.cache/ravenchart/": "Results of earlier checks and proofs. It may be deleted.",
 }

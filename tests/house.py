@@ -19,6 +19,7 @@ from pathlib import Path
 from ravenchart.behaviour.limits import TO_THE_END
 from ravenchart.building import checking, generation, programs, variants
 from ravenchart.failures import Refused, ToolFailed
+from ravenchart.gen.files.load import deployments_of
 from ravenchart.paths import ROOT
 from ravenchart.proof import ages, outside_spark, proving
 from ravenchart.tools import toolchain
@@ -34,6 +35,7 @@ EXAMPLES = (
     "canopen_device",
     "cartesian_robot",
     "crossing",
+    "fatigue_rig",
     "j1939_node",
     "pump",
     "qhsmtst",
@@ -43,7 +45,7 @@ EXAMPLES = (
 )
 MODELS = {
     f"{kind}-{path.parent.name}": path.parent
-    for kind in ("feature", "nodes")
+    for kind in ("feature", "nodes", "deployments")
     for path in sorted((ROOT / "tests" / kind).glob("*/model.yaml"))
 }
 """The models of the tests: all of them are proved. Their programs are not kept: see `made`."""
@@ -134,18 +136,20 @@ def _copied(name: str) -> Path:
     return folder
 
 
-def _written(folder: Path) -> checking.Checked:
-    """The model in a folder, checked, and its program written."""
-    checked = checking.check(folder / "model.yaml", effort=TO_THE_END)
-    generation.write_program(checked)
-    return checked
+def _written(folder: Path) -> list[checking.Checked]:
+    """The model in a folder, checked in each deployment, and its programs written."""
+    paths = deployments_of(folder / "model.yaml")
+    found = [checking.check(path, effort=TO_THE_END) for path in paths]
+    for checked in found:
+        generation.write_program(checked)
+    return found
 
 
 def record_names(name: str, folder: Path) -> tuple[str, ...]:
-    """The records of the model in the folder: one, or one for each node that has a program."""
+    """The records of the model in the folder: one, or one for each deployment and node."""
     generated = folder / "generated"
-    nodes = sorted(project.parent.name for project in generated.glob("*/*.gpr"))
-    return tuple(f"{name}-{node}" for node in nodes) or (name,)
+    homes = sorted(project.parent.relative_to(generated) for project in generated.rglob("*.gpr"))
+    return tuple("-".join((name, *home.parts)) for home in homes)
 
 
 def _floats() -> Target:
@@ -209,11 +213,12 @@ def _runtime(driver: str) -> Target:
 
 
 def _programs(name: str, folder: Path, *, warnings: str = "error") -> Iterator[Target]:
-    checked = _written(folder)
-    driver = programs.default_driver(checked)
-    for program in programs.programs_of(checked):
-        target = f"{name}-{program.folder}" if program.folder else name
-        yield Target(target, program.proof(driver, warnings=warnings), folder)
+    for checked in _written(folder):
+        driver = programs.default_driver(checked)
+        for program in programs.programs_of(checked):
+            parts = (name, checked.system.deployment, program.folder)
+            target = "-".join(part for part in parts if part)
+            yield Target(target, program.proof(driver, warnings=warnings), folder)
 
 
 def prove(names: Sequence[str]) -> bool:

@@ -15,7 +15,7 @@ _VALUE = {"anyOf": [_SCALAR, {"type": "object", "additionalProperties": {"$ref":
 
 
 def _place(what: str) -> dict[str, Any]:
-    return {"type": "string", "pattern": r"^\w+\.\w+$", "description": what}
+    return {"type": "string", "pattern": r"^\w+(\.\w+)+$", "description": what}
 
 
 def _entry(what: str, required: list[str], **properties: Any) -> dict[str, Any]:

@@ -253,7 +253,8 @@ def folder_of(part: System, whole: System) -> str:
 def _program_files(part: System, claims: Claims, whole: System) -> dict[str, str]:
     root = ada_case(part.name)
     files = _printed(program(part, claims, whole))
-    up = "../" * (1 + folder_of(part, whole).count("/"))
+    levels = folder_of(part, whole).count("/") + (whole.deployment is not None)
+    up = "../" * (1 + levels)
     maker = _Maker(part)
     bodies = maker.made([*hardware_bodies(part, maker.header)])
     for name, text in _printed(bodies).items():

@@ -14,6 +14,7 @@ from pathlib import Path, PurePath
 from ravenchart.gen.diagnostics import Diagnostic, Sources, error
 from ravenchart.gen.origins import Origin
 
+from . import deployments
 from .forms import check
 from .located import grow, lines_of
 from .schema import ModelFile
@@ -32,6 +33,7 @@ class Content:
     """The forms of a model's files, main file first; none when that one could not be read.
 
     ``whole`` tells that every file could be read; ``digest`` is SHA-256 of all bytes read.
+    ``deployment`` is that which was chosen, in lower case.
     """
 
     forms: tuple[ModelFile, ...]
@@ -39,6 +41,7 @@ class Content:
     digest: str
     found: tuple[Diagnostic, ...]
     sources: Sources
+    deployment: str | None = None
 
 
 def read_file(path: Path, limit: int) -> bytes:
@@ -54,6 +57,8 @@ class _Reading:
     """The files read so far."""
 
     read: Reader
+    chosen: str | None = None
+    """The deployment whose file is read as well."""
     forms: list[ModelFile] = field(default_factory=list)
     found: list[Diagnostic] = field(default_factory=list)
     sources: dict[str, tuple[str, ...]] = field(default_factory=dict)
@@ -96,8 +101,12 @@ class _Reading:
         self.forms.append(form)
         self.whole = self.whole and not form.list_damaged("include") and not form.lost("include")
         here = (*chain, (identity, shown))
-        for index, name in enumerate(form.include or ()):
-            included = form.item_at("include", index)
+        files = [(name, form.item_at("include", n)) for n, name in enumerate(form.include or ())]
+        if not chain and (form.has("deployments") or self.chosen is not None):
+            file = deployments.chosen_file(form, path, self.chosen, self.found)
+            files += [] if file is None else [file]
+            self.whole = self.whole and file is not None
+        for name, included in files:
             if len(self.seen) >= MOST_FILES:
                 self.whole = False
                 message = f"a model has at most {MOST_FILES} files"
@@ -133,15 +142,28 @@ class _Reading:
             return None
 
 
+def deployments_of(path: Path, read: Reader = read_file) -> tuple[Path, ...]:
+    """The path of each deployment of the model at a path; that path itself where it has none."""
+    main, chosen = deployments.parted(path)
+    forms = read_model(main, read).forms if chosen is None else ()
+    names = [name for form in forms[:1] for name in form.deployments or {}]
+    return tuple(deployments.at(main, name) for name in names) or (path,)
+
+
 def read_model(path: Path, read: Reader = read_file) -> Content:
-    """The forms of a model whose main file is at ``path``, with what is wrong in form."""
-    reading = _Reading(read)
-    reading.take(path, None, ())
-    main_is_read = bool(reading.forms) and reading.forms[0].origin.file == str(path)
+    """The forms of a model whose main file is at ``path``, with what is wrong in form.
+
+    The path may name a deployment of it.
+    """
+    main, chosen = deployments.parted(path)
+    reading = _Reading(read, chosen)
+    reading.take(main, None, ())
+    main_is_read = bool(reading.forms) and reading.forms[0].origin.file == str(main)
     return Content(
         tuple(reading.forms) if main_is_read else (),
         reading.whole,
         reading.digest.hexdigest(),
         tuple(reading.found),
         reading.sources,
+        None if chosen is None else deployments.folder_of(chosen),
     )

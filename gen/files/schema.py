@@ -454,6 +454,10 @@ class ModelFile(Element):
     include: list[str] | None = optional(
         "Files whose sections belong to the model, relative to this file."
     )
+    deployments: dict[Name, str] | None = optional(
+        "In the main file: alternatives by their names, each with a file that is included where it "
+        "is chosen: `MODEL.yaml@NAME` on the command line. The path is relative to this file."
+    )
     types: dict[Name, TypeForm] | None = optional("Types of data, ports and parameters.")
     commands: dict[Name, CommandForm] | None = optional("The command dictionary.")
     device_types: dict[Name, DeviceTypeForm] | None = optional("Types of devices.")

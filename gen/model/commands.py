@@ -7,7 +7,7 @@ What provides a required command is decided at generation; see docs/devices.md.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
 from ravenchart.gen.language.terms import Ns, Scalar, ScalarType, Type, Value, named
@@ -289,10 +289,11 @@ class Poll:
 
 @dataclass(frozen=True, slots=True)
 class Server:
-    """A provided interface of an instance."""
+    """A provided interface of an instance; ``outside`` is that of the composite around it."""
 
     instance: str
     interface: Provided
+    outside: str | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -235,6 +235,8 @@ class System:
     objects: tuple[SharedObject, ...] = ()
     safe_regions: tuple[SafeRegion, ...] = ()
     """The invariants that are contracts of the code, filled in when behaviour was checked."""
+    deployment: str | None = None
+    """The deployment that was chosen, in lower case, where the model has several."""
 
     @property
     def frames(self) -> tuple[Message, ...]:

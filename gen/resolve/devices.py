@@ -44,7 +44,7 @@ Provider = Device | Server | Facade
 def name_of(provider: Provider) -> str:
     """How a model calls it."""
     if isinstance(provider, Server):
-        return f"{provider.instance}.{provider.interface.name}"
+        return provider.outside or f"{provider.instance}.{provider.interface.name}"
     return provider.name
 
 
@@ -132,7 +132,7 @@ class Devices:
         found = self.provided(owner).look_up(pair[1], origin, self.findings)
         if found is None or found.server is None:
             return None
-        return Server(*found.server)
+        return Server(*found.server, f"{owner.name}.{found.name}")
 
     def provided(self, owner: Instance | Placed) -> NameScope[Interface]:
         """The provided interfaces of an instance, as they are seen from outside."""
@@ -225,7 +225,7 @@ class Devices:
             member = self.provider(text, at)
             if member is None:
                 continue
-            if any(name_of(one) == name_of(member) for one in found):
+            if member in found:
                 message = f"{name_of(member)} appears twice in `{key}`"
                 self.findings.error("RV-1210", at, message, hint="remove one of them")
             found.append(member)

@@ -123,6 +123,10 @@ def resolve(files: Sequence[ModelFile], whole: bool, digest: str, findings: Find
             message = "only the main file names the system"
             notes = [(main.at("system"), "the system is named here")]
             findings.error("RV-0803", file.at_key("system"), message, notes=notes)
+        if file.deployments is not None:
+            message = "only the main file has deployments"
+            hint = "move them there, with paths relative to it"
+            findings.error("RV-0803", file.at_key("deployments"), message, hint=hint)
     _check_sections(model, whole, findings)
     _check_units(model, name, findings)
     return _build(model, name, whole, digest, findings)

@@ -32,7 +32,7 @@ class ScenarioError(Exception):
 
 Signal = Annotated[str, Field(pattern=r"^\w+\.\w+$")]
 """``message.field``"""
-ElementName = Annotated[str, Field(pattern=r"^\w+\.\w+$")]
+ElementName = Annotated[str, Field(pattern=r"^\w+(\.\w+)+$")]
 """``owner.name``: a region or port of the controller."""
 
 

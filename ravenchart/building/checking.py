@@ -14,9 +14,11 @@ from ravenchart.behaviour.limits import EFFORT, Behaviour
 from ravenchart.failures import Refused
 from ravenchart.gen.derive.identifiers import with_order
 from ravenchart.gen.diagnostics import Diagnostic, Sources, render_all
+from ravenchart.gen.files import deployments
 from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
+from ravenchart.gen.rules.folding import folded
 
 from . import check_cache
 from .garbage import without_collector
@@ -29,7 +31,9 @@ def is_usual(path: Path) -> bool:
 
 def generated_folder(path: Path) -> str:
     """The folder, beside the main file at ``path``, in which its program is written."""
-    return "generated" if is_usual(path) else f"generated-{path.name.removesuffix('.yaml')}"
+    main, chosen = deployments.parted(path)
+    own = "generated" if is_usual(main) else f"generated-{main.name.removesuffix('.yaml')}"
+    return own if chosen is None else f"{own}/{deployments.folder_of(chosen)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +94,7 @@ def check(
         raise Refused(_rendered(loaded, loaded.diagnostics), loaded.diagnostics)
     system, unordered = identified(system)
     analysis = analyse(system)
-    late = (unordered or findings(analysis)) if deadlines else ()
+    late = (unordered or folded(findings(analysis), system.instances)) if deadlines else ()
     behaviour = _behaviour(loaded, system, effort, finish)
     system = replace(system, safe_regions=behaviour.safe)
     everything = (*loaded.diagnostics, *behaviour.found, *late)

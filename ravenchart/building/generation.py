@@ -19,6 +19,7 @@ from ravenchart.gen.emit.program import (
     user_units,
 )
 from ravenchart.gen.model.claims import Claims
+from ravenchart.gen.rules.folding import folded
 from ravenchart.gen.rules.unready import unready
 
 from .checking import Checked
@@ -29,7 +30,8 @@ from .written import listed as listed_in
 
 def without_clashes(checked: Checked) -> None:
     """Refused where names would clash in the generated program."""
-    found = in_order(clashes(checked.system), checked.sources)
+    clashing = folded(clashes(checked.system), checked.system.instances)
+    found = in_order(clashing, checked.sources)
     if found:
         raise Refused(render_all(found, checked.sources), found)
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 
-from ravenchart.failures import OK, Unusable
+from ravenchart.failures import OK, Refused, Unusable
 from ravenchart.gen.draw.words import expression
+from ravenchart.gen.files.load import deployments_of
 from ravenchart.gen.model.safety import SafeRegion
 from ravenchart.gen.model.system import System
 
@@ -21,6 +22,9 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--watch", action="store_true",
         help="check again whenever a file of the model changes, until Ctrl-C",
     )  # fmt: skip
+    sub.add_argument(
+        "--all", action="store_true", help="check each deployment of the model, one after another"
+    )
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -31,6 +35,35 @@ def execute(options: argparse.Namespace) -> int:
         if options.json:
             raise Unusable("--watch goes without --json: it has no end to answer at")
         watching.watch(options.model)
+    if options.all:
+        return _all(options)
+    return _one(options)
+
+
+def _all(options: argparse.Namespace) -> int:
+    """Check each deployment; Refused in the end where one has errors."""
+    if options.json:
+        raise Unusable("--all goes without --json: each deployment has an answer of its own")
+    refused: dict[str, Refused] = {}
+    first: dict[str, str] = {}
+    paths = deployments_of(options.model)
+    for options.model in paths:
+        name = options.model.name
+        print(f"--- {name} ---", flush=True)
+        try:
+            _one(options)
+        except Refused as problem:
+            refused[name] = problem
+            other = first.setdefault(problem.shown(), name)
+            print(problem.shown() if other == name else f"the same errors as in {other}")
+    if refused:
+        found = [one for problem in refused.values() for one in problem.found]
+        text = f"{len(refused)} of {common.several(len(paths), 'deployment')} have errors: "
+        raise Refused(text + ", ".join(refused), found)
+    return OK
+
+
+def _one(options: argparse.Namespace) -> int:
     found = common.checked(options, finish=True)
     system = found.system
     options.answer.result = CheckResult(

@@ -28,7 +28,10 @@ if TYPE_CHECKING:
 
 def add_model(sub: argparse.ArgumentParser) -> None:
     """The model that the command is about."""
-    sub.add_argument("model", type=Path, metavar="MODEL", help="the model's YAML file")
+    sub.add_argument(
+        "model", type=Path, metavar="MODEL",
+        help="the model's YAML file, or MODEL@NAME: a deployment of it",
+    )  # fmt: skip
 
 
 def add_target(sub: argparse.ArgumentParser) -> None:

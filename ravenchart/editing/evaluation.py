@@ -14,6 +14,7 @@ from ravenchart.building.garbage import without_collector
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.pipeline import Loaded, load
+from ravenchart.gen.rules.folding import folded
 
 from .edits import Document
 from .places import ModelPlaces
@@ -88,4 +89,5 @@ def evaluate(path: Path, texts: Texts, other: Reader = read_file) -> Evaluation:
         return Evaluation(seen, loaded, None, ())
     system, unordered = identified(loaded.system)
     analysis = analyse(system)
-    return Evaluation(seen, loaded, analysis, unordered or findings(analysis))
+    late = unordered or folded(findings(analysis), system.instances)
+    return Evaluation(seen, loaded, analysis, late)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from .composites import written_out
 from .declared import check_component
 from .deployment import Deployment
 from .findings import Report, UnusableError
-from .model import read
+from .model import parted, read
 from .timing import Timing
 
 ALWAYS = (
@@ -28,11 +29,12 @@ def checked(main: Path, generated: Path | None = None) -> Report:
     """The report on a model and its generated program."""
     report = Report()
     model = read(main)
-    usual = main.name.lower() == "model.yaml"
-    name = "generated" if usual else f"generated-{main.name.removesuffix('.yaml')}"
-    folder = main.parent / name if generated is None else generated
+    file, chosen = parted(main)
+    usual = file.name.lower() == "model.yaml"
+    name = "generated" if usual else f"generated-{file.name.removesuffix('.yaml')}"
+    folder = main.parent / name / chosen.lower() if generated is None else generated
     try:
-        deployment = Deployment(model)
+        deployment = Deployment(written_out(model))
         programs = deployment.programs(folder)
     except MALFORMED as problem:
         raise UnusableError(f"{main} is no valid model: {problem}") from problem

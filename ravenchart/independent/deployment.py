@@ -73,10 +73,6 @@ class Deployment:
         self.nodes = model.section("nodes")
         self.buses = model.section("buses")
         self.instances = model.section("instances")
-        for name, component in model.section("components").maps():
-            if "instances" in component:
-                where = f"{component.file}:{component.line}"
-                raise UnusableError(f"{where}: the instances inside {name} are not derived again")
         for name, node in self.nodes.maps():
             if node.number("cores", 1) > 1:
                 raise UnusableError(f"{name} has several cores, and no program is generated")
@@ -108,16 +104,20 @@ class Deployment:
             raise UnusableError(f"`{text}` is no instance")
         return name
 
-    def home(self, end: str) -> str:
-        """The node of `instance.port`."""
+    def home(self, instance: str) -> str:
+        """The node of an instance."""
         if len(self.nodes) == 1:
             return next(iter(self.nodes))
-        text = self.instances.map(self.instance(end.partition(".")[0])).text("node") or ""
+        text = self.instances.map(self.instance(instance)).text("node") or ""
         return self.nodes.name(text) or text
+
+    def node_of(self, end: str) -> str:
+        """The node of `instance.port`."""
+        return self.home(end.rpartition(".")[0])
 
     def receivers(self, message: Message) -> list[str]:
         """The nodes that receive a message, in the order of its targets."""
-        return list(dict.fromkeys(self.home(end) for end in message.targets))
+        return list(dict.fromkeys(self.node_of(end) for end in message.targets))
 
     def heard(self, bus: str, node: str) -> list[tuple[Message, str]]:
         """What a node receives from a bus, with the driver's work on it."""
@@ -139,7 +139,7 @@ class Deployment:
         for binding in self.model.bindings:
             own = binding.text("from") or ""
             for other in self.equipment.members(binding.text("to") or ""):
-                if "." in other and self.home(own) != self.home(other):
+                if "." in other and self.node_of(own) != self.node_of(other):
                     where = f"{binding.file}:{binding.line}"
                     raise UnusableError(f"{where}: commands between nodes are not derived again")
 
@@ -151,7 +151,7 @@ class Deployment:
         for wire in self.model.connections:
             source, target = wire.text("from") or "", wire.text("to") or ""
             source, target = self._end(source), self._end(target)
-            if self.home(source) == self.home(target):
+            if self.node_of(source) == self.node_of(target):
                 continue
             if source.lower() not in by_source:
                 by_source[source.lower()] = self._carried(source)
@@ -161,7 +161,7 @@ class Deployment:
 
     def _end(self, text: str) -> str:
         """`instance.port` as both are declared."""
-        owner, _, port = text.partition(".")
+        owner, _, port = text.rpartition(".")
         ports = self.component_of(owner).map("ports")
         return f"{self.instance(owner)}.{ports.name(port) or port}"
 
@@ -191,7 +191,7 @@ class Deployment:
             length=length,
             frame=Frame(length, extended, fd),
             source=source,
-            node=None if source is None else self.home(source),
+            node=None if source is None else self.node_of(source),
             targets=targets,
             identifier=identifier,
             extended=extended,
@@ -203,7 +203,7 @@ class Deployment:
     def _flows(self) -> list[Message]:
         """Flow control of values in several frames: the port region that receives sends it."""
         for message in (m for m in self.messages if m.transfer is not None and m.source):
-            owner = message.targets[0].partition(".")[0]
+            owner = message.targets[0].rpartition(".")[0]
             period = self.component_of(owner).map("port_region").time("period")
             message.flow = Message(
                 name=f"{message.name}_Flow",
@@ -213,7 +213,7 @@ class Deployment:
                 length=8,
                 frame=Frame(8, message.extended, False),
                 source=message.targets[0],
-                node=self.home(message.targets[0]),
+                node=self.node_of(message.targets[0]),
                 targets=[message.source or ""],
                 identifier=message.transfer.flow_id if message.transfer else None,
                 extended=message.extended,
@@ -225,7 +225,7 @@ class Deployment:
         """The rows that send a message."""
         source = message.source or ""
         if message.controls:
-            return {f"{source.partition('.')[0]}.ports"}
+            return {f"{source.rpartition('.')[0]}.ports"}
         return {row for row, _ in self.rows_that_send(source)}
 
     def _carried(self, source: str) -> Message:
@@ -238,16 +238,16 @@ class Deployment:
         length = length_of(self.model, kind, form, fd=True) if fd else length
         name = source.replace(".", "_")
         frame = Frame(length, False, fd)
-        return Message(name, bus, period, period, length, frame, source, self.home(source))
+        return Message(name, bus, period, period, length, frame, source, self.node_of(source))
 
     def _type_of(self, end: str) -> str:
-        owner, _, port = end.partition(".")
+        owner, _, port = end.rpartition(".")
         form = self.component_of(owner).map("ports").map(port)
         return form.text("in") or form.text("out") or ""
 
     def rows_that_send(self, end: str) -> list[tuple[str, Mapping]]:
         """The regions and activities that send on an output port."""
-        owner, _, port = end.partition(".")
+        owner, _, port = end.rpartition(".")
         component = self.component_of(owner)
         rows = [*component.map("regions").maps(), *component.map("activities").maps()]
         return [
@@ -293,7 +293,7 @@ class Deployment:
         given = form.text("node")
         if given is not None:
             return [self.nodes.name(given) or given]
-        owners = [text.partition(".")[0] for text in form.texts("activities")]
+        owners = [text.rpartition(".")[0] for text in form.texts("activities")]
         own = next((o for o in owners if self.instances.name(o)), None)
         if own is not None:
             return [self.home(own)]
@@ -310,7 +310,7 @@ class Deployment:
         periods: list[int] = []
         for text in form.texts("activities"):
             row = self._row(text, form, node)
-            owner, _, name_of = row.element.partition(".")
+            owner, _, name_of = row.element.rpartition(".")
             mine = self.instances.name(owner) is not None
             watch = name_of == "watch" and not mine
             ends.append(row.deadline)
@@ -348,7 +348,7 @@ class Deployment:
         )
 
     def _row(self, text: str, form: Mapping, node: str) -> Row:
-        owner, _, name = text.partition(".")
+        owner, _, name = text.rpartition(".")
         if not self.instances.name(owner):
             bus = self.buses.name(owner) or owner
             own = self.buses.map(bus)
@@ -449,8 +449,10 @@ class Deployment:
             users = [
                 one.priority
                 for one in self.processors
-                if any(device in self.equipment.called(*row.element.split(".")) for row in one.rows)
-                and one.node == task.node
+                if one.node == task.node
+                and any(
+                    device in self.equipment.called(*row.element.rsplit(".", 1)) for row in one.rows
+                )
             ]
             if not users:
                 continue

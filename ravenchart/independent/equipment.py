@@ -32,12 +32,12 @@ class Equipment:
         self.devices = model.section("devices")
         self.bound: dict[tuple[str, str], str] = {}
         for binding in model.bindings:
-            owner, _, interface = (binding.text("from") or "").partition(".")
+            owner, _, interface = (binding.text("from") or "").rpartition(".")
             self.bound[owner.lower(), interface.lower()] = binding.text("to") or ""
 
     def _offered(self, provider: str, command: str) -> Offer | None:
         """A command of a provider; None where it has none of that name."""
-        owner, dot, interface = provider.partition(".")
+        owner, dot, interface = provider.rpartition(".")
         if dot:
             own = self.component_of(owner).map("provides")
             form = own.map(own.name(interface) or interface)

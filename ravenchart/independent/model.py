@@ -142,8 +142,16 @@ class Model:
         return [one for one in self.top.get("bindings", ()) if isinstance(one, Mapping)]
 
 
-def read(main: Path) -> Model:
-    """A model from its main file, with what that includes."""
+def parted(path: Path) -> tuple[Path, str]:
+    """The main file, and the deployment behind it: `model.yaml@bench`; "" without."""
+    name, mark, chosen = path.name.rpartition("@")
+    is_marked = mark and name.lower().endswith((".yaml", ".yml"))
+    return (path.with_name(name), chosen) if is_marked else (path, "")
+
+
+def read(path: Path) -> Model:
+    """A model from its main file, with what that includes, and the file of a deployment."""
+    main, chosen = parted(path)
     model = Model(main)
     model.top.file, model.top.line = main, 1
     digest, seen = hashlib.sha256(), set[str]()
@@ -167,6 +175,12 @@ def read(main: Path) -> Model:
             take(path.parent / name)
 
     take(main)
+    files = model.top.map("deployments")
+    if files or chosen:
+        file = files.text(files.name(chosen) or "")
+        if file is None:
+            raise UnusableError(f"{main}: no deployment `{chosen}`; there are {', '.join(files)}")
+        take(main.parent / file)
     model.digest = digest.hexdigest()
     if not model.name:
         raise UnusableError(f"{main} has no `system`")

@@ -12,7 +12,7 @@ from ravenchart.building import checking
 from ravenchart.editing.evaluation import MARK, Evaluation, evaluate
 from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic
-from ravenchart.gen.files.load import Reader, read_file
+from ravenchart.gen.files.load import Reader, deployments_of, read_file
 from ravenchart.gen.pipeline import Loaded, load
 
 from .symbols import Symbols
@@ -82,10 +82,10 @@ def main_file(name: str, documents: Open, known: Callable[[str], str | None]) ->
     """The main file of the model that a file belongs to: the file itself where no other has it.
 
     That is a file with `system`: the file itself, the one that was seen to include it, or one in
-    its folder or the two above.
+    its folder or the two above. Of several deployments it is the first that has the file.
     """
     if _is_main(_text(name, documents)):
-        return name
+        return str(deployments_of(Path(name), reader(documents))[0])
     found = known(name)
     if found is not None:
         return found
@@ -93,8 +93,9 @@ def main_file(name: str, documents: Open, known: Callable[[str], str | None]) ->
     for place in (folder, *folder.parents[:2]):
         for other in sorted(place.glob("*.yaml")):
             text = _text(str(other), documents)
-            if _is_main(text) and model(other, documents).file(name) is not None:
-                return str(other)
+            for path in deployments_of(other, reader(documents)) if _is_main(text) else ():
+                if model(path, documents).file(name) is not None:
+                    return str(path)
     return name
 
 

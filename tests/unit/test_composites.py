@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.plain.bounds import function_of
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.behaviour.interpreter import stimuli
+from ravenchart.building import stacks
 from ravenchart.editing.edits import Document
 from ravenchart.editing.places import ModelPlaces
 from ravenchart.evidence.tracing import instances_inside
@@ -20,11 +22,13 @@ from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.files.links import links
 from ravenchart.gen.files.load import read_model
+from ravenchart.gen.model.commands import Server
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
 from ravenchart.language_server.completing import proposals
 from ravenchart.paths import ROOT
+from ravenchart.proof.unproved import element_of
 
 NESTED = (ROOT / "tests/feature/composites/model.yaml").read_text(encoding="utf-8")
 
@@ -365,3 +369,93 @@ def test_a_requirement_of_a_composite_is_that_of_what_is_inside(
     content = read_model(Path("model.yaml"), lambda _path, limit: text.encode()[:limit])
     (link,) = links(content.forms)
     assert {one.name for one in instances_inside(system_of(text), link)} == instances
+
+
+def test_a_facade_chooses_what_a_composite_provides_by_the_name_that_it_has_outside() -> None:
+    members = "facade: [robot.Left_Motion, robot.Right_Motion]"
+    both = "\ncomponents:", f"  Both_Arms: {{{members}}}\n\ncomponents:"
+    bound = (
+        "{from: left_observer.Arm, to: robot.Left_Motion}",
+        "{from: left_observer.Arm, to: Both_Arms}",
+    )
+    undecided = loaded(NESTED, both, bound).diagnostics
+    assert [one.hint for one in undecided] == [
+        f"say which is meant: `choose: {{{command}: robot.Left_Motion}}`"
+        for command in ("Get_Sum", "Go_Home", "Arrived")
+    ]
+    every = ", ".join(f"{one}: robot.Left_Motion" for one in ("Get_Sum", "Go_Home", "Arrived"))
+    chosen = members, f"{members}, choose: {{{every}}}"
+    found = system_of(NESTED, both, bound, chosen).bindings
+    (reading,) = (one for one in found if one.instance == "left_observer" and one.need.is_read)
+    assert isinstance(reading.provider, Server)
+    assert reading.provider.instance == "robot.left.coordinator"
+    twice = "robot.Right_Motion]", "robot.Left_Motion]"
+    assert ("RV-1210", "robot.Left_Motion appears twice in `facade`") in errors(
+        NESTED, both, bound, twice
+    )
+
+
+THREE = (
+    ("  two: {component: Pair, node: there, parameters: {most: 9}}\n",
+     "  two: {component: Pair, node: there, parameters: {most: 9}}\n"
+     "  three: {component: Pair, node: there}\n"),
+    ("- {from: one.told, to: two.given}",
+     "- {from: one.told, to: two.given}\n  - {from: one.told, to: three.given}"),
+    ("second: {stack: 16 KiB, activities: [two.source.tell, two.sink.ports, two.sink.note]}",
+     "second: {stack: 16 KiB, activities: [two.source.tell, two.sink.ports, two.sink.note, "
+     "three.source.tell, three.sink.ports, three.sink.note]}"),
+)  # fmt: skip
+"""A third instance of the composite."""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code", "message"),
+    [
+        ("limit: {type: Level, default: 5}}\n", "limit: {type: Level}, least: {type: Level}}\n",
+         "RV-0314",
+         "one.sink does not set the parameter `least`, which has no default "
+         "(and 2 more instances)"),
+        ("{limit: most}", "{limit: 1001}", "RV-0312", None),
+    ],
+)  # fmt: skip
+def test_an_error_in_a_composite_is_reported_once_for_all_of_its_instances(
+    old: str, new: str, code: str, message: str | None
+) -> None:
+    found = [one for one in loaded(ARM, *THREE, (old, new)).diagnostics if one.is_error]
+    assert [one.code for one in found] == [code]
+    if message is not None:
+        assert found[0].message == message
+        assert found[0].notes[-1] == (found[0].origin, "the others are in two, three")
+    named = ARM.splitlines()[found[0].origin.line - 1]
+    assert "source" in named or "sink" in named
+
+
+def test_two_instances_with_errors_of_their_own_have_two() -> None:
+    value = "{most: 9}", "{most: 1001}"
+    other = (
+        "one: {component: Pair, node: here}",
+        "one: {component: Pair, node: here, parameters: {most: 2000}}",
+    )
+    assert [code for code, _ in errors(ARM, value, other)] == ["RV-0312", "RV-0312"]
+
+
+def test_an_error_at_two_levels_counts_the_instances_of_the_inner_one() -> None:
+    wire = "      - {from: shoulder.position, to: coordinator.shoulder_is}\n"
+    lost, found = loaded(NESTED, (wire, "")).diagnostics
+    assert (found.code, lost.code) == ("RV-0602", "RV-0604")
+    assert found.message == "robot.left.coordinator.shoulder_is has no source (and 1 more instance)"
+    assert found.notes[-1][1] == "the others are in robot.right"
+    assert lost.message.startswith("robot.left.shoulder.position is not connected")
+    assert lost.message.endswith("(and 1 more instance)")
+    assert NESTED.splitlines()[found.origin.line - 1].startswith("      coordinator: {component")
+
+
+def test_symbols_of_an_instance_inside_are_its_own() -> None:
+    system = system_of(NESTED)
+    symbol = "composites_feature__robot_left_shoulder__"
+    assert stacks._owners(system)[symbol].startswith("robot.left.shoulder: ")
+    slots = (slot for processor in system.processors for slot in processor.slots)
+    functions = {slot.element: function_of(slot, system) for slot in slots}
+    assert functions["robot.left.shoulder.follow"] == f"{symbol}run_follow"
+    entity = "Composites_Feature.Robot_Left_Shoulder.Run_Follow"
+    assert element_of(system, entity)[0] == "robot.left.shoulder"

@@ -26,9 +26,7 @@ from ravenchart.paths import ROOT
 from tests import house
 from tests.support.answers import answered
 
-NESTED = "composites"
 FEATURES = sorted(path.parent.name for path in (ROOT / "tests/feature").glob("*/model.yaml"))
-FEATURES.remove(NESTED)
 FOLDER = Path(ravenchart.independent.__file__).parent
 
 
@@ -284,12 +282,6 @@ def test_commands_between_nodes_are_refused_and_not_passed() -> None:
     model = ROOT / "tests/nodes/commands/model.yaml"
     with pytest.raises(UnusableError, match=r"model\.yaml:\d+: commands between nodes are not"):
         checked(model)
-
-
-def test_composite_components_are_refused_and_not_passed(tmp_path: Path) -> None:
-    model = Path(shutil.copy(ROOT / "tests/feature" / NESTED / "model.yaml", tmp_path))
-    with pytest.raises(UnusableError, match=r"model\.yaml:\d+: the instances inside \w+ are not"):
-        checked(_generated(model))
 
 
 def test_a_program_that_is_not_there_is_no_agreement(tmp_path: Path) -> None:
