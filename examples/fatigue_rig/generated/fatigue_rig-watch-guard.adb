@@ -56,15 +56,15 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Fired (Self : Region; Chosen : Firing) return Boolean is
-     (Self.Started
-      and then Self.Leaf = Target (Chosen)
-      and then Is_Safe (Self.Leaf, Self.Data)) with Ghost;
-   --  Is the region after it as declared, and safe?
+     (Self.Started and then Self.Leaf = Target (Chosen)) with Ghost;
+   --  Is the region after it as declared?
 
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
 
    procedure Fire (Self : in out Region; Ins : Inputs; Chosen : Firing)
-   with Pre => Is_Ready (Self, Ins, Chosen), Post => Is_Fired (Self, Chosen)
+   with
+     Pre => Is_Ready (Self, Ins, Chosen),
+     Post => Is_Fired (Self, Chosen) and then Is_Safe (Self.Leaf, Self.Data)
    is
       use type Chart.Node;
 
