@@ -112,7 +112,9 @@ class _Maker:
     def _of_component(self, component: Component) -> list[MadeUnit]:
         system, header = self.system, self.header
         words = OfComponent(component, self.words_of_types)
-        found = [emit_component(system, component, header)]
+        required = any(activity.requires for activity in component.activities)
+        whole = emit_component(system, component, header)
+        found = [quiet(whole, words.activities() if required else ())]
         for region in component.regions:
             own = emit_region(system, component, region, header, noted=self.noted)
             found += [quiet(unit, words.region(region)) for unit in own]

@@ -9,6 +9,7 @@ import pytest
 from ravenchart.gen.derive.kept import kept_of
 from ravenchart.gen.draw.words import expression
 from ravenchart.gen.emit.program import generate
+from ravenchart.gen.language.names import LONG_NAME
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.component import Activity, Component
@@ -271,6 +272,26 @@ def test_data_that_are_required_keep_what_their_writer_ensures() -> None:
     assert "subtype Tank is Plant.Tank with Predicate => Tank_Is_Kept (Tank);" in spec
     assert "Spare_Is_Kept" not in spec  # nothing requires anything of it
     assert "Tank_Own : Unit.Kept.Tank :=" in squeezed(files["plant-one.adb"])
+
+
+def test_a_long_name_fits_the_lines() -> None:
+    """Names up to 24 characters always fit."""
+    user = "requires: tank.level < 95\n        ensures: tank.level <= 90"
+    result = loaded(text(user).replace("tank", "T" + "a" * (LONG_NAME - 1)))
+    assert result.system is not None, result.diagnostics
+    for name, found in generate(result.system, Claims()).items():
+        assert name.endswith(".json") or max(map(len, found.split("\n"))) <= 79, name
+
+
+def test_the_compiler_is_quiet_about_the_only_value_of_a_type() -> None:
+    found = text("requires: only = 5\n        ensures: only = 5")
+    found = found.replace("  Mode:", "  Only: {range: [5, 5]}\n  Mode:")
+    found = found.replace("      tank: {", "      only: {type: Only, initial: 5}\n      tank: {")
+    found = found.replace("[tank, s", "[only, s").replace("[tank, spare]", "[only, spare]")
+    result = loaded(found)
+    assert result.system is not None, result.diagnostics
+    spec = generate(result.system, Claims())["plant-unit.ads"]
+    assert "pragma Warnings (Off" in spec and "Only_Is_Kept" in spec
 
 
 def test_a_model_without_contracts_has_none_in_ada() -> None:

@@ -333,11 +333,8 @@ def _declaration(decl: Decl) -> Doc:
     match decl:
         case EnumType():
             return _enumeration(decl)
-        case PlainType(name, definition, subtype):
-            parts = f"{definition};".replace(" range ", "\n range ").replace(" .. ", "\n.. ")
-            whole, *bounds = [part.strip() for part in parts.split("\n")]
-            head = f"{'subtype' if subtype else 'type'} {name} is"
-            return group(head, nest(SOFT, whole, *(cat(SOFT, b) for b in bounds), by=2))
+        case PlainType():
+            return _plain_type(decl)
         case RecordDeclaration(name, ()):
             return f"type {name} is null record;"
         case RecordDeclaration(name, components):
@@ -392,6 +389,22 @@ def _component(head: str, initial: Expr | None) -> Doc:
     if initial is None:
         return f"{head};"
     return group(f"{head} :=", nest(SOFT, expression(initial), by=2), ";")
+
+
+_PREDICATE = " with Predicate => "
+
+
+def _plain_type(decl: PlainType) -> Doc:
+    head = f"{'subtype' if decl.subtype else 'type'} {decl.name} is"
+    base, _, predicate = decl.definition.partition(_PREDICATE)
+    if predicate:
+        function, argument = predicate.split(" ")
+        told = group(function, nest(SOFT, f"{argument};", by=2))
+        kept = group(_PREDICATE.strip(), nest(SOFT, told, by=2))
+        return group(head, nest(SOFT, base, SOFT, kept, by=2))
+    parts = f"{decl.definition};".replace(" range ", "\n range ").replace(" .. ", "\n.. ")
+    whole, *bounds = [part.strip() for part in parts.split("\n")]
+    return group(head, nest(SOFT, whole, *(cat(SOFT, b) for b in bounds), by=2))
 
 
 _TIGHT = (Object, PlainType, Rename, UseType, Pragma)
