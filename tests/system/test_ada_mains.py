@@ -39,6 +39,7 @@ MAINS = (
 )
 
 
+SLOW = {"test_store", "test_protection", "test_wire"}
 OF_DRIVERS = (
     ("socketcan", "test_socket_frames"),
     ("ctucanfd", "test_ctu_frames"),
@@ -57,7 +58,9 @@ def mode(request: pytest.FixtureRequest) -> str:
     return chosen
 
 
-@pytest.mark.parametrize("main", MAINS)
+@pytest.mark.parametrize(
+    "main", [pytest.param(m, marks=pytest.mark.slow if m in SLOW else ()) for m in MAINS]
+)
 def test_every_fact_holds(mode: str, main: str) -> None:
     _holds(ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / main)
 

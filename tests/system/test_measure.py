@@ -16,6 +16,7 @@ from ravenchart.paths import ROOT
 MODEL = ROOT / "examples" / "three_components" / "model.yaml"
 
 
+@pytest.mark.slow
 @pytest.mark.live
 def test_every_row_is_measured_by_a_program_without_contracts(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -102,6 +102,7 @@ def first_line(one: Marked) -> str:
     return line
 
 
+@pytest.mark.slow
 @pytest.mark.live
 def test_two_monitors_show_the_counts_of_the_report(watched: Watched) -> None:
     with (

@@ -76,6 +76,7 @@ def test_instances_on_two_nodes_agree(tmp_path: Path) -> None:
     assert report.counts["arbitration"] > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("nodes", [False, True])
 def test_each_altered_number_of_a_certificate_is_found(nodes: bool, tmp_path: Path) -> None:
     model = (_nodes if nodes else _nested)(tmp_path)

@@ -43,6 +43,7 @@ def _home(work: Path, model: Path) -> Path:
     return home
 
 
+@pytest.mark.slow
 def test_what_runs_is_shown_until_it_ends_and_then_kept(model: Path, file: Path) -> None:
     live = LiveView(model)
     digest = trace_map().digest
@@ -60,6 +61,7 @@ def test_what_runs_is_shown_until_it_ends_and_then_kept(model: Path, file: Path)
     assert "No controller of Infusion_System runs" in ended["text"]
 
 
+@pytest.mark.slow
 def test_a_controller_of_an_earlier_model_is_not_shown_and_the_page_says_why(
     model: Path, file: Path
 ) -> None:

@@ -18,6 +18,7 @@ LIMIT = 1.0
 """Seconds on a busy machine; the aim is 0.2 s."""
 
 
+@pytest.mark.slow
 @pytest.mark.alone
 def test_a_change_of_a_hundred_activities_is_analysed_at_once(tmp_path: Path) -> None:
     model = tmp_path / "model.yaml"
