@@ -50,8 +50,8 @@ MODELS = sorted(
 """The models in one file."""
 
 SOURCES = (
-    "spark_runtime/src", "spark_runtime/native", "hw_can/hal", "hw_can/drivers/loopback",
-    "hw_can/simulator",
+    "spark_runtime/src", "spark_runtime/native", "spark_runtime/devices", "hw_can/hal",
+    "hw_can/drivers/loopback", "hw_can/simulator",
 )  # fmt: skip
 SWITCHES = (
     "-c", "-gnatc", "-gnat2012", "-gnatwa", "-gnatwe", "-gnaty3abcdefhiIklM79nprSux",
