@@ -24,18 +24,18 @@ compiled with GCC version 14.2.0
 
 
 @pytest.mark.parametrize(
-    "version, age, provers, strict",
+    "version, age, switches",
     [
-        (OLDER, "gnat-12", "--prover=z3,cvc4", "--checks-as-errors"),
-        (YOUNGER, "gnat-14", "--prover=z3,cvc5", "--checks-as-errors=on"),
+        (OLDER, "gnat-12", ("--prover=z3,cvc4", "--checks-as-errors")),
+        (YOUNGER, "gnat-14", ("--prover=z3,cvc5", "--checks-as-errors=on", "--timeout=30")),
     ],
 )
 def test_each_age_has_switches_of_its_own(
-    version: str, age: str, provers: str, strict: str
+    version: str, age: str, switches: tuple[str, ...]
 ) -> None:
     found = ages.age_of(version)
     assert found.name == age
-    assert found.switches == (provers, strict)
+    assert found.switches == switches
 
 
 def test_the_tool_is_named_with_its_provers() -> None:
