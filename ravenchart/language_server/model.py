@@ -12,7 +12,9 @@ from ravenchart.building import checking
 from ravenchart.editing.evaluation import MARK, Evaluation, evaluate
 from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic
-from ravenchart.gen.files.load import Reader, deployments_of, read_file
+from ravenchart.gen.files import deployments
+from ravenchart.gen.files.load import Reader, read_file
+from ravenchart.gen.files.spans import YamlScalar
 from ravenchart.gen.pipeline import Loaded, load
 
 from .symbols import Symbols
@@ -84,8 +86,9 @@ def main_file(name: str, documents: Open, known: Callable[[str], str | None]) ->
     That is a file with `system`: the file itself, the one that was seen to include it, or one in
     its folder or the two above. Of several deployments it is the first that has the file.
     """
-    if _is_main(_text(name, documents)):
-        return str(deployments_of(Path(name), reader(documents))[0])
+    text = _text(name, documents)
+    if text is not None and _is_main(text):
+        return str(_paths(Path(name), text)[0])
     found = known(name)
     if found is not None:
         return found
@@ -93,14 +96,24 @@ def main_file(name: str, documents: Open, known: Callable[[str], str | None]) ->
     for place in (folder, *folder.parents[:2]):
         for other in sorted(place.glob("*.yaml")):
             text = _text(str(other), documents)
-            for path in deployments_of(other, reader(documents)) if _is_main(text) else ():
+            for path in _paths(other, text) if text is not None and _is_main(text) else ():
                 if model(path, documents).file(name) is not None:
                     return str(path)
     return name
 
 
-def _is_main(text: FileText | None) -> bool:
-    if text is None or "system" not in text.text:
+def _paths(main: Path, text: FileText) -> list[Path]:
+    """The path of each deployment that a main file names; its own where it names none."""
+    named = None if text.root is None else text.root.mapping("deployments")
+    return [
+        deployments.at(main, name.value)
+        for name, file in (() if named is None else named.entries)
+        if isinstance(file, YamlScalar) and file.value
+    ] or [main]
+
+
+def _is_main(text: FileText) -> bool:
+    if "system" not in text.text:
         return False
     if text.root is None:  # it is being written
         return any(line.startswith("system:") for line in text.text.splitlines())
