@@ -71,6 +71,5 @@ def execute(options: argparse.Namespace) -> int:
     with progress("draw"):
         write(drawings, folder)
     options.answer.result = DrawResult(str(folder), options.format, list(drawings))
-    noun = "drawing" if len(drawings) == 1 else "drawings"
-    print(f"{folder}: {len(drawings)} {noun}")
+    print(f"{folder}: {common.several(len(drawings), 'drawing')}")
     return OK
