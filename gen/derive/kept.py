@@ -13,13 +13,12 @@ from ravenchart.gen.language import folding, intervals
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     Expression,
-    InState,
     Literal,
     Name,
     Operation,
-    PortTest,
     Reading,
     Scalar,
+    leaves,
 )
 from ravenchart.gen.model.component import Activity, Clause, Component, Data
 from ravenchart.gen.model.statechart import Region
@@ -65,13 +64,6 @@ def _names(clause: Clause) -> set[str]:
     return {leaf.name for leaf in leaves(clause.condition) if isinstance(leaf, Name)}
 
 
-def leaves(expression: Expression) -> list[Literal | Name | PortTest | InState]:
-    """The names, numbers and tests in an expression."""
-    if isinstance(expression, Operation):
-        return [leaf for operand in expression.operands for leaf in leaves(operand)]
-    return [expression]
-
-
 def _is_about(condition: Expression, data: Data) -> bool:
     """Whether a condition names that data item as it is, and nothing else."""
     found = [leaf for leaf in leaves(condition) if not isinstance(leaf, Literal)]
@@ -90,12 +82,8 @@ def _value(expression: Expression, data: Data) -> Scalar:
     match expression:
         case Literal(value=value):
             return value
-        case Name(field=None):
-            assert not isinstance(data.initial, tuple)
-            return data.initial
-        case Name(field=str(name)):
-            assert isinstance(data.initial, tuple)
-            return dict(data.initial)[name]
+        case Name(field=field):
+            return data.initial_of(field)
         case Operation(operator="if", operands=(condition, then, otherwise)):
             return _value(then if _value(condition, data) == "True" else otherwise, data)
         case Operation(operator="and" | "or" as operator, operands=(left, right)):

@@ -6,6 +6,7 @@ and typed: their names are known, their integer bounds computed.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 from typing import NewType, Protocol, TypeVar
@@ -168,7 +169,17 @@ class Operation:
     high: int = 0
 
 
-Expression = Literal | Name | PortTest | InState | Operation
+Leaf = Literal | Name | PortTest | InState
+Expression = Leaf | Operation
+
+
+def leaves(expression: Expression) -> Iterator[Leaf]:
+    """The names, numbers and tests in an expression, as they stand in it."""
+    if isinstance(expression, Operation):
+        for operand in expression.operands:
+            yield from leaves(operand)
+    else:
+        yield expression
 
 
 @dataclass(frozen=True, slots=True)

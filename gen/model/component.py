@@ -96,6 +96,14 @@ class Data:
     is_command: bool = False
     """A read command or the last reply to a call: somebody else writes it."""
 
+    def initial_of(self, field: str | None) -> Scalar:
+        """The initial value, or that of a field of a record."""
+        if field is None:
+            assert not isinstance(self.initial, tuple)
+            return self.initial
+        assert isinstance(self.initial, tuple)
+        return dict(self.initial)[field]
+
 
 @dataclass(frozen=True, slots=True)
 class Parameter:

@@ -17,7 +17,6 @@ from ravenchart.gen.language.terms import (
     InState,
     Literal,
     Name,
-    Operation,
     PortTest,
     Raise,
     Reading,
@@ -26,6 +25,7 @@ from ravenchart.gen.language.terms import (
     Send,
     Set,
     Type,
+    leaves,
 )
 from ravenchart.gen.model.commands import Need
 from ravenchart.gen.model.component import Event
@@ -88,9 +88,9 @@ def _actions(
 def _if(form: IfForm, words: Vocabulary, targets: Targets, findings: Findings) -> Action | None:
     """Each branch knows what the condition says."""
     guard = condition(form.if_, form.place("if"), words, findings, "if")
-    holds, fails = (
-        (words, words) if guard is None else (words.where(guard, h) for h in (True, False))
-    )
+    holds = fails = words
+    if guard is not None:
+        holds, fails = words.where(guard, True), words.where(guard, False)
     then = flow_of(form.then, holds, targets, findings)
     otherwise = flow_of(form.else_, fails, targets, findings)
     return None if guard is None else If(form.at_key("if"), guard, then, otherwise)
@@ -349,14 +349,12 @@ class Use:
 
     def expression(self, expression: Expression | None) -> None:
         """Add what an expression reads."""
-        match expression:
-            case Name(kind=Reading.EVENT):
-                pass
-            case Name(name=name) | PortTest(port=name) | InState(region=name):
-                self.reads.setdefault(name)
-            case Operation(operands=operands):
-                for operand in operands:
-                    self.expression(operand)
+        for leaf in () if expression is None else leaves(expression):
+            match leaf:
+                case Name(kind=Reading.EVENT):
+                    pass
+                case Name(name=name) | PortTest(port=name) | InState(region=name):
+                    self.reads.setdefault(name)
 
     def flow(self, flow: Flow) -> None:
         """Add what a flow does."""

@@ -218,6 +218,7 @@ class PlainType:
     name: str
     definition: str
     subtype: bool = False
+    aspects: tuple[Aspect, ...] = ()
 
 
 class RecordComponent(NamedTuple):

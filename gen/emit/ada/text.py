@@ -391,20 +391,14 @@ def _component(head: str, initial: Expr | None) -> Doc:
     return group(f"{head} :=", nest(SOFT, expression(initial), by=2), ";")
 
 
-_PREDICATE = " with Predicate => "
-
-
 def _plain_type(decl: PlainType) -> Doc:
-    head = f"{'subtype' if decl.subtype else 'type'} {decl.name} is"
-    base, _, predicate = decl.definition.partition(_PREDICATE)
-    if predicate:
-        function, argument = predicate.split(" ")
-        told = group(function, nest(SOFT, f"{argument};", by=2))
-        kept = group(_PREDICATE.strip(), nest(SOFT, told, by=2))
-        return group(head, nest(SOFT, base, SOFT, kept, by=2))
-    parts = f"{decl.definition};".replace(" range ", "\n range ").replace(" .. ", "\n.. ")
+    parts = decl.definition.replace(" range ", "\n range ").replace(" .. ", "\n.. ")
     whole, *bounds = [part.strip() for part in parts.split("\n")]
-    return group(head, nest(SOFT, whole, *(cat(SOFT, b) for b in bounds), by=2))
+    head = f"{'subtype' if decl.subtype else 'type'} {decl.name} is"
+    base = nest(SOFT, whole, *(cat(SOFT, b) for b in bounds), by=2)
+    if decl.aspects:
+        return group(group(head, base), _aspects(decl.aspects), ";")
+    return group(head, base, ";")
 
 
 _TIGHT = (Object, PlainType, Rename, UseType, Pragma)

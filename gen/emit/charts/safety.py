@@ -81,7 +81,8 @@ class Safety:
             self._is_kept,
             Comment("The region between steps; before the first one its data are initial."),
         ]
-        items.append(PlainType("Safe_Region", _SAFE_REGION, subtype=True))
+        kept = Aspect("Predicate", call(_KEPT, Ref(_SAFE_REGION)))
+        items.append(PlainType(_SAFE_REGION, "Region", subtype=True, aspects=(kept,)))
         if self._guards is not None:
             items += [self._guards, Comment(_GUARDS)]
         return items
@@ -200,10 +201,9 @@ class Safety:
                 given = m.named(self.shape.component.data, name)
                 of_type = given.type
                 if isinstance(of_type, m.RecordType):
-                    assert field is not None and isinstance(given.initial, tuple)
-                    return m.Literal(dict(given.initial)[field], of_type.field(field).type)
-                assert not isinstance(given.initial, tuple)
-                return m.Literal(given.initial, of_type)
+                    assert field is not None
+                    of_type = of_type.field(field).type
+                return m.Literal(given.initial_of(field), of_type)
             case m.Operation(operands=operands):
                 return replace(
                     expression, operands=tuple(self._with_constants(o) for o in operands)
@@ -259,7 +259,7 @@ class Safety:
         return [equal(Ref("Self.Data"), Old("Self.Data"))]
 
 
-_SAFE_REGION = f"Region with Predicate => {_KEPT} (Safe_Region)"
+_SAFE_REGION = "Safe_Region"
 _FACTS = (
     "What holds of data while a leaf is active: without it a transition might break an invariant."
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from ravenchart.gen.derive.kept import kept_of, leaves
+from ravenchart.gen.derive.kept import kept_of
 from ravenchart.gen.emit.ada.naming import ada_case, component_name, type_name
 from ravenchart.gen.emit.ada.syntax import (
     Aspect,
@@ -19,6 +19,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Subprogram,
     UseType,
     both,
+    call,
 )
 from ravenchart.gen.emit.language.terms import (
     Scope,
@@ -26,7 +27,7 @@ from ravenchart.gen.emit.language.terms import (
     emit_expression,
     operators_in,
 )
-from ravenchart.gen.language.terms import Expression, Name, Reading
+from ravenchart.gen.language.terms import Expression, Name, Reading, leaves
 from ravenchart.gen.model.component import Activity, Component, Data
 from ravenchart.gen.model.system import System
 
@@ -89,10 +90,10 @@ def kept_types(system: System, component: Component) -> Iterator[Decl]:
             name, of_type = ada_case(data.name), type_name(system, data.type)
             known = both(*(emit_expression(scope, one) for one in conditions))
             params = (Param("Item", "in", of_type),)
-            predicate = f"{name}_Is_Kept ({name})"
+            predicate = Aspect("Predicate", call(f"{name}_Is_Kept", Ref(name)))
             items.append(Comment(f"[{component.name}.{data.name}]"))
             items.append(Subprogram(f"{name}_Is_Kept", params, "Boolean", expression=known))
-            items.append(PlainType(name, f"{of_type} with Predicate => {predicate}", subtype=True))
+            items.append(PlainType(name, of_type, subtype=True, aspects=(predicate,)))
     yield Comment("What is true of data whenever they are read; each writer proves it.")
     yield Package(KEPT, tuple(items))
 

@@ -161,13 +161,7 @@ def _is_decided(expression: m.Expression, *, computed: bool = False) -> bool:
 
 def _names(expression: m.Expression) -> frozenset[m.Expression]:
     """Everything that an expression reads."""
-    match expression:
-        case m.Operation(_, operands):
-            return frozenset(name for operand in operands for name in _names(operand))
-        case m.Name():
-            return frozenset((expression,))
-        case _:
-            return frozenset()
+    return frozenset(leaf for leaf in m.leaves(expression) if isinstance(leaf, m.Name))
 
 
 def _bounds(expression: m.Expression) -> tuple[int, int] | None:

@@ -70,28 +70,20 @@ def unit_of(expression: m.Expression) -> str | None:
 
 def names_in(expression: m.Expression) -> set[str]:
     """The data, parameters, ports and regions that an expression reads."""
-    match expression:
-        case m.Literal():
-            return set()
-        case m.Name(kind, name):
-            return set() if kind is m.Reading.EVENT else {name}
-        case m.PortTest(port):
-            return {port}
-        case m.InState(region):
-            return {region}
-        case m.Operation(_, operands):
-            return {name for operand in operands for name in names_in(operand)}
+    found: set[str] = set()
+    for leaf in m.leaves(expression):
+        match leaf:
+            case m.Name(kind, name) if kind is not m.Reading.EVENT:
+                found.add(name)
+            case m.PortTest(name) | m.InState(name):
+                found.add(name)
+    return found
 
 
 def states_in(expression: m.Expression) -> set[tuple[str, str]]:
     """The (region, state) pairs that an expression asks for."""
-    match expression:
-        case m.InState(region, state):
-            return {(region, state)}
-        case m.Operation(_, operands):
-            return {pair for operand in operands for pair in states_in(operand)}
-        case _:
-            return set()
+    tests = (leaf for leaf in m.leaves(expression) if isinstance(leaf, m.InState))
+    return {(test.region, test.state) for test in tests}
 
 
 def compared_states(component: Component, expressions: Iterable[m.Expression]) -> set[str]:
