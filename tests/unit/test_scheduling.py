@@ -1,4 +1,4 @@
-"""Tests that run alone run after all others and beside none, and each runs once."""
+"""Proofs run after other tests, a processor each; then tests that run alone. Each runs once."""
 
 from __future__ import annotations
 
@@ -25,6 +25,13 @@ def test_alone(number):
     time.sleep(0.1)
     note(f"alone-{number} ends")
 
+@pytest.mark.skipif(False, reason="gnatprove is not on PATH")
+@pytest.mark.parametrize("number", range(6))
+def test_proof(number):
+    note(f"proof-{number} begins")
+    time.sleep(0.3)
+    note(f"proof-{number} ends")
+
 @pytest.mark.live
 @pytest.mark.parametrize("number", range(20))
 def test_live(number):
@@ -40,11 +47,25 @@ def test_shared(number):
 """
 
 
+def most_at_once(noted: list[tuple[str, str]]) -> int:
+    """How many of these tests ran side by side at the most."""
+    running = [1 if what == "begins" else -1 for _, what in noted]
+    return max((sum(running[: at + 1]) for at in range(len(running))), default=0)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "chosen",
-    [(), ("alone",), ("alone[1]",), ("shared[29]",), ("alone[0]", "shared[29]", "shared[3]")],
-    ids=["all", "all alone", "one alone", "one", "few"],
+    [
+        (),
+        ("alone",),
+        ("alone[1]",),
+        ("shared[29]",),
+        ("proof[2]",),
+        ("alone[0]", "proof[0]"),
+        ("alone[0]", "shared[29]", "shared[3]"),
+    ],
+    ids=["all", "all alone", "one alone", "one", "one proof", "proof and alone", "few"],
 )
 def test_what_runs_alone_comes_last_and_runs_beside_nothing(
     tmp_path: Path, chosen: tuple[str, ...]
@@ -65,13 +86,18 @@ def test_what_runs_alone_comes_last_and_runs_beside_nothing(
     lines = [line.split() for line in (tmp_path / "noted").read_text().splitlines()]
     noted = [(name, what) for _, name, what in sorted(lines, key=lambda line: float(line[0]))]
     begun = [name for name, what in noted if what == "begins"]
-    assert len(begun) == len(set(begun)) == {(): 52, ("alone",): 2}.get(chosen, len(chosen))
+    assert len(begun) == len(set(begun)) == {(): 58, ("alone",): 2}.get(chosen, len(chosen))
     alone = [one for one in noted if one[0].startswith("alone")]
     assert noted[len(noted) - len(alone) :] == alone
     assert [what for _, what in alone] == ["begins", "ends"] * (len(alone) // 2)
     live = [one for one in noted if one[0].startswith("live")]
     assert [what for _, what in live] == ["begins", "ends"] * (len(live) // 2)
+    side_by_side = most_at_once([one for one in noted if one[0].startswith("proof")])
+    assert side_by_side <= len(os.sched_getaffinity(0))
     if not chosen:
+        assert side_by_side == min(3, len(os.sched_getaffinity(0)))
+        proofs = [at for at, (name, _) in enumerate(noted) if name.startswith("proof")]
+        assert sum(name.startswith("shared") for name, _ in noted[proofs[0] :]) <= 4
         #  nobody waits for a live test while there is another one
         names = [name.partition("-")[0] for name, _ in noted]
         assert names.index("shared") < len(names) - names[::-1].index("live")
