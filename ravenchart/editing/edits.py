@@ -9,7 +9,7 @@ than intended is refused (`LayoutError`), so an unusual layout never becomes a w
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from ravenchart.gen.files import spans
@@ -19,6 +19,7 @@ Exchange = Callable[[YamlNode], Plain | None]
 """What a node says after a change; None where it says what it said."""
 
 _BREAK = re.compile(r"\r\n|\r|\n")
+_COMMENT = re.compile(r" *#[^\r\n]*(?:\r\n|\r|\n)")
 
 
 class LayoutError(Exception):
@@ -63,9 +64,17 @@ def with_value(document: Document, value: YamlScalar, new: str) -> Document:
 
 
 def with_entry(
-    document: Document, mapping: YamlMapping, after: str, key: str, new: str
+    document: Document,
+    mapping: YamlMapping,
+    after: str,
+    key: str,
+    new: str,
+    says: Plain | None = None,
 ) -> Document:
-    """The document with an entry more, behind that of ``after``, whose value is a scalar."""
+    """The document with an entry more, behind that of ``after``, whose value is a scalar.
+
+    ``says`` is what ``new`` says where that is no scalar.
+    """
     text, found = document.text, mapping.entry(after)
     if found is None or not isinstance(found[1], YamlScalar):
         raise LayoutError(f"there is no `{after}` behind which `{key}` could stand")
@@ -79,7 +88,7 @@ def with_entry(
         if node is not mapping:
             return None
         told = {name.value: plain(inner) for name, inner in mapping.entries}
-        return told | {key: new}
+        return told | {key: new if says is None else says}
 
     return document.changed(text[:place] + added + text[place:], exchange)
 
@@ -101,6 +110,64 @@ def without_entry(document: Document, mapping: YamlMapping, key: str) -> Documen
         return {name.value: plain(v) for name, v in mapping.entries if name is not found[0]}
 
     return document.changed(made, exchange)
+
+
+def with_block(
+    document: Document,
+    around: YamlMapping,
+    after: str,
+    key: str,
+    scalars: Mapping[str, str],
+    items: str,
+    item: TakenItem,
+) -> Document:
+    """The document with a mapping more in the mapping ``around``, behind the entry of ``after``.
+
+    It gets a line for each of the ``scalars``, and a list at ``items`` that holds ``item``.
+    """
+    text, found = document.text, around.entry(after)
+    if found is None or around.flow:
+        raise LayoutError(f"`{key}` cannot stand in a line of its own: edit the file")
+    margin = text[_line_start(text, found[0].start) : found[0].start]
+    if margin.strip(" "):
+        raise LayoutError(f"`{key}` cannot stand in a line of its own: edit the file")
+    inner = margin + "  "
+    lines = [
+        f"{margin}{key}:",
+        *(f"{inner}{name}: {value}" for name, value in scalars.items()),
+        f"{inner}{items}:",
+        f"{inner}  - {item.text}{item.comment}",
+    ]
+    place, added = _below(text, found[1].end, _break_of(text, found[1].end).join(lines))
+
+    def exchange(node: YamlNode) -> Plain | None:
+        if node is not around:
+            return None
+        told = {name.value: plain(inner) for name, inner in around.entries}
+        return told | {key: {**scalars, items: [item.says]}}
+
+    return document.changed(text[:place] + added + text[place:], exchange)
+
+
+def without_block(document: Document, around: YamlMapping, key: str) -> Document:
+    """The document without an entry, its lines, and the lines of comments right above it."""
+    text, found = document.text, around.entry(key)
+    if found is None:
+        return document
+    if around.flow:
+        raise LayoutError(f"`{key}` does not stand in a line of its own: edit the file")
+    made = _without_line(text, found[0].start, found[1].end, comment_stays=False)
+    behind = _line_start(text, found[0].start)
+    begin = behind
+    while begin and _COMMENT.fullmatch(above := text[_line_start(text, begin - 1) : begin]):
+        begin -= len(above)
+
+    def exchange(node: YamlNode) -> Plain | None:
+        if node is not around:
+            return None
+        return {name.value: plain(v) for name, v in around.entries if name is not found[0]}
+
+    return document.changed(made[:begin] + made[behind:], exchange)
 
 
 def without_item(

@@ -12,6 +12,7 @@ import os
 import subprocess
 import sys
 from base64 import b64encode
+from collections.abc import AsyncIterator
 from contextlib import suppress
 from pathlib import Path
 from signal import SIGKILL
@@ -33,6 +34,13 @@ class Aside:
 
     async def ask(self, model: Path, texts: Texts, **more: Any) -> dict[str, Any] | None:
         """The answer about the files of a model; None where a later question took its place."""
+        found = [one async for one in self.answers(model, texts, **more)]
+        return found[-1] if found else None
+
+    async def answers(
+        self, model: Path, texts: Texts, **more: Any
+    ) -> AsyncIterator[dict[str, Any]]:
+        """The answers, each better than that before; they end where a later question came."""
         if self._busy or self._process.poll() is not None:
             _end(self._process)
             self._process = _started()
@@ -41,14 +49,17 @@ class Aside:
         files = {name: b64encode(content).decode() for name, content in texts.items()}
         question = json.dumps({"model": str(model), "texts": files} | more)
         line = await asyncio.to_thread(_exchange, process, question)
-        if process is not self._process:
-            return None
-        self._busy = False
-        found: dict[str, Any] | None = json.loads(line) if line else None
-        return found
+        while process is self._process and line:
+            answer: dict[str, Any] = json.loads(line)
+            if not answer.pop("more", False):
+                self._busy = False
+                yield answer
+                return
+            yield answer
+            line = await asyncio.to_thread(_next, process)
 
     def stop(self) -> None:
-        """End the process."""
+        """End the process, and what it is asked."""
         _end(self._process)
 
 
@@ -60,9 +71,17 @@ def _started() -> subprocess.Popen[str]:
 
 def _exchange(process: subprocess.Popen[str], question: str) -> str:
     """One line there, one line back; "" where the process was ended meanwhile."""
-    assert process.stdin is not None and process.stdout is not None
+    assert process.stdin is not None
     with suppress(OSError, ValueError):
         print(question, file=process.stdin, flush=True)
+        return _next(process)
+    return ""
+
+
+def _next(process: subprocess.Popen[str]) -> str:
+    """The next line; "" where the process was ended meanwhile."""
+    assert process.stdout is not None
+    with suppress(OSError, ValueError):
         return process.stdout.readline()
     return ""
 

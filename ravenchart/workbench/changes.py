@@ -8,6 +8,7 @@ from ravenchart.editing import edits
 from ravenchart.editing.edits import Document, LayoutError
 from ravenchart.editing.evaluation import Evaluation, Texts, content
 from ravenchart.editing.places import ModelPlaces, NamedEntry
+from ravenchart.editing.tables import moved
 from ravenchart.gen.files.schema_deployment import PRIORITIES
 from ravenchart.gen.language.quantities import LONGEST, duration
 
@@ -52,17 +53,10 @@ def _moved(state: Evaluation, wish: Move) -> Changed:
     row = places.table(source)[number].value
     if source.name == target.name and number == wish.place:
         return Changed(state.texts, "")
-    stays = edits.is_flow(target.mapping, "activities")
-    shorter, item = edits.without_item(
-        _document(places, source.file), source.mapping, "activities", number, comment_stays=stays
-    )
-    between = ModelPlaces({**places.documents, source.file: shorter})
-    target = _processor(between, wish.to)
-    place = min(wish.place, len(between.table(target)))
-    longer = edits.with_item(
-        _document(between, target.file), target.mapping, "activities", place, item
-    )
-    documents = {source.file: shorter, target.file: longer}
+    documents = moved(places, wish.row, target.name, wish.place)
+    now = ModelPlaces({**places.documents, **documents}).row_at(wish.row)
+    assert now is not None, "it was put there"
+    place = now[1]
     label = f"{row}: place {number + 1} of {source.name} to {place + 1}"
     if source.name != target.name:
         label = f"{row}: {source.name} to {target.name}"

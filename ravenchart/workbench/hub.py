@@ -11,8 +11,20 @@ from ravenchart.building import drawings
 from ravenchart.editing.evaluation import Evaluation
 
 from .aside import Aside
+from .changes import ChangeRefusedError
 from .publishing import Publisher
-from .requests import Move, PageRequest, Rewind, Save, SetProcessor, SetTime, Settle
+from .requests import (
+    Move,
+    PageRequest,
+    Rewind,
+    Save,
+    SearchTables,
+    SetProcessor,
+    SetTime,
+    Settle,
+    TakeTables,
+)
+from .searching import Search
 from .session import Session
 from .view import located, view
 
@@ -26,14 +38,16 @@ PAUSE = 0.4
 
 
 class Hub(Publisher):
-    """Publishes a session, looks at its files, and finds advice by processes aside."""
+    """Publishes a session, looks at its files; processes aside find advice and tables."""
 
     def __init__(self, session: Session) -> None:
         """For one session; to be made before the event loop runs."""
         self.session = session
         self._room: tuple[int, list[str]] = (-1, [])
+        self._search: Search | None = None
         super().__init__(session)
         self._advice, self._growth = Aside(), Aside()
+        self._tables: Aside | None = None
 
     # --- The life of it
 
@@ -47,6 +61,8 @@ class Hub(Publisher):
         await super().close()
         self._advice.stop()
         self._growth.stop()
+        if self._tables is not None:
+            self._tables.stop()
 
     async def ask(self, about: Callable[[Session], T]) -> T:
         """What a function finds in the session, while no change is under way."""
@@ -64,11 +80,33 @@ class Hub(Publisher):
                 self.session.save(late=late)
             case Settle(kind=kind):
                 self.session.take() if kind == "take" else self.session.keep()
+            case SearchTables(strategy=strategy):
+                if self.session.now.analysis is None:
+                    raise ChangeRefusedError("the model has errors: correct them, then search")
+                self._search = Search(strategy, self.session.now.texts)
+            case TakeTables(kind=kind):
+                if self._search is None:
+                    raise ChangeRefusedError("no search has been started")
+                if kind == "adopt":
+                    self._search.adopt(self.session)
+                    self._search = None
+
+    async def act(self, wish: PageRequest) -> bytes:
+        """Do what a message asks for; what a search does goes on by itself."""
+        state = await super().act(wish)
+        match wish:
+            case SearchTables() if self._search is not None:
+                self._spawn(self._seek(self._search))
+            case TakeTables():
+                if self._tables is not None:
+                    self._tables.stop()
+        return state
 
     def _dumped(self) -> bytes:
         number, lines = self._room
         room = lines if number == self.session.number else None
-        return json.dumps(view(self.session) | {"room": room}).encode()
+        search = None if self._search is None else self._search.told(self.session)
+        return json.dumps(view(self.session) | {"room": room, "search": search}).encode()
 
     def _published(self) -> None:
         """Look for advice on the state that is shown now."""
@@ -93,6 +131,16 @@ class Hub(Publisher):
         if answer and number == session.number:
             self._room = number, answer["lines"]
             await self._publish(await self._run(self._dumped))
+
+    async def _seek(self, search: Search) -> None:
+        """Follow a search to its end, and show the best so far."""
+        self._tables = self._tables or Aside()
+        more = {"strategy": search.strategy}
+        async for best in self._tables.answers(self.session.path, search.texts, **more):
+            search.best = best or None
+            await self._publish(await self._run(self._dumped))
+        search.running = False
+        await self._publish(await self._run(self._dumped))
 
     async def growth(self, row: str) -> dict[str, Any] | None:
         """How far the WCET of a row may grow, with those that share it; None: asked too late."""

@@ -66,17 +66,28 @@ class Settle(PageRequest):
     kind: Literal["take", "keep"]
 
 
-Request = Annotated[
-    Move | SetTime | SetProcessor | Rewind | Save | Settle, Field(discriminator="kind")
-]
-_READER: TypeAdapter[Move | SetTime | SetProcessor | Rewind | Save | Settle] = TypeAdapter(Request)
+class SearchTables(PageRequest):
+    """Look for better tables of all periodic rows, by a strategy of `allocate`."""
+
+    kind: Literal["search"]
+    strategy: Literal["period", "locality", "fewest", "slack"]
+
+
+class TakeTables(PageRequest):
+    """End the search, or make the best tables so far a change of the model."""
+
+    kind: Literal["stop", "adopt"]
+
+
+AnyRequest = Move | SetTime | SetProcessor | Rewind | Save | Settle | SearchTables | TakeTables
+_READER: TypeAdapter[AnyRequest] = TypeAdapter(Annotated[AnyRequest, Field(discriminator="kind")])
 
 
 class MalformedError(Exception):
     """A message has none of the forms above; the text says where it differs."""
 
 
-def read(body: bytes) -> Move | SetTime | SetProcessor | Rewind | Save | Settle:
+def read(body: bytes) -> AnyRequest:
     """The message of a request, or `MalformedError`."""
     return validated(_READER, body)
 

@@ -1,7 +1,8 @@
-"""What takes longer than a change may: advice, and how far a WCET may grow. A process of its own.
+"""What takes longer than a change may: advice, how far a WCET may grow, tables. A process.
 
-It reads one question a line on standard input and writes one answer a line, both JSON. The
-process that asks ends it where the question is no longer of use.
+It reads one question a line on standard input and writes one answer a line, both JSON; an answer
+with ``more`` is the best so far, and another follows. The process that asks ends it where the
+question is no longer of use.
 """
 
 from __future__ import annotations
@@ -9,33 +10,44 @@ from __future__ import annotations
 import json
 import sys
 from base64 import b64decode
+from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
+from ravenchart.allocation.proposals import Proposal, propose, tables
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.findings.growth import largest_wcet
-from ravenchart.analysis.present.words import binding_lines, growth_line
+from ravenchart.analysis.present.words import binding_lines, growth_line, verdict_line
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import duration
 from ravenchart.editing.evaluation import evaluate
+
+PAUSE = 0.2
+"""Seconds that lie at least between two answers to one question."""
+
+Say = Callable[[dict[str, Any]], None]
 
 
 def main() -> None:
     """Answer until there are no more questions."""
     for line in sys.stdin:
-        answer = answered(json.loads(line))
-        print(json.dumps(answer), flush=True)
+        answer(json.loads(line), lambda told: print(json.dumps(told), flush=True))
 
 
-def answered(question: dict[str, Any]) -> dict[str, Any]:
-    """The answer to a question about the files of a model."""
+def answer(question: dict[str, Any], say: Say) -> None:
+    """Answer a question about the files of a model; the last answer is without ``more``."""
     texts = {name: b64decode(content) for name, content in question["texts"].items()}
     found = evaluate(Path(question["model"]), texts)
     if found.analysis is None:
-        return {}
-    if "rows" in question:
-        return grown(found.analysis, question["rows"])
-    return {"lines": list(room_lines(found.analysis))}
+        say({})
+    elif "rows" in question:
+        say(grown(found.analysis, question["rows"]))
+    elif "strategy" in question:
+        say(allocated(found.analysis, question["strategy"], say))
+    else:
+        say({"lines": list(room_lines(found.analysis))})
 
 
 def room_lines(analysis: Analysis) -> tuple[str, ...]:
@@ -49,6 +61,31 @@ def grown(analysis: Analysis, rows: list[str]) -> dict[str, Any]:
     largest = largest_wcet(analysis, rows)
     text = "none, a deadline or limit is not kept now" if largest is None else duration(largest)
     return {"wcet": largest, "text": text}
+
+
+def allocated(analysis: Analysis, strategy: str, say: Say) -> dict[str, Any]:
+    """The best tables that a strategy finds; says the best so far meanwhile."""
+    last = -PAUSE
+
+    def better(proposal: Proposal) -> None:
+        nonlocal last
+        if monotonic() - last >= PAUSE:
+            last = monotonic()
+            say(outcome(proposal) | {"more": True})
+
+    return outcome(propose(analysis, strategy, better))
+
+
+def outcome(proposal: Proposal) -> dict[str, Any]:
+    """Tables with what the analysis says of them, times in ns."""
+    analysis = proposal.analysis
+    return {
+        "verdict": verdict_line(analysis),
+        "met": analysis.schedulable,
+        "tables": [asdict(table) for table in tables(proposal)],
+        "bounds": {row.row.name: row.bound for _, row in analysis.rows()},
+        "deadlines": {slot.element: slot.timing.deadline for slot in analysis.system.slots},
+    }
 
 
 if __name__ == "__main__":

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 import difflib
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ravenchart.allocation.proposals import WantedTable
 from ravenchart.building import checking
+from ravenchart.editing.edits import LayoutError
 from ravenchart.editing.evaluation import Evaluation, Texts, evaluate, over
+from ravenchart.editing.tables import rearranged
 from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.files.load import LARGEST, read_file
@@ -27,6 +30,9 @@ from .requests import Move, SetProcessor, SetTime
 
 MOST_STATES = 1_000
 """Changes that can be undone."""
+
+Bounds = Mapping[str, int | None]
+"""The response of each row, in ns."""
 
 Stamp = tuple[int, int, int] | None
 """Inode, size and time of a file; None of one that is not there."""
@@ -127,6 +133,20 @@ class Session:
             return False
         self._take(SessionState(made.texts, made.label))
         return True
+
+    def adopt(self, tables: Sequence[WantedTable], bounds: Bounds, label: str) -> None:
+        """Make these tables a change, which must come to the bounds that were found for them."""
+        try:
+            made = evaluate(self.path, rearranged(self.path, self.now, tables))
+        except LayoutError as problem:
+            raise ChangeRefusedError(str(problem)) from problem
+        analysis = made.analysis
+        if analysis is None or {row.row.name: row.bound for _, row in analysis.rows()} != bounds:
+            raise ChangeRefusedError(
+                "the text of the model does not allow these tables: "
+                "`ravenchart allocate --yaml` prints what to write"
+            )
+        self._take(SessionState(made.texts, label), made)
 
     def step(self, by: int) -> bool:
         """Go back (-1) or forward (1) by one change; False where there is none."""

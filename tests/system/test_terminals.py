@@ -102,6 +102,7 @@ def project(tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_progress_is_shown_at_a_terminal_and_never_in_the_output(project: Path) -> None:
     out, errors = called("build", project, terminals="err")
     assert re.search(r"compile \w+: \d+ of \d+ units compiled", errors)

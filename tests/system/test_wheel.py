@@ -92,7 +92,6 @@ def test_a_wheel_has_one_import_package_and_all_that_a_program_needs(wheel: Path
     assert not [name for name in names if "/tests/" in name or "mutation" in name]
 
 
-@pytest.mark.slow
 @pytest.mark.live
 def test_a_new_project_is_checked_built_run_and_drawn(away: Path) -> None:
     _called(away, "new", "tank")

@@ -164,6 +164,26 @@ def test_a_longer_wcet_is_infeasible_in_words_and_its_save_asked_for(
     assert b"wcet: 4 ms" in (folder / "joint.yaml").read_bytes()
 
 
+def test_tables_that_a_search_finds_become_a_change(pane: Pane) -> None:
+    page = pane.page
+    names = page.locator("[data-processor]")
+    before = names.count()
+    page.get_by_role("tab", name="Allocation").click()
+    page.get_by_label("Look for").select_option("as few processors as possible")
+    page.get_by_role("button", name="Search", exact=True).click()
+    expect(page.get_by_role("status").filter(has_text="Found:")).to_contain_text(
+        "every deadline is met"
+    )
+    assert serious(page) == []
+    page.get_by_role("button", name="Put these tables").click()
+    expect(names).not_to_have_count(before)
+    expect(page.get_by_role("button", name="Undo")).to_have_attribute(
+        "title", "rows allocated by fewest"
+    )
+    page.get_by_role("button", name="Undo").click()
+    expect(names).to_have_count(before)
+
+
 def test_an_error_is_shown_with_its_location_and_the_last_good_figures(pane: Pane) -> None:
     page = pane.page
     bound = pane.bound("control").text_content() or ""

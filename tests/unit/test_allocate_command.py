@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.allocation import proposals
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.command_line import main
-from ravenchart.commands import allocate
 from ravenchart.failures import OK
 from ravenchart.gen.pipeline import load
 
@@ -40,11 +40,11 @@ def pasted(text: str, folder: Path, home: Path = ROBOT) -> Path:
     return model
 
 
-@pytest.mark.parametrize("strategy", allocate.STRATEGIES)
+@pytest.mark.parametrize("strategy", proposals.STRATEGIES)
 def test_what_is_proposed_is_what_the_model_then_has(strategy: str, tmp_path: Path) -> None:
     before = analysed(ROBOT / "model.yaml")
-    proposal = allocate.propose(before, strategy)
-    after = analysed(pasted(allocate.yaml(proposal), tmp_path))
+    proposal = proposals.propose(before, strategy)
+    after = analysed(pasted(proposals.yaml(proposal), tmp_path))
     assert after.found.met
     rows = {s.element for p in before.system.processors for s in p.slots}
     assert {s.element for p in after.system.processors for s in p.slots} == rows
@@ -57,11 +57,11 @@ def test_what_is_proposed_is_what_the_model_then_has(strategy: str, tmp_path: Pa
 def test_few_tasks_are_fewest_and_sporadic_ones_stay() -> None:
     before = analysed(ROBOT / "model.yaml")
     counts = {
-        strategy: len(allocate.propose(before, strategy).system.processors)
+        strategy: len(proposals.propose(before, strategy).system.processors)
         for strategy in ("period", "locality", "fewest")
     }
     assert counts["fewest"] == min(counts.values())
-    kept = allocate.propose(before, "fewest").system.processors[0]
+    kept = proposals.propose(before, "fewest").system.processors[0]
     assert (kept.name, kept.released_by, kept.period) == ("reception", "robot_bus", 1_000_000)
 
 
@@ -77,14 +77,14 @@ def test_the_table_fits_80_columns_and_says_what_stays(capsys: pytest.CaptureFix
 def test_events_of_misses_and_offsets_go_with_the_rows() -> None:
     before = analysed(ROBOT.parent / "pump" / "model.yaml")
     misses = {m for p in before.system.processors for m in p.on_deadline_miss}
-    text = allocate.yaml(allocate.propose(before, "period"))
+    text = proposals.yaml(proposals.propose(before, "period"))
     assert all(f"      - {instance}.{event}" in text for instance, event in misses)
 
 
 NODES = ROBOT.parents[1] / "tests" / "nodes"
 
 
-@pytest.mark.parametrize("strategy", allocate.STRATEGIES)
+@pytest.mark.parametrize("strategy", proposals.STRATEGIES)
 @pytest.mark.parametrize(
     "home",
     [
@@ -95,8 +95,8 @@ NODES = ROBOT.parents[1] / "tests" / "nodes"
 def test_what_is_printed_for_several_nodes_or_files_is_a_model(
     home: Path, strategy: str, tmp_path: Path
 ) -> None:
-    proposal = allocate.propose(analysed(home / "model.yaml"), strategy)
-    after = analysed(pasted(allocate.yaml(proposal), tmp_path, home))
+    proposal = proposals.propose(analysed(home / "model.yaml"), strategy)
+    after = analysed(pasted(proposals.yaml(proposal), tmp_path, home))
     assert after.schedulable
     assert set(after.tasks) == set(proposal.analysis.tasks)
     for name in after.tasks:
@@ -146,7 +146,7 @@ messages: {told: {bus: can0, id: 1, from: k.word, deadline: 3 ms}}
 """The message is late where its sender waits for the other row: in one table, or below it."""
 
 
-@pytest.mark.parametrize("strategy", allocate.STRATEGIES)
+@pytest.mark.parametrize("strategy", proposals.STRATEGIES)
 @pytest.mark.parametrize("text", [SHORT, SENDS])
 def test_every_strategy_keeps_sections_and_deadlines_of_messages(
     text: str, strategy: str, tmp_path: Path
@@ -154,9 +154,9 @@ def test_every_strategy_keeps_sections_and_deadlines_of_messages(
     model = tmp_path / "model.yaml"
     model.write_text(text)
     assert main(["allocate", str(model), "--strategy", strategy]) == OK
-    proposal = allocate.propose(analysed(model), strategy)
+    proposal = proposals.propose(analysed(model), strategy)
     (tmp_path / "new").mkdir()
-    after = analysed(pasted(allocate.yaml(proposal), tmp_path / "new", tmp_path))
+    after = analysed(pasted(proposals.yaml(proposal), tmp_path / "new", tmp_path))
     assert after.schedulable
 
 

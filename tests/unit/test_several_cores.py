@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.allocation import proposals
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.command_line import main
-from ravenchart.commands import allocate
 from ravenchart.failures import OK, WRONG
 from ravenchart.gen.model.system import System
 from tests.support.pump import loaded
@@ -129,7 +129,7 @@ def test_it_is_checked_and_analysed_and_not_generated(
 
 
 def test_allocation_keeps_rows_on_their_core() -> None:
-    proposal = allocate.propose(found(MODEL), "fewest")
+    proposal = proposals.propose(found(MODEL), "fewest")
     cores = {s.element: p.core for p in proposal.system.processors for s in p.slots}
     assert cores == {"left.Control": 1, "left.toil": 1, "right.Control": 2, "right.toil": 2}
-    assert "    core: 2\n" in allocate.yaml(proposal)
+    assert "    core: 2\n" in proposals.yaml(proposal)

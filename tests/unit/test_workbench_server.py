@@ -268,6 +268,42 @@ def test_advice_and_growth_come_after_the_state(bench: Running) -> None:
     assert bench.act(kind="undo").status == 200
 
 
+def test_a_search_shows_its_best_and_its_tables_become_a_change(bench: Running) -> None:
+    page = bench.stream()
+    assert bench.act(kind="adopt").status == bench.act(kind="stop").status == 422
+    state = until(page, 0)
+    assert bench.act(kind="search", strategy="fewest").json["search"]["running"]
+    while not (state["search"] and not state["search"]["running"]):
+        state = page.get(timeout=PATIENCE)
+    best = state["search"]["best"]
+    assert best["met"] and "every deadline is met" in best["verdict"]
+    assert len(best["tables"]) < len(state["processors"])
+    adopted = bench.act(kind="adopt").json
+    assert adopted["search"] is None and adopted["undo"] == "rows allocated by fewest"
+    tables = [[row["row"] for row in one["rows"]] for one in adopted["processors"]]
+    assert sorted(tables) == sorted(table["rows"] for table in best["tables"])
+    assert bench.act(kind="undo").json["dirty"] is False
+
+
+def test_a_search_is_stopped_and_what_has_changed_since_is_not_replaced(bench: Running) -> None:
+    page = bench.stream()
+    state = until(page, 0)
+    bench.act(kind="search", strategy="period")
+    while not (state["search"] and state["search"]["best"]):
+        state = page.get(timeout=PATIENCE)
+    bench.act(kind="time", row="joint_x.ports", key="wcet", value="135 us")
+    assert bench.state()["search"]["old"]
+    refused = bench.act(kind="adopt")
+    assert refused.status == 422
+    assert refused.json["error"] == "the model has changed since the search: search again"
+    bench.act(kind="search", strategy="slack")
+    state = bench.act(kind="stop").json
+    while state["search"]["running"]:
+        state = page.get(timeout=PATIENCE)
+    assert not state["search"]["old"]
+    assert bench.act(kind="undo").status == 200
+
+
 def test_a_drawing_comes_with_the_locations_of_what_it_shows(bench: Running) -> None:
     found = bench.request("drawing?name=Joint.Motion").json
     assert found["svg"].startswith("<?xml") and "<title>Idle</title>" in found["svg"]

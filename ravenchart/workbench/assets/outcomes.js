@@ -1,8 +1,9 @@
-// Below the drawing: what is wrong, chains, buses, advice, and the source of what was clicked.
+// Below the drawing: what is wrong, chains, buses, advice, tables, and the source of what was clicked.
 
 import { html, useEffect, useRef, useState } from "./preact.js";
 import { Bar, Place, Word, useBench } from "./parts.js";
 import { get, time } from "./link.js";
+import { Allocation } from "./allocation.js";
 import { Live } from "./live.js";
 
 export function Outcomes({ tab, setTab, at }) {
@@ -13,7 +14,7 @@ export function Outcomes({ tab, setTab, at }) {
   const tabs = [
     ["findings", "Findings", errors, Findings], ["chains", "Chains", late, Chains],
     ["buses", "Buses", missed, Buses], ["advice", "Room and advice", 0, Advice],
-    ["live", "Live", 0, Live],
+    ["allocation", "Allocation", 0, Allocation], ["live", "Live", 0, Live],
     ["source", "Source", 0, () => html`<${Source} at=${at} />`],
   ];
   function key(event) {

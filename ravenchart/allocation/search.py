@@ -40,14 +40,22 @@ class Judged:
 
 
 Judge = Callable[[list[Table]], Judged]
+Better = Callable[[Judged], None]
+"""Hears of the best tables so far, each time when there are better ones."""
 
 
-def searched(starts: Sequence[list[Table]], strategy: Strategy, judge: Judge) -> Judged:
+def searched(
+    starts: Sequence[list[Table]],
+    strategy: Strategy,
+    judge: Judge,
+    better: Better = lambda _: None,
+) -> Judged:
     """The best tables that moves lead to from the best of the ``starts``."""
     rows = sum(map(len, starts[0]))
     left = TRIALS // max(1, rows)
     best = max((judge(tables) for tables in starts), key=lambda one: rank(one, strategy))
     found = rank(best, strategy)
+    better(best)
     while left > 0 and not (found[0] and strategy in SET):
         for tables in neighbours(best.tables):
             left -= 1
@@ -58,6 +66,7 @@ def searched(starts: Sequence[list[Table]], strategy: Strategy, judge: Judge) ->
             break
         if rank(other, strategy) > found:
             best, found = other, rank(other, strategy)
+            better(best)
     return best
 
 

@@ -1,0 +1,252 @@
+"""Rows of processors put together anew in a model's text; what stays as it is keeps its text.
+
+A table takes over the processor of which it has most rows, with its name, comments and keys. A
+table without one becomes a processor of its own, and a processor that has lost all rows goes.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ravenchart.allocation.proposals import WantedTable, stack_text
+from ravenchart.analysis.units import duration
+from ravenchart.gen.files import spans
+from ravenchart.gen.files.spans import plain
+from ravenchart.gen.model.system import Processor, System
+
+from . import edits
+from .edits import Document, LayoutError, TakenItem
+from .evaluation import Evaluation, Texts, content, evaluate
+from .places import ModelPlaces, NamedEntry
+
+TIMES = ("period", "offset", "deadline")
+"""The keys of a processor that a table says, in ns."""
+
+
+@dataclass(slots=True)
+class _Files:
+    """The files of a model while they are changed."""
+
+    documents: dict[str, Document | None]
+
+    @property
+    def places(self) -> ModelPlaces:
+        return ModelPlaces(self.documents)
+
+    def document(self, entry: NamedEntry) -> Document:
+        found = self.documents[entry.file]
+        assert found is not None, "an entry stands in a document"
+        return found
+
+    def processor(self, name: str) -> NamedEntry:
+        return self.places.processors[name.lower()]
+
+    def texts(self, before: Texts) -> Texts:
+        return {
+            name: old if (made := self.documents[name]) is None else content(made, old)
+            for name, old in before.items()
+        }
+
+
+def moved(places: ModelPlaces, row: str, to: str, place: int) -> dict[str, Document]:
+    """The documents in which a row is in the table of that processor; both are there.
+
+    ``place`` is counted from 0 and as in the table without the row.
+    """
+    files = _Files(dict(places.documents))
+    item = _taken(files, row, stays=edits.is_flow(files.processor(to).mapping, "activities"))
+    target = files.processor(to)
+    place = min(place, len(files.places.table(target)))
+    files.documents[target.file] = edits.with_item(
+        files.document(target), target.mapping, "activities", place, item
+    )
+    return {
+        name: made
+        for name, made in files.documents.items()
+        if made is not None and made is not places.documents[name]
+    }
+
+
+def rearranged(path: Path, state: Evaluation, tables: Sequence[WantedTable]) -> Texts:
+    """The texts of the model at ``path`` with these tables.
+
+    Priorities follow from deadlines; where those alone give another order, each is written.
+    `LayoutError` where the text does not allow it; then nothing has changed.
+    """
+    files = _Files(dict(state.places.documents))
+    rows = Counter(row.lower() for table in tables for row in table.rows)
+    shared = next((row for row, count in rows.items() if count > 1), None)
+    if shared is not None:
+        raise LayoutError(
+            f"{shared} goes to a processor of each node, and the text has it once: "
+            "`ravenchart allocate --yaml` prints what to write"
+        )
+    homes = _homes(files.places, tables)
+    names = [home or _added(files, table) for table, home in zip(tables, homes, strict=True)]
+    for table, name in zip(tables, names, strict=True):
+        for place, row in enumerate(table.rows):
+            found = files.places.row_at(row)
+            if found is None or (found[0].name, found[1]) != (name, place):
+                files.documents |= moved(files.places, row, name, place)
+    _without_empty(files, names)
+    for entry in list(files.places.processors.values()):
+        now = files.processor(entry.name)
+        files.documents[now.file] = edits.without_entry(
+            files.document(now), now.mapping, "priority"
+        )
+    _set_values(files, _understood(path, files, state), tables, names)
+    _set_reactions(files, tables, names)
+    _set_priorities(files, _understood(path, files, state), tables, names)
+    return files.texts(state.texts)
+
+
+def _homes(places: ModelPlaces, tables: Sequence[WantedTable]) -> list[str | None]:
+    """The processor that each table takes over: of those with most of its rows, the first."""
+    shared: list[tuple[int, int, str]] = []
+    for number, table in enumerate(tables):
+        rows = {row.lower() for row in table.rows}
+        for processor in places.processors.values():
+            count = sum(item.value.lower() in rows for item in places.table(processor))
+            stays = processor.mapping.scalar("released_by") is not None
+            if count and stays is table.sporadic:
+                shared.append((-count, number, processor.name))
+    homes: list[str | None] = [None] * len(tables)
+    for _, number, name in sorted(shared, key=lambda one: one[:2]):
+        if homes[number] is None and name not in homes:
+            homes[number] = name
+    return homes
+
+
+def _added(files: _Files, table: WantedTable) -> str:
+    """A processor more, with the first row of a table; its name."""
+    found = files.places.row_at(table.rows[0])
+    if found is None:
+        raise LayoutError(f"no processor has the row {table.rows[0]}")
+    origin, _ = found
+    name = _free(table.name, files.places)
+    item = _taken(files, table.rows[0], stays=False)
+    root = files.document(origin).root
+    around = root.mapping("processors")
+    assert around is not None, "a processor stands there"
+    keys = {"node": table.node} if table.node else {}
+    keys |= {"core": str(table.core)} if table.core > 1 else {}
+    keys |= {"period": duration(table.period), "stack": stack_text(table.stack_bytes)}
+    files.documents[origin.file] = edits.with_block(
+        files.document(origin), around, origin.name, name, keys, "activities", item
+    )
+    return name
+
+
+def _free(name: str, places: ModelPlaces) -> str:
+    free, number = name, 1
+    while free.lower() in places.processors:
+        number += 1
+        free = f"{name}_{number}"
+    return free
+
+
+def _taken(files: _Files, row: str, *, stays: bool) -> TakenItem:
+    """A row out of its table; its comment goes along unless it ``stays``."""
+    found = files.places.row_at(row)
+    if found is None:
+        raise LayoutError(f"no processor has the row {row}")
+    source, number = found
+    files.documents[source.file], item = edits.without_item(
+        files.document(source), source.mapping, "activities", number, comment_stays=stays
+    )
+    return item
+
+
+def _without_empty(files: _Files, kept: Sequence[str]) -> None:
+    """Processors that have lost all rows go."""
+    for entry in list(files.places.processors.values()):
+        if entry.name in kept or files.places.table(entry):
+            continue
+        now = files.processor(entry.name)
+        document = files.document(now)
+        around = document.root.mapping("processors")
+        assert around is not None, "a processor stands there"
+        files.documents[now.file] = edits.without_block(document, around, entry.name)
+
+
+def _understood(path: Path, files: _Files, before: Evaluation) -> System:
+    """What the texts say by now."""
+    found = evaluate(path, files.texts(before.texts))
+    if found.loaded.system is None:
+        raise LayoutError(f"the tables do not fit the text: {found.found[0].message}")
+    return found.loaded.system
+
+
+def _set_values(
+    files: _Files, system: System, tables: Sequence[WantedTable], names: Sequence[str]
+) -> None:
+    """What the tables say of times and stacks, where it does not follow from the rows."""
+    for table, name in zip(tables, names, strict=True):
+        now = _copy(system.processors, name)
+        for key in TIMES:
+            entry, wanted = files.processor(name), getattr(table, key)
+            if getattr(now, key) != wanted:
+                files.documents[entry.file] = _with_time(
+                    files.document(entry), entry, key, duration(wanted)
+                )
+        entry = files.processor(name)
+        stack = entry.mapping.scalar("stack")
+        if now.stack_bytes < table.stack_bytes and stack is not None:
+            files.documents[entry.file] = edits.with_value(
+                files.document(entry), stack, stack_text(table.stack_bytes)
+            )
+
+
+def _set_reactions(files: _Files, tables: Sequence[WantedTable], names: Sequence[str]) -> None:
+    """A table raises what the processors raised that its rows come from."""
+    for table, name in zip(tables, names, strict=True):
+        for key, events in table.raises.items():
+            found = files.processor(name).mapping.get(key)
+            known = {str(one).lower() for one in plain(found)} if found is not None else set()
+            for event in (one for one in events if one.lower() not in known):
+                entry = files.processor(name)
+                files.documents[entry.file] = _with_event(files.document(entry), entry, key, event)
+
+
+def _with_event(document: Document, entry: NamedEntry, key: str, event: str) -> Document:
+    found = entry.mapping.get(key)
+    if isinstance(found, spans.Sequence) and found.items:
+        item = TakenItem(event, event)
+        return edits.with_item(document, entry.mapping, key, len(found.items), item)
+    if found is not None:
+        raise LayoutError(f"`{key}` is not a list with events: edit the file")
+    return edits.with_entry(document, entry.mapping, _behind(entry), key, f"[{event}]", [event])
+
+
+def _set_priorities(
+    files: _Files, system: System, tables: Sequence[WantedTable], names: Sequence[str]
+) -> None:
+    """The priorities, where the deadlines alone give others."""
+    wanted = {name: table.priority for table, name in zip(tables, names, strict=True)}
+    if all(_copy(system.processors, n).priority == level for n, level in wanted.items()):
+        return
+    for name, level in wanted.items():
+        entry = files.processor(name)
+        files.documents[entry.file] = edits.with_entry(
+            files.document(entry), entry.mapping, _behind(entry), "priority", str(level)
+        )
+
+
+def _copy(processors: Sequence[Processor], name: str) -> Processor:
+    """The processor of that name, or the first of its copies on several nodes."""
+    return next(one for one in processors if one.name in (name, f"{name}_{one.node}"))
+
+
+def _with_time(document: Document, entry: NamedEntry, key: str, value: str) -> Document:
+    now = entry.mapping.scalar(key)
+    if now is not None:
+        return edits.with_value(document, now, value)
+    return edits.with_entry(document, entry.mapping, _behind(entry), key, value)
+
+
+def _behind(entry: NamedEntry) -> str:
+    """The key of a processor behind which a new one stands."""
+    return "period" if entry.mapping.scalar("period") is not None else "stack"
