@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Set
+from collections.abc import Iterable, Iterator, Set
 from dataclasses import dataclass, replace
 
 from ravenchart.gen.language.terms import Ns
@@ -12,7 +12,7 @@ from ravenchart.gen.model.component import Activity
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.nodes import PROBE, SUPERVISOR
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Processor, SharedObject, System, Work
+from ravenchart.gen.model.system import Processor, SharedObject, System, Task, Work
 
 from .calls import (
     callers,
@@ -229,6 +229,15 @@ class _Sharing:
             ),
         )
         yield from self.raisers(quiet, region)
+
+
+def too_long(system: System) -> Iterator[tuple[SharedObject, Task]]:
+    """The objects of a completed system inside which a task might be longer than its whole job."""
+    tasks = {task.element: task for task in system.tasks}
+    for item in system.objects:
+        for user in item.users:
+            if user in tasks and tasks[user].budget < item.section:
+                yield item, tasks[user]
 
 
 def _works_in(item: Region | Activity, region: str) -> bool:

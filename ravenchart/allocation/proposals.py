@@ -20,6 +20,7 @@ from ravenchart.analysis.present.words import verdict_line
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.analysis.units import duration
 from ravenchart.gen.derive.completion import completed
+from ravenchart.gen.derive.sharing import too_long
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Processor, Slot, System
 
@@ -108,11 +109,12 @@ def propose(
             rows = [row for name, row in home.items() if name in names]
             taken = [processor.name for processor in (*made, *kept)]
             made.append(_processor(rows, taken))
-        short = [p for p in made if p.wcet < system.node(p.node).critical_section]
+        told = completed(replace(system, processors=tuple(_unranked(p) for p in (*kept, *made))))
+        short = sum(p.wcet < system.node(p.node).critical_section for p in made)
+        short += len(list(too_long(told)))
         if short:
-            return Judged(tables, None, len(short))
-        told = replace(system, processors=tuple(_unranked(p) for p in (*kept, *made)))
-        return Judged(tables, analyse(completed(told)))
+            return Judged(tables, None, short)
+        return Judged(tables, analyse(told))
 
     starts = [list(found.tables)]
     own = [tuple(known[slot.element] for slot in processor.slots) for processor in moved]

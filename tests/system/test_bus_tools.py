@@ -201,6 +201,7 @@ def test_the_tools_of_python_can_log_and_play(channel: str, tmp_path: Path) -> N
         assert same(frames, [m for m in heard if not m.is_error_frame])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".blf", ".asc", ".log", ".csv"])
 def test_a_bus_writes_its_log_in_the_formats_of_python_can(tmp_path: Path, suffix: str) -> None:
     """Every frame in the order of the bus, although nobody reads it but the other node."""

@@ -67,6 +67,7 @@ def test_a_run_that_is_ended_ends_its_controllers_and_its_bus(
         assert "Traceback" not in run.process.communicate()[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "status"), [(signal.SIGKILL, -9), (signal.SIGTERM, 143), (signal.SIGINT, 130)]
 )

@@ -105,6 +105,7 @@ def _times(folder: Path, region: str, capsys: pytest.CaptureFixture[str]) -> dic
     return found
 
 
+@pytest.mark.slow
 def test_devices_and_tasks_execute_commands_in_virtual_time(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -138,6 +139,7 @@ def test_a_simulated_device_is_written_and_then_run_as_the_user_left_it(
     assert "Badly" in driver.read_text()
 
 
+@pytest.mark.slow
 def test_the_arm_of_the_surgical_robot_moves_in_virtual_time(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

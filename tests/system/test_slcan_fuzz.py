@@ -53,6 +53,7 @@ def meaning(line: bytes) -> str:
     return f"FRAME_LINE/{form}/{kind}/ {int(short or long, 16)}/ {asked}/ {payload}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", MODES)
 def test_what_is_accepted_is_written_as_it_was_read(mode: str) -> None:
     program = built(mode, "loopback", "slcan_fuzz") / "slcan_fuzz"

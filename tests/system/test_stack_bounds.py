@@ -248,6 +248,7 @@ def test_objects_of_a_build_without_call_graphs_are_compiled_once_more(tmp_path:
     assert own.stat().st_mtime_ns == made
 
 
+@pytest.mark.slow
 def test_a_build_with_nothing_to_do_looks_at_nothing_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -58,11 +58,13 @@ def test_pipes_get_no_escape_codes(words: tuple[object, ...]) -> None:
     assert out and ESCAPE not in out + errors
 
 
+@pytest.mark.slow
 def test_a_terminal_gets_colour() -> None:
     assert COLOUR.search(called("analyse", PUMP, terminals="out err")[0])
     assert COLOUR.search(called("analyse", PUMP, terminals="out err", NO_COLOR="")[0])
 
 
+@pytest.mark.slow
 def test_colour_for_a_pipe_is_for_those_who_ask_and_do_not_ask_for_none() -> None:
     assert COLOUR.search(called("analyse", PUMP, FORCE_COLOR="1")[0])
     assert ESCAPE not in called("analyse", PUMP, FORCE_COLOR="1", NO_COLOR="1")[0]

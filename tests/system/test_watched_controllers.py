@@ -269,6 +269,7 @@ def host() -> Callable[..., subprocess.CompletedProcess[str]]:
 Host = Callable[..., subprocess.CompletedProcess[str]]
 
 
+@pytest.mark.slow
 def test_a_hand_written_program_has_snapshots_too(host: Host, tmp_path: Path) -> None:
     file = tmp_path / "live"
     file.write_text("x" * 100_000)

@@ -129,6 +129,7 @@ def test_a_missed_deadline_is_status_1(text: str, status: int, tmp_path: Path) -
     assert called([LAUNCHER, "analyse", plain], tmp_path).returncode == status
 
 
+@pytest.mark.slow
 def test_a_wrong_call_and_a_missing_file_are_status_2(tmp_path: Path) -> None:
     assert called([LAUNCHER, "analyse"], tmp_path).returncode == 2
     assert called([LAUNCHER, "loopback", "--interface", "none"], tmp_path).returncode == 2

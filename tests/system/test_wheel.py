@@ -149,12 +149,14 @@ def test_the_manual_page_is_where_man_looks(away: Path) -> None:
         assert "EXIT STATUS" in done.stdout
 
 
+@pytest.mark.slow
 def test_commands_answer_with_json_and_shells_are_completed(away: Path) -> None:
     assert json.loads(_called(away, "new", "answered", "--json"))["status"] == 0
     assert json.loads(_called(away, "check", "answered/model.yaml", "--json"))["result"]
     assert "complete -F _ravenchart ravenchart" in _called(away, "completion", "bash")
 
 
+@pytest.mark.slow
 def test_an_installation_has_the_ledger_and_the_records_of_the_runtime(away: Path) -> None:
     _called(away, "new", "shown")
     _called(away, "generate", "shown/model.yaml")
@@ -167,6 +169,7 @@ def test_an_installation_has_the_ledger_and_the_records_of_the_runtime(away: Pat
     assert "ASM-009" in {gap["what"] for gap in data["not_shown"]}
 
 
+@pytest.mark.slow
 def test_an_installation_explains_codes_with_their_models(away: Path) -> None:
     assert "+          lost: {from: Run, to: Safe, on: Lost}" in _called(away, "explain", "RV-0305")
     wrong = _called(away, "explain", "RV-0305", "--wrong")

@@ -84,6 +84,7 @@ def test_events_of_misses_and_offsets_go_with_the_rows() -> None:
 NODES = ROBOT.parents[1] / "tests" / "nodes"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("strategy", proposals.STRATEGIES)
 @pytest.mark.parametrize(
     "home",

@@ -299,6 +299,7 @@ def run_report(*, comparable: bool = True) -> RunReport:
     )
 
 
+@pytest.mark.slow
 def test_a_run_adds_its_steps_states_frames_and_observations() -> None:
     page = Page(render(analyse(plant()), run_report()))
     for phrase in (

@@ -39,6 +39,7 @@ def path(tmp_path: Path) -> Path:
     return found
 
 
+@pytest.mark.slow
 def test_check_generate_and_build_look_once(
     looked: list[str], path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

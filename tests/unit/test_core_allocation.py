@@ -147,6 +147,7 @@ def best(
     return fewest, slack
 
 
+@pytest.mark.slow
 def test_search_finds_the_best_nearly_always_and_never_a_wrong_one() -> None:
     few, most, possible = 0, 0, 0
     for seed in range(40):

@@ -239,6 +239,7 @@ def adds_up(r: Response) -> bool:
     return window == r.window and r.bound == window - r.lead
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(systems())
 def test_the_terms_add_up_and_rows_end_with_their_job(

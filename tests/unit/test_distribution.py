@@ -136,6 +136,7 @@ def test_each_node_has_its_program_and_sees_the_other_as_outside() -> None:
         assert {task.node for task in part.tasks} == {part.nodes[0].name}
 
 
+@pytest.mark.slow
 def test_advice_is_given_where_a_chain_between_nodes_is_late() -> None:
     found = analyse(system_of(("reaction: 60 ms, age: 50 ms", "reaction: 10 ms")))
     assert not found.schedulable

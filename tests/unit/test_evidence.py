@@ -337,6 +337,7 @@ def _written(home: Path, *more: str) -> int:
     return main(["evidence", str(home / "model.yaml"), *words, *more])
 
 
+@pytest.mark.slow
 def test_the_folder_is_whole_and_the_same_wherever_it_is_made(
     base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -21,6 +21,7 @@ def _symbols(path: Path) -> list[ModelSymbol]:
     return [one for one in model(path, {}).symbols.all() if one.declared is not None]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", [TWO_NODES, LAYOUTS, NESTED])
 def test_every_name_that_is_declared_can_be_changed(path: Path) -> None:
     now = model(path, {})

@@ -92,6 +92,7 @@ def test_a_processor_between_the_releases_of_another_does_not_wait_for_it() -> N
     assert together.for_all_offsets is together
 
 
+@pytest.mark.slow
 def test_it_is_said_which_responses_come_of_offsets() -> None:
     apart, together = analysed(LOOPS), analysed(LOOPS, TOGETHER)
     said = "By their offsets: R of seldom. All others hold for any offsets."

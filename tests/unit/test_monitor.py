@@ -175,6 +175,7 @@ def test_lines_for_a_pipe(analysis: Analysis) -> None:
 # --- The command -----------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_without_a_controller_the_call_fails_and_says_how_to_start_one(
     tmp_path: Path, capsys: PRINTED
 ) -> None:

@@ -44,6 +44,7 @@ def test_executions_within_their_budgets_pass(
         assert f"{name}: 1 us, within its budget of " in found
 
 
+@pytest.mark.slow
 def test_what_a_trace_shows_is_in_the_report(tmp_path: Path) -> None:
     lines = "".join(f"A {number} 1000\n" for number in rows().values())
     page = tmp_path / "report.html"
@@ -54,6 +55,7 @@ def test_what_a_trace_shows_is_in_the_report(tmp_path: Path) -> None:
     assert "Executions beside the model" in text
 
 
+@pytest.mark.slow
 def test_reactions_are_drawn_beside_their_bound() -> None:
     took = Journey(
         "flow", 3, 5_000_000, 9_000_000, 12_000_000, 3, (3_000_000, 5_000_000, 5_000_000)

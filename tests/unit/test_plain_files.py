@@ -312,6 +312,7 @@ def test_huge_hyperperiods_and_numbers_near_64_bits_end_at_once() -> None:
     assert time.perf_counter() - start < 20
 
 
+@pytest.mark.slow
 def test_five_thousand_tasks_are_analysed_in_seconds(tmp_path: Path) -> None:
     lines = [f"t{n},{5_000 - n},{100 + n},0.01" for n in range(5_000)]
     file = tmp_path / "many.csv"

@@ -18,6 +18,8 @@ ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
 MODELS = [
     *(ROOT / "examples" / n / "model.yaml" for n in ("cartesian_robot", "crossing")),
     *(ROOT / "examples" / n / "model.yaml" for n in ("surgical_robot", "three_components")),
+    *(ROOT / "tests" / "feature" / n / "model.yaml" for n in ("composites", "registers")),
+    ROOT / "tests" / "deployments" / "heater" / "model.yaml@bench",
     *(ROOT / "tests" / "nodes" / n / "model.yaml" for n in ("commands", "gripper", "tactile")),
 ]
 
@@ -38,6 +40,7 @@ def text_of(texts: Texts, word: str) -> str:
     return next(t for t in (x.decode() for x in texts.values()) if word in t)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("strategy", STRATEGIES)
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.parent.name)
 def test_the_text_then_has_the_bounds_that_were_proposed(path: Path, strategy: str) -> None:

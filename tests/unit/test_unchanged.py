@@ -186,6 +186,7 @@ def test_a_model_of_another_name_or_folder_is_another(
     assert len(checks) == 2
 
 
+@pytest.mark.slow
 def test_what_is_not_finished_is_not_kept(
     checks: list[Path], told: Callable[..., Said], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -371,6 +372,7 @@ SEARCHED = {"networkx", "z3", "lark", "rich", "jinja2", "matplotlib", "can", "mu
 READS = {"pydantic", "yaml", "ravenchart.gen.pipeline", "ravenchart.gen.model.system"}
 
 
+@pytest.mark.slow
 def test_a_check_imports_what_it_needs(checks: list[Path]) -> None:
     _imported("check", "model.yaml")
     imported = _imported("check", "model.yaml")

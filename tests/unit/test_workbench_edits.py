@@ -192,6 +192,7 @@ def test_a_value_that_would_be_other_yaml_is_refused() -> None:
             edits.with_value(made, value, bad)
 
 
+@pytest.mark.slow
 def test_random_moves_in_the_examples_lose_no_comment_and_no_word() -> None:
     chance = random.Random(2026)
     tried = 0

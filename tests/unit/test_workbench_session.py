@@ -103,6 +103,7 @@ def test_the_analysis_is_that_of_the_saved_files(session: Session, change: str) 
     assert not session.dirty
 
 
+@pytest.mark.slow
 def test_undo_and_redo_go_through_all_states_to_the_byte(session: Session) -> None:
     texts = [dict(session.now.texts)]
     for number in range(5):
@@ -248,6 +249,7 @@ def test_a_change_outside_is_never_overwritten_unseen(session: Session, folder: 
     assert b"400 us" in path.read_bytes() and b"theirs" not in path.read_bytes()
 
 
+@pytest.mark.slow
 def test_what_changed_outside_can_be_taken_and_the_changes_here_had_back(
     session: Session, folder: Path
 ) -> None:
