@@ -84,7 +84,7 @@ def rearranged(path: Path, state: Evaluation, tables: Sequence[WantedTable]) -> 
             f"{shared} goes to a processor of each node, and the text has it once: "
             "`ravenchart allocate --yaml` prints what to write"
         )
-    homes = _homes(files.places, tables)
+    homes = homes_of(files.places, tables)
     names = [home or _added(files, table) for table, home in zip(tables, homes, strict=True)]
     for table, name in zip(tables, names, strict=True):
         for place, row in enumerate(table.rows):
@@ -103,7 +103,7 @@ def rearranged(path: Path, state: Evaluation, tables: Sequence[WantedTable]) -> 
     return files.texts(state.texts)
 
 
-def _homes(places: ModelPlaces, tables: Sequence[WantedTable]) -> list[str | None]:
+def homes_of(places: ModelPlaces, tables: Sequence[WantedTable]) -> list[str | None]:
     """The processor that each table takes over: of those with most of its rows, the first."""
     shared: list[tuple[int, int, str]] = []
     for number, table in enumerate(tables):

@@ -23,6 +23,8 @@ from ravenchart.analysis.present.words import binding_lines, growth_line, verdic
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import duration
 from ravenchart.editing.evaluation import evaluate
+from ravenchart.editing.places import ModelPlaces
+from ravenchart.editing.tables import homes_of
 
 PAUSE = 0.2
 """Seconds that lie at least between two answers to one question."""
@@ -45,7 +47,7 @@ def answer(question: dict[str, Any], say: Say) -> None:
     elif "rows" in question:
         say(grown(found.analysis, question["rows"]))
     elif "strategy" in question:
-        say(allocated(found.analysis, question["strategy"], say))
+        say(allocated(found.analysis, found.places, question["strategy"], say))
     else:
         say({"lines": list(room_lines(found.analysis))})
 
@@ -63,7 +65,7 @@ def grown(analysis: Analysis, rows: list[str]) -> dict[str, Any]:
     return {"wcet": largest, "text": text}
 
 
-def allocated(analysis: Analysis, strategy: str, say: Say) -> dict[str, Any]:
+def allocated(analysis: Analysis, places: ModelPlaces, strategy: str, say: Say) -> dict[str, Any]:
     """The best tables that a strategy finds; says the best so far meanwhile."""
     last = -PAUSE
 
@@ -71,18 +73,22 @@ def allocated(analysis: Analysis, strategy: str, say: Say) -> dict[str, Any]:
         nonlocal last
         if monotonic() - last >= PAUSE:
             last = monotonic()
-            say(outcome(proposal) | {"more": True})
+            say(outcome(proposal, places) | {"more": True})
 
-    return outcome(propose(analysis, strategy, better))
+    return outcome(propose(analysis, strategy, better), places)
 
 
-def outcome(proposal: Proposal) -> dict[str, Any]:
-    """Tables with what the analysis says of them, times in ns."""
-    analysis = proposal.analysis
+def outcome(proposal: Proposal, places: ModelPlaces) -> dict[str, Any]:
+    """Tables with the names that they get and what the analysis says of them, times in ns."""
+    analysis, found = proposal.analysis, tables(proposal)
+    homes = homes_of(places, found)
     return {
         "verdict": verdict_line(analysis),
         "met": analysis.schedulable,
-        "tables": [asdict(table) for table in tables(proposal)],
+        "tables": [
+            asdict(table) | {"name": home or table.name}
+            for table, home in zip(found, homes, strict=True)
+        ],
         "bounds": {row.row.name: row.bound for _, row in analysis.rows()},
         "deadlines": {slot.element: slot.timing.deadline for slot in analysis.system.slots},
     }

@@ -280,8 +280,8 @@ def test_a_search_shows_its_best_and_its_tables_become_a_change(bench: Running) 
     assert len(best["tables"]) < len(state["processors"])
     adopted = bench.act(kind="adopt").json
     assert adopted["search"] is None and adopted["undo"] == "rows allocated by fewest"
-    tables = [[row["row"] for row in one["rows"]] for one in adopted["processors"]]
-    assert sorted(tables) == sorted(table["rows"] for table in best["tables"])
+    tables = {one["name"]: [row["row"] for row in one["rows"]] for one in adopted["processors"]}
+    assert tables == {table["name"]: table["rows"] for table in best["tables"]}
     assert bench.act(kind="undo").json["dirty"] is False
 
 
