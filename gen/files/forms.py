@@ -14,7 +14,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.language.names import meant
+from ravenchart.gen.language.names import meant, nearest
 from ravenchart.gen.origins import Origin
 
 from .located import FormPath, Map, Seq, scalar
@@ -63,6 +63,7 @@ def check(tree: Map) -> tuple[ModelFile | None, list[Diagnostic]]:
         if isinstance(read, ModelFile):
             return read, found
         paths: set[FormPath] = set()
+        _mark_misspelt(tree, read)
         for item in read:
             place = ErrorPlace(tree, item["loc"])
             if not place.follows_from(removed, item["type"]):
@@ -70,6 +71,16 @@ def check(tree: Map) -> tuple[ModelFile | None, list[Diagnostic]]:
             paths.add(place.path)
         if () in paths or not _remove(tree, paths, removed):
             return None, found
+
+
+def _mark_misspelt(tree: Map, read: Iterable[ErrorDetails]) -> None:
+    """A key beside which an unknown one reads as a slip of it counts as taken out."""
+    for item in read:
+        place = ErrorPlace(tree, item["loc"])
+        if item["type"] == "extra_forbidden" and isinstance(place.container, Map):
+            near = nearest(str(item["loc"][-1]), _allowed(item["loc"]))
+            if near is not None and near not in place.container:
+                place.container.dropped[near] = None
 
 
 def _read(tree: Map) -> ModelFile | list[ErrorDetails]:

@@ -138,13 +138,19 @@ def alike_in_databases(
             yield one, other
 
 
+def nearest(name: str, known: Iterable[str]) -> str | None:
+    """The known name of which an unknown one may be a slip; None where none is near."""
+    lowered = {item.lower(): item for item in dict.fromkeys(known)}
+    near = difflib.get_close_matches(name.lower(), lowered, n=1, cutoff=0.6)
+    return lowered[near[0]] if near else None
+
+
 def meant(name: str, known: Iterable[str]) -> str | None:
     """A hint for an unknown name: the nearest one, or else the few that there are."""
     names = list(dict.fromkeys(known))
-    lowered = {item.lower(): item for item in names}
-    near = difflib.get_close_matches(name.lower(), lowered, n=1, cutoff=0.6)
-    if near:
-        return f"did you mean `{lowered[near[0]]}`?"
+    near = nearest(name, names)
+    if near is not None:
+        return f"did you mean `{near}`?"
     return f"one of: {', '.join(names)}" if 0 < len(names) <= 12 else None
 
 

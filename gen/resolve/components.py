@@ -225,7 +225,7 @@ def _activity(
             lists = _agreed(name, form, lists, use, targets, findings)
     requires: tuple[Clause, ...] = ()
     ensures: tuple[Clause, ...] = ()
-    if findings.count() == before:
+    if findings.count() == before and not form.damaged:
         requires, ensures = contract_of(name, form, lists, words, targets, findings)
     return Activity(
         name=name,

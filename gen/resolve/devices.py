@@ -179,8 +179,9 @@ class Devices:
 
     def _made(self, name: str, form: DeviceForm) -> Provider | None:
         given = [key for key in ("type", "array", "facade") if form.has(key)]
-        lost = any(form.lost(key) for key in ("type", "array", "facade"))
-        if len(given) != 1 and not lost:
+        if any(form.lost(key) for key in ("type", "array", "facade")):
+            return None
+        if len(given) != 1:
             told = " and ".join(f"`{key}`" for key in given) or "none"
             wanted = "must have exactly one of `type`, `array`, `facade`"
             message = f"the device {name} {wanted}; found {told}"

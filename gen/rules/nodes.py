@@ -153,10 +153,10 @@ def devices_start_in_time(resolved: Resolved) -> Iterator[Diagnostic]:
             yield error(START, node.origin, text, notes=notes, hint=hint)
 
 
-def _home(system: System, device: Device) -> str:
-    """The node whose rows call a device."""
-    row = callers(system, device)[0]
-    return system.instance(row.rpartition(".")[0]).node
+def _home(system: System, device: Device) -> str | None:
+    """The node whose rows call a device; None where none is known to."""
+    rows = callers(system, device)
+    return system.instance(rows[0].rpartition(".")[0]).node if rows else None
 
 
 def buffers_hold_what_is_sent(resolved: Resolved) -> Iterator[Diagnostic]:

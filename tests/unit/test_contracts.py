@@ -223,6 +223,11 @@ def test_a_flow_is_bound_by_what_it_does() -> None:
     assert said(flow="ensures: ['count >= min(old(count), limit)', shown = Idle]") == []
 
 
+def test_what_is_malformed_is_the_only_thing_said() -> None:
+    found = said(flow='requires: ""\n        ensures: count >= old(count)')
+    assert [one[0] for one in found] == ["RV-0203"]
+
+
 # --- the program
 
 
