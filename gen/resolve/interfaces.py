@@ -385,7 +385,7 @@ def _check_served(
         if given and value is None and not form.lost(key):
             message = f"{name} has queued commands and needs the key `{key}`"
             findings.error("RV-1209", form.origin, message)
-        elif not given and value is not None and not form.list_damaged("commands"):
+        elif not (given or value is None or form.lost("commands") or form.list_damaged("commands")):
             message = f"`{key}` has no meaning without `commands`"
             findings.error("RV-1209", form.at_key(key), message, hint="name what is queued")
     if server is not None and (server.flow is not None or server.while_in is not None):

@@ -107,7 +107,7 @@ def connected_ends_agree(resolved: Resolved) -> Iterator[Diagnostic]:
                 f"{connection.source} sends {sent.name}, but {connection.target} takes {taken.name}"
             )
             yield error("RV-0605", connection.origin, message)
-        if source.node != target.node:
+        if source.node != target.node and "buses" in resolved.sound_sections:
             sender, _ = source.outside(connection.source.port)
             message = (
                 f"{sender} is on {source.node}, but {target.outside(connection.target.port)[0]} "

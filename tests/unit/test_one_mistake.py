@@ -15,6 +15,8 @@ from ravenchart.paths import ROOT
 
 CANOPEN = ROOT / "examples" / "canopen_device" / "model.yaml"
 SURGICAL = ROOT / "examples" / "surgical_robot" / "model.yaml"
+NODES = ROOT / "examples" / "two_nodes" / "model.yaml"
+COMPOSITES = ROOT / "tests" / "feature" / "composites" / "model.yaml"
 REGISTERS = ROOT / "tests" / "feature" / "registers" / "model.yaml"
 
 
@@ -56,17 +58,23 @@ def test_a_misspelt_key_is_the_only_error(model: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new"),
+    ("model", "old", "new"),
     [
-        ("      Control:\n        period: 10 ms", '      Control:\n        period: ""'),
-        ("nodes:\n", "nodess:\n"),
-        ("devices:\n", "devicess:\n"),
-        ("    provides: {Get_Position", "    providess: {Get_Position"),
-        ("Left: {type: Drive", "Left: {typee: Drive"),
-        ("array: [Left, Right]", "array: [Left, []]"),
+        (NODES, "bit_rate:", "bit_ratee:"),
+        (
+            COMPOSITES,
+            "        served_by: serve\n        commands:",
+            "        served_by: serve\n        commandss:",
+        ),
+        (REGISTERS, "      Control:\n        period: 10 ms", '      Control:\n        period: ""'),
+        (REGISTERS, "nodes:\n", "nodess:\n"),
+        (REGISTERS, "devices:\n", "devicess:\n"),
+        (REGISTERS, "    provides: {Get_Position", "    providess: {Get_Position"),
+        (REGISTERS, "Left: {type: Drive", "Left: {typee: Drive"),
+        (REGISTERS, "array: [Left, Right]", "array: [Left, []]"),
     ],
 )
-def test_what_is_lost_brings_no_other_error(old: str, new: str) -> None:
-    text = REGISTERS.read_text()
+def test_what_is_lost_brings_no_other_error(model: Path, old: str, new: str) -> None:
+    text = model.read_text()
     assert text.count(old) == 1
-    assert len(errors(REGISTERS, text.replace(old, new))) == 1
+    assert len(errors(model, text.replace(old, new))) == 1
