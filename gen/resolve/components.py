@@ -97,7 +97,9 @@ def parts_of(
     outputs, calls = outputs_of(members), _calls(form, members, needs)
     targets = Targets(members.data_types, outputs, members.events, calls)
     regions: list[Region] = []
-    activities: NameScope[Activity] = NameScope("activity")
+    activities: NameScope[Activity] = NameScope("activity", open=form.lost("activities"))
+    for gone in form.dropped("activities"):
+        activities.declare(gone, None, None)
     for region, at in (form.regions or {}).items():
         count = findings.count()
         timing = timing_of(region, at, findings)

@@ -112,12 +112,17 @@ def needs_of(
 ) -> tuple[Need, ...]:
     """The commands that a component requires; each becomes something to read or to send on."""
     found: NameScope[Need] = NameScope("required command")
+    if form.lost("requires") or form.dropped("requires"):
+        members.data_types.open = True
     for interface, at in (form.requires or {}).items():
         space.claim("required interface", interface, at.origin)
+        if at.lost("commands") or at.list_damaged("commands") or at.dropped("commands"):
+            members.data_types.open = True
         for name, origin, said in named_commands(at):
             command = dictionary.look_up(name, origin, space.findings)
             made = None
-            if command is not None and not _is_event(command, origin, space.findings):
+            lost = command is None or _is_event(command, origin, space.findings)
+            if command is not None and not lost and not at.lost("axes"):
                 made = _need(interface, at.axes, command, origin, said, types, members, space)
             declared = name if command is None else command.name
             if found.declare(declared, origin, made, space.findings):
@@ -277,9 +282,11 @@ def stand_ins_agree(form: ComponentForm, component: Component, findings: Finding
         if need.stand_in is None:
             continue
         at = _else_at((form.requires or {})[need.interface], need.name)
-        activities = NameScope(
-            "activity", {a.name.lower(): (a.name, a.origin, a) for a in component.activities}
-        )
+        activities: NameScope[Activity] = NameScope("activity", open=form.lost("activities"))
+        for one in component.activities:
+            activities.declare(one.name, one.origin, one)
+        for gone in form.dropped("activities"):
+            activities.declare(gone, None, None)
         activity = activities.look_up(need.stand_in.activity, at, findings)
         if activity is None:
             continue
