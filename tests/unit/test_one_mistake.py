@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from ravenchart.analysis.system.timing import analyse
 from ravenchart.gen.files import spans
-from ravenchart.gen.files.load import read_file
+from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.files.spans import YamlMapping, YamlNode, YamlScalar
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
@@ -31,13 +33,31 @@ def keys(node: YamlNode) -> Iterator[YamlScalar]:
             yield from keys(item)
 
 
-def errors(model: Path, text: str) -> list[str]:
-    """The codes of the errors in a model whose main file has that text."""
+def scalars(node: YamlNode) -> Iterator[YamlScalar]:
+    """All values of a file."""
+    if isinstance(node, YamlScalar):
+        yield node
+    elif isinstance(node, YamlMapping):
+        for _, value in node.entries:
+            yield from scalars(value)
+    else:
+        for item in node.items:
+            yield from scalars(item)
+
+
+def changed(model: Path, text: str) -> Reader:
+    """Reads a model whose main file has that text."""
 
     def read(path: Path, limit: int) -> bytes:
         return text.encode() if path == model else read_file(path, limit)
 
-    return [one.code for one in load(model, read).diagnostics if one.is_error]
+    return read
+
+
+def errors(model: Path, text: str) -> list[str]:
+    """The codes of the errors in a model whose main file has that text."""
+    found = load(model, changed(model, text)).diagnostics
+    return [one.code for one in found if one.is_error]
 
 
 def misspelt(model: Path) -> Iterator[str]:
@@ -47,6 +67,22 @@ def misspelt(model: Path) -> Iterator[str]:
     assert root is not None
     for key in keys(root):
         yield text[: key.end] + text[key.end - 1] + text[key.end :]
+
+
+@pytest.mark.slow
+def test_a_value_of_another_place_is_never_an_internal_error() -> None:
+    choice = random.Random(7)
+    for model in (*ROOT.glob("tests/feature/*/model.yaml"), *ROOT.glob("examples/*/model.yaml")):
+        text = model.read_text()
+        root = spans.spans(text)
+        assert root is not None
+        values = list(scalars(root))
+        for value in choice.sample(values, min(10, len(values))):
+            other = choice.choice(values)
+            new = choice.choice(['""', "0", text[other.start : other.end]])
+            loaded = load(model, changed(model, text[: value.start] + new + text[value.end :]))
+            if loaded.system is not None:
+                analyse(loaded.system)
 
 
 @pytest.mark.slow
