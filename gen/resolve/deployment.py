@@ -253,6 +253,10 @@ def _bus_slot(
             site.findings.error("RV-0305", origin, message, hint=hint)
             return None
         return Slot(origin, bus.name, Work.BUS_WATCH, "watch", bus.watch, 1, 0)
+    if bus is not None and form.released_by is None and not form.damaged:
+        message = f"{bus.name}.receive needs a processor that is released by {bus.name}"
+        hint = f"move it to one with `released_by: {bus.name}`"
+        site.findings.error("RV-0705", origin, message, hint=hint)
     if bus is None or form.period is None:
         return None
     deadline = form.period if form.deadline is None else form.deadline

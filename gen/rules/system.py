@@ -372,16 +372,12 @@ def offsets_are_shorter_than_periods(resolved: Resolved) -> Iterator[Diagnostic]
 
 
 def reception_has_its_processor(resolved: Resolved) -> Iterator[Diagnostic]:
-    """A sporadic processor holds its bus's reception and nothing else; the others hold none."""
+    """A sporadic processor holds its bus's reception and nothing else."""
     system = resolved.system
     for processor in system.processors:
         for slot in processor.slots:
             is_reception = slot.work is Work.BUS_RECEIVE
-            if processor.released_by is None and is_reception:
-                message = f"{slot.element} needs a processor that is released by {slot.owner}"
-                hint = f"move it to one with `released_by: {slot.owner}`"
-                yield error("RV-0705", slot.origin, message, hint=hint)
-            elif processor.released_by is not None and (
+            if processor.released_by is not None and (
                 not is_reception or slot.owner != processor.released_by
             ):
                 message = (

@@ -19,6 +19,7 @@ CANOPEN = ROOT / "examples" / "canopen_device" / "model.yaml"
 SURGICAL = ROOT / "examples" / "surgical_robot" / "model.yaml"
 NODES = ROOT / "examples" / "two_nodes" / "model.yaml"
 COMPOSITES = ROOT / "tests" / "feature" / "composites" / "model.yaml"
+GRIPPER = ROOT / "tests" / "nodes" / "gripper" / "model.yaml"
 REGISTERS = ROOT / "tests" / "feature" / "registers" / "model.yaml"
 
 
@@ -114,3 +115,9 @@ def test_what_is_lost_brings_no_other_error(model: Path, old: str, new: str) -> 
     text = model.read_text()
     assert text.count(old) == 1
     assert len(errors(model, text.replace(old, new))) == 1
+
+
+def test_a_reception_beside_other_rows_is_the_only_error() -> None:
+    text = GRIPPER.read_text()
+    assert text.count("boss_1.ports") == 1
+    assert errors(GRIPPER, text.replace("boss_1.ports", "link.receive")) == ["RV-0705"]
