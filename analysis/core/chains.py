@@ -23,7 +23,8 @@ it releases, and what samples or takes its values, has a reaction all the same.
 A queue may release the task that takes its items, no sooner than its period T after the
 release before. Where items come no closer than T but for the lateness of their writer, none
 waits longer than the first of them that finds the task delayed: until the separation is over
-that this delay has put off, which is less than R after it came. So it waits at most R.
+that this delay has put off, which is less than R after it came. So it waits at most R, and
+the n-th of those that one job of the writer puts in n - 1 periods more.
 
 A queue hands each item over once. Its reader takes so many in a job; an item waits
 for those before it. A job that finds none repeats what it made of the last item, so
@@ -267,7 +268,8 @@ def _woken(
     if read is None or written is None or step.puts * separation > period:
         return None, None
     jitter = written - found.best[writer] - network.least()[writer]
-    return read, (2 * read + jitter) // period + 1
+    wait = read + (step.puts - 1) * separation
+    return wait, step.puts * ((wait + read + jitter) // period + 1)
 
 
 def _less(longer: int | None, shorter: int | None) -> int | None:

@@ -203,7 +203,7 @@ class Latencies:
         """A row: later in the same job as the step before, or at its own times."""
         woken = port is not None and bool(steps) and self.system.woken_by(place) is not None
         queued = not woken and port is not None and port.kind is PortKind.QUEUED and bool(steps)
-        senders = self._senders(place) if queued else ()
+        senders = self._senders(place) if queued or woken else ()
         puts = max((getattr(one, "steps_per_execution", 1) for one in senders), default=1)
         before = steps[-1].name if steps else ""
         hop = HopKind.QUEUED if queued else HopKind.WOKEN if woken else HopKind.SAMPLED
@@ -239,10 +239,11 @@ class Latencies:
             waits = f"{step.name} runs only when a value for {processor.released_by} comes"
             return replace(step, waits=waits, keeps=waits)
         period = self.network.items()[sender].period
-        if period < processor.period:
+        if period < step.puts * processor.period:
+            many = f"{step.puts} values " if step.puts > 1 else ""
             waits = (
-                f"{sender} may send every {shown(Ns(period))}, but {processor.name} is released "
-                f"every {shown(processor.period)} at most"
+                f"{sender} may send {many}every {shown(Ns(period))}, but {processor.name} is "
+                f"released every {shown(processor.period)} at most"
             )
             return replace(step, waits=waits)
         if response is None or response > processor.period:

@@ -1,6 +1,6 @@
 """Rules for processors that a queued port releases: which ports may, and what these run.
 
-A value of one periodic activity releases the processor. Its table handles that value and nothing
+A value of one periodic row releases the processor. Its table handles that value and nothing
 else, so no row of it counts executions as time, and none waits for a value that another port has.
 """
 
@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.commands import Device
-from ravenchart.gen.model.component import Activity, PortKind
+from ravenchart.gen.model.component import PortKind
 from ravenchart.gen.model.instances import Connection, End, Instance
 from ravenchart.gen.model.system import UNFIT_PORT, Processor, System, Work
 from ravenchart.gen.origins import Origin
@@ -25,7 +25,7 @@ Problem = tuple[str, Origin, str, str]
 
 
 def ports_can_release(resolved: Resolved) -> Iterator[Diagnostic]:
-    """The port is queued, one periodic activity sends to it, and its instance has nothing else."""
+    """The port is queued, one periodic row sends to it, and its instance has nothing else."""
     system = resolved.system
     for processor in system.processors:
         port = processor.released_by_port
@@ -127,9 +127,9 @@ def _of_instance(system: System, instance: Instance, end: End) -> Iterator[Probl
 
 
 def _of_senders(system: System, end: End) -> Iterator[Problem]:
-    """What sends to the port must be one activity of a periodic processor."""
+    """What sends to the port must be one activity or region of a periodic processor."""
     cannot = f"{end} cannot release a processor"
-    periodic = "let one activity of a periodic processor send to it over a connection"
+    periodic = "let one row of a periodic processor send to it over a connection"
     for message in system.messages:
         if end in message.targets:
             text = f"{cannot}: its values are those of the message {message.name}"
@@ -160,9 +160,7 @@ def _of_connection(
     for sender in senders:
         element = f"{source.name}.{sender.name}"
         words = f"{sender.name} is declared here"
-        if not isinstance(sender, Activity):
-            yield f"{cannot}: the region {element} sends to it", sender.origin, words, periodic
-        elif (processor := _runs(system, element)) is not None and processor.released_by:
+        if (processor := _runs(system, element)) is not None and processor.released_by:
             text = f"{cannot}: {element} sends to it, which {processor.released_by} releases"
             yield text, processor.origin, f"{processor.name} runs it", periodic
         elif source.component.served_by(sender.name) is not None:

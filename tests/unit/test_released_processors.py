@@ -112,6 +112,40 @@ def test_a_chain_that_begins_with_such_a_row_has_no_bound() -> None:
     assert why in [text for one in findings(found) for _, text in one.notes]
 
 
+def test_several_values_of_one_execution_wait_for_each_other() -> None:
+    blown = "  shown: {path: [panel.Lamp, horn.blow], reaction: 50 ms}"
+    found = analyse(
+        system_of(("  shown: {path: [gauge.measure, panel.Lamp], reaction: 50 ms}", blown))
+    )
+    reaction, _ = chain(found, "shown")
+    handled = done(found, "horn.ports")
+    within = 10 * MS + done(found, "panel.Lamp") + handled + 5 * MS + done(found, "horn.blow")
+    assert reaction == within
+    waiting = {one.what: (one.given, one.needed) for one in depths(found)}
+    assert waiting["values may wait in horn.order"] == (4, 2)
+
+
+def test_several_values_may_come_too_often() -> None:
+    seldom = (
+        ("order: {in: Order, kind: queued, depth: 4}\n    port_region: {period: 5 ms", 6),
+        ("      blow:\n        period: 5 ms", 6),
+        ("released_by: horn.order, period: 5 ms", 6),
+    )
+    changes = [(old, old.replace("5 ms", f"{new} ms")) for old, new in seldom]
+    found = analyse(
+        system_of(
+            *changes,
+            (
+                "  shown: {path: [gauge.measure, panel.Lamp], reaction: 50 ms}",
+                "  shown: {path: [panel.Lamp, horn.blow], reaction: 50 ms}",
+            ),
+        )
+    )
+    assert chain(found, "shown") == (None, None)
+    why = "panel.Lamp may send 2 values every 10 ms, but blowing is released every 6 ms at most"
+    assert why in [text for one in findings(found) for _, text in one.notes]
+
+
 def test_its_queue_is_compared_with_what_may_wait() -> None:
     found = {one.what: (one.given, one.needed) for one in depths(analyse(system_of()))}
     assert found["values may wait in drive.level"] == (2, 1)

@@ -50,13 +50,13 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
                 age.append(_longest(system, _sender(hops[:place])))
             queued = False
         elif hop.how == "woken" and before is not None:
-            words.append(
-                f"{hop.element} is released by a queue: it waits for its response at most."
-            )
-            periods = _period(system, hop), _period(system, before)
-            items.append(refuse(*periods, f"chain {chain.name}", "can fill a queue"))
-            reaction.append(_response(hop))
-            age.append(_response(hop))
+            words.append(f"A queue releases {hop.element}: a value waits for that response.")
+            separation, more = _period(system, hop), hop.at_once - 1
+            filled = times(number(hop.at_once), separation), _period(system, before)
+            items.append(refuse(*filled, f"chain {chain.name}", "can fill a queue"))
+            delays = [_response(hop), *([times(number(more), separation)] if more else [])]
+            reaction += delays
+            age += delays
         elif before is not None:
             words.append(f"{hop.element} takes one of a queue: Wait_{place + 1}.")
             wait = f"{own}_Wait_{place + 1}"

@@ -21,7 +21,7 @@ class ClaimedHop:
     """One step of a chain: a row, a task, a message, or a message's handing over.
 
     ``how`` values come to it: ``released`` by the step before or the chain's event,
-    ``sampled``, ``queued`` with so many at once, or ``woken``: they release its processor.
+    ``sampled``, ``queued`` with so many at once, or ``woken`` by so many: they release it.
     ``open``: values may wait for as long as its region has other things to do, or as others fill
     the same queue, or as no value releases its processor. ``sure``: each of its jobs makes a new
     output, and it has a job in every period. ``rare``: it follows some
@@ -117,8 +117,6 @@ def _row(
 def _handler(system: System, owner: str, port: str, hops: list[ClaimedHop]) -> ClaimedHop:
     """The port region of an instance, as far as it handles this port."""
     element = f"{owner}.ports"
-    if hops and system.woken_by(f"{owner}.{port}") is not None:
-        return ClaimedHop(element, "row", "woken")
     queued = system.instance(owner).component.port(port).kind is PortKind.QUEUED
     many = [
         row.steps_per_execution if isinstance(row, Region) else 1
@@ -127,6 +125,8 @@ def _handler(system: System, owner: str, port: str, hops: list[ClaimedHop]) -> C
         for row in system.instance(connection.source.instance).component.runnables()
         if connection.source.port in row.sends
     ]
+    if hops and system.woken_by(f"{owner}.{port}") is not None:
+        return ClaimedHop(element, "row", "woken", max(many))
     if queued and hops and sum(many) > 1:
         return ClaimedHop(element, "row", "queued", max(many), open=len(many) > 1)
     if hops and _follows(system, hops[-1], element):
