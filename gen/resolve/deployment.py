@@ -212,6 +212,13 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
 def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | None:
     """The bus, or the input port as ``instance.port``, that releases a processor."""
     if "." not in text:
+        if not site.buses.knows(text):
+            site.owners.used(text, origin, site.findings)  # the name of a bus or an instance
+        if not site.buses.knows(text) and site.owners.find(text) is not None:
+            message = f"`{text}` must have the form bus or instance.port"
+            hint = f"add a queued port of it: `{text}.port`"
+            site.findings.error("RV-0306", origin, message, hint=hint)
+            return None
         bus = site.buses.look_up(text, origin, site.findings)
         return None if bus is None else bus.name
     found = member(text, "bus or instance.port", origin, site)

@@ -21,6 +21,7 @@ from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import load
+from ravenchart.language_server.completing import proposals
 from ravenchart.paths import ROOT
 
 TEXT = (ROOT / "tests" / "feature" / "releases" / "model.yaml").read_text(encoding="utf-8")
@@ -163,6 +164,17 @@ def test_an_arrival_is_noted_before_it_releases() -> None:
         if unit.item.name == "Releases_Feature.Drive" and getattr(unit.item, "is_body", False)
     )
     assert body.index("Elements.Drive_Level, 0") < body.index("Level_Mailbox.Put (")
+
+
+@pytest.mark.parametrize(
+    ("behind", "proposed"),
+    [("driving: {released_by: ", "valve"), ("driving: {released_by: drive.", "level")],
+)
+def test_an_editor_proposes_instances_and_their_ports(behind: str, proposed: str) -> None:
+    path = ROOT / "tests" / "feature" / "releases" / "model.yaml"
+    offset = TEXT.index(behind) + len(behind)
+    found = proposals(path, str(path), offset, {str(path): TEXT})
+    assert proposed in [one.word for one in found]
 
 
 # --- Virtual time
