@@ -165,6 +165,8 @@ CODES: Mapping[str, str] = {
     "RV-0712": "The silence of a processor is not supervised, or cannot be.",
     "RV-0713": "Only a processor itself waits for the event that its silence raises.",
     "RV-0714": "A bus with `watch` is not watched by exactly one row on each of its nodes.",
+    "RV-0715": "A port cannot release a processor.",
+    "RV-0716": "A processor that a port releases does not hold the rows that handle its values.",
     "RV-0801": "A section without which there is no system is missing or empty.",
     "RV-0802": "Something cannot reach from one node to another, or over a second bus, yet.",
     "RV-0803": "Something that the system has once is given twice.",

@@ -20,6 +20,12 @@ the wait until it samples, nor until the n-th job that a step follows, nor the a
 what it made (Feiertag et al., CRTS 2008; Durr et al. need a greatest distance too). What
 it releases, and what samples or takes its values, has a reaction all the same.
 
+A queue may release the task that takes its items, no sooner than its period T after the
+release before. Where items come no closer than T but for the lateness of their writer, none
+waits longer than the first of them that finds the task delayed: until the separation is over
+that this delay has put off, which is less than R after it came. So it waits at most R, and
+the n-th of those that one job of the writer puts in n - 1 periods more.
+
 A queue hands each item over once. Its reader takes so many in a job; an item waits
 for those before it. A job that finds none repeats what it made of the last item, so
 the output is replaced as often as its writer puts one in: that T counts for the age,
@@ -47,6 +53,9 @@ class HopKind(Enum):
 
     QUEUED = "queued"
     """It takes the oldest items from a queue at its own times."""
+
+    WOKEN = "woken"
+    """An item in its queue releases it, its period after the release before at the earliest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +143,7 @@ class Latency:
         parts = []
         for hop in self.hops:
             parts += [hop.response, hop.renewal]
-            if hop.step.hop is HopKind.QUEUED:
+            if hop.step.hop in (HopKind.QUEUED, HopKind.WOKEN):
                 parts.append(hop.wait)
         return _total(parts)
 
@@ -179,15 +188,18 @@ def latency(chain: TimedChain, network: Network, found: Holistic) -> Latency:
         elif step.hop is HopKind.QUEUED and before is not None:
             wait, backlog = _queue(before.name, step, network, found)
             queued = True
+        elif step.hop is HopKind.WOKEN and before is not None:
+            wait, backlog = _woken(before.name, step, network, found)
         outputs = None if cycle is None else max(cycle, step.longest)
         if step.hop is HopKind.SAMPLED or before is None:
             renewal = outputs
-        else:
+        elif step.hop is not HopKind.WOKEN:  # that makes an output of each item
             renewal = None if renewal is None or outputs is None else max(renewal, outputs)
         renewal = None if step.keeps else renewal
         counted: int | None = 0
         if after is not None and (renewal is None or after.hop is HopKind.QUEUED or not queued):
-            counted = 0 if after.hop is HopKind.RELEASED and not step.keeps else renewal
+            follows = after.hop in (HopKind.RELEASED, HopKind.WOKEN)
+            counted = 0 if follows and not step.keeps else renewal
         wait = None if step.waits or wait is None else wait + step.delay
         hops.append(HopLatency(step, wait, response, counted, backlog))
     return Latency(chain, tuple(hops), renewal)
@@ -196,7 +208,7 @@ def latency(chain: TimedChain, network: Network, found: Holistic) -> Latency:
 def _check(chain: TimedChain, network: Network) -> None:
     """Refuse what the network does not have."""
     items = network.items()
-    if not chain.steps or chain.steps[0].hop is HopKind.QUEUED:
+    if not chain.steps or chain.steps[0].hop in (HopKind.QUEUED, HopKind.WOKEN):
         raise ValueError(f"steps of chain {chain.name} must begin with a step without a queue")
     for number, step in enumerate(chain.steps):
         if step.name not in items:
@@ -240,6 +252,24 @@ def _queue(
         for item in (burst, later)
     )
     return wait, puts * ((wait + read + jitter) // period + 1)
+
+
+def _woken(
+    writer: str, step: ChainStep, network: Network, found: Holistic
+) -> tuple[int | None, int | None]:
+    """How long an item waits for the release that takes it, and how many do.
+
+    It is the first row of its task, or the task itself: what delays that when it is released
+    is at most its response.
+    """
+    items = network.items()
+    period, separation = items[writer].period, items[step.name].period
+    read, written = found.from_event(step.name), found.from_event(writer)
+    if read is None or written is None or step.puts * separation > period:
+        return None, None
+    jitter = written - found.best[writer] - network.least()[writer]
+    wait = read + (step.puts - 1) * separation
+    return wait, step.puts * ((wait + read + jitter) // period + 1)
 
 
 def _less(longer: int | None, shorter: int | None) -> int | None:

@@ -290,7 +290,8 @@ def _chain_hint(found: Latency, what: str, value: int | None) -> str:
 
 def _ages(hop: HopLatency) -> bool:
     """It is as seldom as what is sporadic, and its last value is used meanwhile."""
-    return hop.renewal is None and not hop.step.keeps and hop.step.hop is not HopKind.QUEUED
+    taken = hop.step.hop in (HopKind.QUEUED, HopKind.WOKEN)
+    return hop.renewal is None and not hop.step.keeps and not taken
 
 
 def _unbounded(found: Latency, what: str) -> Iterator[str]:
@@ -305,7 +306,7 @@ def _unbounded(found: Latency, what: str) -> Iterator[str]:
             yield step.keeps
         elif what == "age" and _ages(hop):
             yield f"{begun} is sporadic: its next value may come at any later time"
-        elif what == "reaction" and step.waits:
+        elif step.waits and (what == "reaction" or step.hop is HopKind.WOKEN):
             yield step.waits
         elif step.hop is HopKind.QUEUED and hop.wait is None and before:
             many = f"{step.puts} values at once" if step.puts > 1 else "them faster"

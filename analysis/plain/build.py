@@ -241,7 +241,7 @@ def _chain(rows: list[RowValues], reading: ReadFile) -> TimedChain | None:
     steps = []
     for row in rows:
         word = row.word("hop")
-        if word not in {hop.value for hop in HopKind}:
+        if word not in {hop.value for hop in HopKind if hop is not HopKind.WOKEN}:
             reading.complain(
                 row.entry.line,
                 f"hop of chain {row.name} must be released, sampled or queued, not {word}",

@@ -20,6 +20,7 @@ HOPS = {
     HopKind.RELEASED: "at once",
     HopKind.SAMPLED: "samples, every T",
     HopKind.QUEUED: "takes the oldest of a queue",
+    HopKind.WOKEN: "released by a queue",
 }
 """How data come to a step of a chain, in words."""
 

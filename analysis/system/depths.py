@@ -106,7 +106,7 @@ def _of_port(instance: Instance, port: Port, analysis: Analysis) -> Iterator[Dep
     needed: int | None = 0
     for way in ways:
         hop = analysis.latency(way).hops[-1]
-        one = 1 if hop.step.hop is not HopKind.QUEUED else hop.backlog
+        one = hop.backlog if hop.step.hop in (HopKind.QUEUED, HopKind.WOKEN) else 1
         one = None if hop.step.waits else one
         needed = None if one is None or needed is None else max(needed, one)
     expected = port.overflow is Overflow.DROP_OLDEST or port.on_overflow is not None

@@ -25,7 +25,8 @@ from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Level, Response
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.gen.language.terms import named
+from ravenchart.gen.language.quantities import shown
+from ravenchart.gen.language.terms import Ns, named
 from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.statechart import Region
@@ -200,11 +201,13 @@ class Latencies:
         released: dict[str, str],
     ) -> ChainStep:
         """A row: later in the same job as the step before, or at its own times."""
-        queued = port is not None and port.kind is PortKind.QUEUED and bool(steps)
-        senders = self._senders(place) if queued else ()
+        woken = port is not None and bool(steps) and self.system.woken_by(place) is not None
+        queued = not woken and port is not None and port.kind is PortKind.QUEUED and bool(steps)
+        senders = self._senders(place) if queued or woken else ()
         puts = max((getattr(one, "steps_per_execution", 1) for one in senders), default=1)
         before = steps[-1].name if steps else ""
-        made = ChainStep(row, HopKind.QUEUED if queued else HopKind.SAMPLED, puts=puts)
+        hop = HopKind.QUEUED if queued else HopKind.WOKEN if woken else HopKind.SAMPLED
+        made = ChainStep(row, hop, puts=puts)
         if before in self.rows and row in self.rows and puts == 1 and len(senders) < 2:
             (processor, first), (other, then) = self.rows[before], self.rows[row]
             divisors = {processor.slots[first].divisor, other.slots[then].divisor}
@@ -215,12 +218,38 @@ class Latencies:
         if len(senders) > 1:
             names = " and ".join(sender.name for sender in senders)
             made = replace(made, waits=f"{names} both send to {place}, which gives one in a job")
+        processor, _ = self.rows[row]
+        if processor.released_by_port is not None and made.hop is not HopKind.RELEASED:
+            made = self._rare(made, processor, before)
         owner, _, name = row.rpartition(".")
         regions = self.system.instance(owner).component.regions
         if any(region.name == name and region.takes_turns for region in regions):
             waits = f"{row} takes events, time-outs and completions one by one, oldest first"
             made = replace(made, waits=waits)
         return made
+
+    def _rare(self, step: ChainStep, processor: Processor, sender: str) -> ChainStep:
+        """The row that begins a release of a processor that a port releases.
+
+        No values pile up where they come no sooner than its separation, and each release
+        completes within that.
+        """
+        response = self.found.responses[processor.name].bound
+        if step.hop is HopKind.SAMPLED:
+            waits = f"{step.name} runs only when a value for {processor.released_by} comes"
+            return replace(step, waits=waits, keeps=waits)
+        period = self.network.items()[sender].period
+        if period < step.puts * processor.period:
+            many = f"{step.puts} values " if step.puts > 1 else ""
+            waits = (
+                f"{sender} may send {many}every {shown(Ns(period))}, but {processor.name} is "
+                f"released every {shown(processor.period)} at most"
+            )
+            return replace(step, waits=waits)
+        if response is None or response > processor.period:
+            waits = f"{processor.name} may take longer than its least separation"
+            return replace(step, waits=waits)
+        return step
 
     def _senders(self, place: str) -> tuple[Region | Activity, ...]:
         """The rows that send to a port over a connection; a message has one."""

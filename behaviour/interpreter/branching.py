@@ -14,6 +14,7 @@ def branched(machine: Machine) -> Machine:
     """The same as it is now, to go on by itself."""
     new = copy.copy(machine)
     new.instances = {name: _instance(one) for name, one in machine.instances.items()}
+    new.earliest = dict(machine.earliest)
     return new
 
 

@@ -1,9 +1,11 @@
 """A whole system in virtual time.
 
 At each instant everything that is due runs, the processor of the highest
-priority first, each its table in order, and takes no time. What a processor
-released by a bus would receive comes as stimuli; what leaves on a bus is gone.
-Activities that the user writes do nothing.
+priority first, each its table in order, and takes no time. A processor that a
+port releases is due when a value waits there and its separation is over; its
+releases are at such instants too. What a processor released by a bus would
+receive comes as stimuli; what leaves on a bus is gone. Activities that the user
+writes do nothing.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from ravenchart.gen.language.terms import Ns, Value
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.statechart import DONE, OnEvent, Overflow, Region
-from ravenchart.gen.model.system import Slot, System, Work
+from ravenchart.gen.model.system import Processor, Slot, System, Work
 
 from .expressions import Outbox, PortReading, View, default, perform
 from .region import RegionRun
@@ -140,6 +142,10 @@ class Machine:
         self.system = system
         self.instances = {one.name: InstanceRun(one, region_run) for one in system.instances}
         self._periodic = [one for one in system.processors if one.released_by is None]
+        woken = (one for one in system.processors if one.released_by_port is not None)
+        self._woken = sorted(woken, key=lambda one: -one.priority)
+        self.earliest = {one.name: 0 for one in self._woken}
+        """When each processor that a port releases may be released again."""
 
     def run(self, stimuli: Stimuli) -> Iterator[StepRecord]:
         """Everything up to the last instant: the steps that executed a behaviour."""
@@ -157,7 +163,23 @@ class Machine:
         for entry in entries:
             self._take(entry)
         for slot in slots:
+            if self._woken:
+                above = self.system.processor_of(slot.element)
+                yield from self._release(now, above)
             yield from self._execute(now, slot)
+        yield from self._release(now, None)
+
+    def _release(self, now: Ns, before: Processor | None) -> Iterator[StepRecord]:
+        """Run the processors that waiting values release: those above the one that is next."""
+        for one in self._woken:
+            port = one.released_by_port
+            due = before is None or (one.priority > before.priority)
+            if port is None or not due or now < self.earliest[one.name]:
+                continue
+            if self.instances[port.instance].mailboxes[port.port].waiting:
+                self.earliest[one.name] = now + one.period
+                for slot in one.slots:
+                    yield from self._execute(now, slot)
 
     def instants(self, until: Ns) -> Iterator[tuple[Ns, list[Slot]]]:
         """Each release instant with the rows that run then, in order."""

@@ -129,7 +129,10 @@ class ProcessorForm(Element):
         "The node it runs on; unless given, that of what it runs. A reception without it is on "
         "every node that receives from its bus."
     )
-    released_by: Reference | None = optional("A bus: then it is sporadic and handles reception.")
+    released_by: PathReference | None = optional(
+        "The bus, or the queued input port `instance.port`, that releases it: then it is sporadic. "
+        "It handles the reception of the bus, or the values of the port."
+    )
     core: int = PydanticField(
         default=1, ge=1, description="The core of the node that runs it, counted from 1."
     )

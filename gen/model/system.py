@@ -28,6 +28,9 @@ from .statechart import Timing
 UNREADY = "RV-0804"
 """The model is checked and analysed, but not generated yet."""
 
+UNFIT_PORT = "RV-0715"
+"""A port that cannot release a processor."""
+
 # --- Deployment --------------------------------------------------------------
 
 
@@ -68,8 +71,9 @@ class Slot:
 
 @dataclass(frozen=True, slots=True)
 class Processor:
-    """A command processor: one task. Sporadic when ``released_by`` names a bus.
+    """A command processor: one task. Sporadic when ``released_by`` names what releases it.
 
+    That is a bus whose frames it receives, or a queued input port, ``instance.port``.
     ``period`` is the minimum separation of a sporadic one. ``priority`` counts
     upwards from 1, larger is more urgent, unique in the node unless given.
     """
@@ -92,6 +96,14 @@ class Processor:
     """The core of the node that it runs on."""
     on_silence: tuple[tuple[str, str], ...] = ()
     """(instance, event) that the supervisor of its node raises when the processor is silent."""
+    released_at: Origin | None = None
+    """Where ``released_by`` is given."""
+
+    @property
+    def released_by_port(self) -> End | None:
+        """The queued port whose values release it; None where time or a bus does."""
+        instance, dot, port = (self.released_by or "").rpartition(".")
+        return End(instance, port) if dot else None
 
     @property
     def raises(self) -> tuple[tuple[str, str], ...]:
@@ -342,6 +354,15 @@ class System:
     @cached_property
     def _processors(self) -> dict[str, Processor]:
         return {slot.element: p for p in reversed(self.processors) for slot in reversed(p.slots)}
+
+    def woken_by(self, place: str) -> Processor | None:
+        """The processor that an input port, ``instance.port``, releases; None where none is."""
+        return self._woken.get(place)
+
+    @cached_property
+    def _woken(self) -> dict[str, Processor]:
+        found = ((str(p.released_by_port), p) for p in self.processors if p.released_by_port)
+        return dict(found)
 
     def object(self, element: str) -> SharedObject:
         """The protected object with that id; KeyError where there is none."""

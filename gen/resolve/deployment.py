@@ -22,9 +22,11 @@ from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus, BusErrors, Message
+from ravenchart.gen.model.component import Direction
 from ravenchart.gen.model.nodes import Node, Supervision, Tick
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
+    UNFIT_PORT,
     Chain,
     Processor,
     Shutdown,
@@ -34,6 +36,7 @@ from ravenchart.gen.model.system import (
 from ravenchart.gen.origins import Origin
 
 from .components import timing_of
+from .composites import connectable
 from .paths import DeploymentNames, event_at, member, split
 
 
@@ -146,9 +149,9 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
     node = None
     if form.node is not None:
         node = site.nodes.look_up(form.node, form.at("node"), findings)
-    bus = None
+    releaser = None
     if form.released_by is not None:
-        bus = site.buses.look_up(form.released_by, form.at("released_by"), findings)
+        releaser = _releaser(form.released_by, form.at("released_by"), site)
         if form.period is None and not form.lost("period"):
             message = f"the sporadic processor {name} needs the key `period`"
             hint = "give the least time between two of its releases"
@@ -180,7 +183,7 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         return None
     if form.lost("node") or form.lost("period") or form.lost("released_by"):
         return None
-    if form.released_by is not None and bus is None:
+    if form.released_by is not None and releaser is None:
         return None
     if form.deadline is not None and form.deadline > period and whole:
         message = f"the deadline of {name} is longer than its period"
@@ -196,13 +199,41 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         deadline=deadline,
         priority=form.priority or 0,
         stack_bytes=form.stack,
-        released_by=None if bus is None else bus.name,
+        released_by=releaser,
         slots=sound,
         on_deadline_miss=misses,
         on_overrun=overruns,
         core=form.core,
         on_silence=silences,
+        released_at=None if releaser is None else form.at("released_by"),
     )
+
+
+def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | None:
+    """The bus, or the input port as ``instance.port``, that releases a processor."""
+    if "." not in text:
+        if not site.buses.knows(text):
+            site.owners.used(text, origin, site.findings)  # the name of a bus or an instance
+        if not site.buses.knows(text) and site.owners.find(text) is not None:
+            message = f"`{text}` must have the form bus or instance.port"
+            hint = f"add a queued port of it: `{text}.port`"
+            site.findings.error("RV-0306", origin, message, hint=hint)
+            return None
+        bus = site.buses.look_up(text, origin, site.findings)
+        return None if bus is None else bus.name
+    found = member(text, "bus or instance.port", origin, site)
+    if found is None:
+        return None
+    instance, parts, name = found
+    port = connectable(parts).look_up(name, origin, site.findings)
+    if port is not None and port.direction is not Direction.IN:
+        end = f"{instance.name}.{port.name}"
+        message = f"{end} is an output port: only an input port releases a processor"
+        notes = [(port.origin, f"`{port.name}` is declared here")]
+        hint = "name the queued input port that it is connected to"
+        site.findings.error(UNFIT_PORT, origin, message, notes=notes, hint=hint)
+        return None
+    return None if port is None else f"{instance.name}.{port.name}"
 
 
 def _slot(text: str, origin: Origin, form: ProcessorForm, site: DeploymentNames) -> Slot | None:

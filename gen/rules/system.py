@@ -27,6 +27,7 @@ from ravenchart.gen.resolve.system import Resolved
 from .buses import BUS_RULES
 from .components import COMPONENT_RULES
 from .nodes import NODE_RULES
+from .releases import RELEASE_RULES
 
 Rule = Callable[[Resolved], Iterator[Diagnostic]]
 
@@ -375,6 +376,8 @@ def reception_has_its_processor(resolved: Resolved) -> Iterator[Diagnostic]:
     """A sporadic processor holds its bus's reception and nothing else."""
     system = resolved.system
     for processor in system.processors:
+        if processor.released_by_port is not None:
+            continue  # see `releases`
         for slot in processor.slots:
             is_reception = slot.work is Work.BUS_RECEIVE
             if processor.released_by is not None and (
@@ -442,4 +445,5 @@ RULES: tuple[Rule, ...] = (
     periods_are_multiples,
     offsets_are_shorter_than_periods,
     reception_has_its_processor,
+    *RELEASE_RULES,
 )

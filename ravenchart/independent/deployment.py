@@ -46,15 +46,15 @@ class Task:
     priority: int = 0
     offset: int = 0
     rows: list[Row] = field(default_factory=list)
-    bus: str | None = None
-    """The bus that releases a processor."""
+    bus: str | None = None  # that releases a processor
+    port: str | None = None  # the same
     after: str | None = None
     """What releases the driver: a task or a message."""
 
     @property
     def sporadic(self) -> bool:
-        """It waits for a frame, and for its least separation as well."""
-        return self.bus is not None
+        """It waits for a frame or value, and for its separation."""
+        return self.bus is not None or self.port is not None
 
     @property
     def works(self) -> dict[int, int]:
@@ -297,8 +297,7 @@ class Deployment:
         own = next((o for o in owners if self.instances.name(o)), None)
         if own is not None:
             return [self.home(own)]
-        bus = form.text("released_by")
-        if bus is not None:
+        if (bus := form.text("released_by")) is not None:
             bus = self.buses.name(bus) or bus
             return [node for node in self.nodes if self.heard(bus, node)]
         bus = self.buses.name(owners[0]) or owners[0]
@@ -334,7 +333,7 @@ class Deployment:
         deadline = min(form.time("deadline", shortest), shortest, period)
         for row in rows:
             row.divisor = row.period // period
-        bus = form.text("released_by")
+        by = form.text("released_by") or ""
         return Task(
             element=f"{name}_{node}" if several else name,
             node=node,
@@ -344,8 +343,17 @@ class Deployment:
             priority=form.number("priority", 0),
             offset=form.time("offset", 0),
             rows=rows,
-            bus=None if bus is None else self.buses.name(bus),
+            bus=self.buses.name(by),
+            port=self._releasing(by) if "." in by else None,
         )
+
+    def _releasing(self, end: str) -> str:
+        """A queued port that releases a processor."""
+        owner, _, port = end.rpartition(".")
+        ports = self.component_of(owner).map("ports")
+        if ports.map(ports.name(port) or "").text("kind") != "queued":
+            raise UnusableError(f"`{end}` is no queued port")
+        return end
 
     def _row(self, text: str, form: Mapping, node: str) -> Row:
         owner, _, name = text.rpartition(".")

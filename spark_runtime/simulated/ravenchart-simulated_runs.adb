@@ -8,6 +8,7 @@ procedure Ravenchart.Simulated_Runs is
    Coming : Long_Long_Integer := Long_Long_Integer'Last;
    Number : Long_Long_Integer;
    First  : Processor;
+   Now    : Long_Long_Integer;
 
    procedure Look_Ahead;
    --  The instant of the next stimulus, if there is one.
@@ -32,14 +33,18 @@ begin
          end if;
       end loop;
       exit when Next (First) > Last;
-      Steps.Set_Time (Next (First));
-      while Coming <= Next (First) loop
+      Now := Next (First);
+      Steps.Set_Time (Now);
+      while Coming <= Now loop
          Steps.Get (Number);
          Take (Positive (Number));
          Look_Ahead;
       end loop;
       Release (First, Counts (First));
-      Next (First)   := Next (First) + Periods (First);
+      Next (First)   := Now + Periods (First);
       Counts (First) := Counts (First) + 1;
+      if (for all P in Processor => Next (P) /= Now) then
+         End_Instant;
+      end if;
    end loop;
 end Ravenchart.Simulated_Runs;

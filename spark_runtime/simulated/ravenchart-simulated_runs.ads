@@ -14,4 +14,6 @@ generic
    --  Run the rows of release number Count.
    with procedure Take (Number : Positive);
    --  Apply a stimulus; its values are read by Ravenchart.Steps.Get.
+   with procedure End_Instant is null;
+   --  No other processor has a release at this instant.
 procedure Ravenchart.Simulated_Runs;

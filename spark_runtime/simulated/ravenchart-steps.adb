@@ -38,6 +38,13 @@ package body Ravenchart.Steps is
       Time := Now;
    end Set_Time;
 
+   ---------
+   -- Now --
+   ---------
+
+   function Now return Long_Long_Integer
+   is (Time);
+
    ----------
    -- Note --
    ----------

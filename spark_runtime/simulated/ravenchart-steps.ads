@@ -10,6 +10,9 @@ package Ravenchart.Steps is
    procedure Set_Time (Now : Long_Long_Integer);
    --  The instant of what follows, in ns since the epoch.
 
+   function Now return Long_Long_Integer;
+   --  That instant.
+
    procedure Note (Behaviour : String);
    --  A behaviour of the step under way is executed.
 

@@ -33,6 +33,7 @@ MAINS = (
     "test_bus_faults",
     "test_frame_ends",
     "test_processors",
+    "test_releases",
     "test_supervision",
     "test_host",
     "test_controller",

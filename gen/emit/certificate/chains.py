@@ -47,8 +47,16 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
             words.append(f"{hop.element} samples.")
             reaction.append(_period(system, hop))
             if before is not None and not queued:
-                age.append(_longest(system, before))
+                age.append(_longest(system, _sender(hops[:place])))
             queued = False
+        elif hop.how == "woken" and before is not None:
+            words.append(f"A queue releases {hop.element}: a value waits for that response.")
+            separation, more = _period(system, hop), hop.at_once - 1
+            filled = times(number(hop.at_once), separation), _period(system, before)
+            items.append(refuse(*filled, f"chain {chain.name}", "can fill a queue"))
+            delays = [_response(hop), *([times(number(more), separation)] if more else [])]
+            reaction += delays
+            age += delays
         elif before is not None:
             words.append(f"{hop.element} takes one of a queue: Wait_{place + 1}.")
             wait = f"{own}_Wait_{place + 1}"
@@ -100,6 +108,17 @@ def _period(system: System, hop: ClaimedHop) -> Expr:
 def _longest(system: System, hop: ClaimedHop) -> Expr:
     """The longest distance of its outputs."""
     return Ref(f"{name_of(hop.renewed)}_Renewal") if hop.renewed else _period(system, hop)
+
+
+def _sender(hops: tuple[ClaimedHop, ...]) -> ClaimedHop:
+    """The step whose period the outputs of these have: the last, or what releases its processor."""
+    found = len(hops) - 1
+    for place in range(len(hops) - 1, 0, -1):
+        if hops[place].how == "woken":
+            found = place - 1
+        elif hops[place].how != "released":
+            break
+    return hops[found]
 
 
 def _renewal(system: System, hops: tuple[ClaimedHop, ...]) -> Expr:

@@ -21,9 +21,10 @@ class ClaimedHop:
     """One step of a chain: a row, a task, a message, or a message's handing over.
 
     ``how`` values come to it: ``released`` by the step before or the chain's event,
-    ``sampled``, or ``queued`` with so many at once. ``open``: values may wait for as long
-    as its region has other things to do, or as others fill the same queue. ``sure``: each
-    of its jobs makes a new output, and it has a job in every period. ``rare``: it follows some
+    ``sampled``, ``queued`` with so many at once, or ``woken`` by so many: they release it.
+    ``open``: values may wait for as long as its region has other things to do, or as others fill
+    the same queue, or as no value releases its processor. ``sure``: each of its jobs makes a new
+    output, and it has a job in every period. ``rare``: it follows some
     of the jobs before it only, in whose period it has none. ``renewed``: the message that says
     how long its outputs stay at most, where that is longer than its period; "" where it is not.
     """
@@ -108,6 +109,8 @@ def _row(
     """A region or activity."""
     follows = bool(hops) and _follows(system, hops[-1], element)
     waits = isinstance(row, Region) and row.takes_turns
+    if not follows and system.processor_of(element).released_by_port is not None:
+        return ClaimedHop(element, "row", "sampled", open=True, sure=False)
     return ClaimedHop(element, "row", "released" if follows else "sampled", open=waits)
 
 
@@ -122,6 +125,8 @@ def _handler(system: System, owner: str, port: str, hops: list[ClaimedHop]) -> C
         for row in system.instance(connection.source.instance).component.runnables()
         if connection.source.port in row.sends
     ]
+    if hops and system.woken_by(f"{owner}.{port}") is not None:
+        return ClaimedHop(element, "row", "woken", max(many))
     if queued and hops and sum(many) > 1:
         return ClaimedHop(element, "row", "queued", max(many), open=len(many) > 1)
     if hops and _follows(system, hops[-1], element):

@@ -72,6 +72,7 @@ from ravenchart.gen.model.component import Activity, Event, Port, PortKind
 from ravenchart.gen.model.statechart import Overflow, Region
 from ravenchart.gen.model.system import System, Work
 
+from .releasing import releases, wait_body, wait_spec
 from .rows import Rows
 from .site import Site
 from .transmission import answering
@@ -108,7 +109,9 @@ class Glue(Site):
             names.add(f"{root}.{self.component}")
         if any(n.trace_depth for n in self.system.nodes):
             names |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
-        if queued or self._served():
+        if any(releases(self, port) for port in component.inputs()):
+            names.add("Ravenchart.Releasing_Queues")  # and no other queue: see `releases`
+        elif queued or self._served():
             names.add("Ravenchart.Queues")
         if any(b.instance == self.instance.name for b in self.system.bindings):
             names.add("Ravenchart.Queueing")
@@ -144,6 +147,7 @@ class Glue(Site):
             items.append(
                 Comment(f"[{self._element(port.name)}.mailbox] by its senders; never blocks.")
             )
+            items += wait_spec(self, port)
         if self.instance.component.events:
             items.append(self._offer_spec())
             items.append(
@@ -225,6 +229,7 @@ class Glue(Site):
         items += heard_objects(self.system, self.instance)
         component = self.instance.component
         items += [self._put_body(p) for p in self._connected_inputs()]
+        items += [body for p in self._connected_inputs() for body in wait_body(self, p)]
         if component.events:
             items.append(self._offer_body())
         items += self._command_bodies()
@@ -256,11 +261,18 @@ class Glue(Site):
         )
 
     def _queue(
-        self, name: str, of_type: str, null: Expr, depth: int, policy: Overflow, element: str
+        self,
+        name: str,
+        of_type: str,
+        null: Expr,
+        depth: int,
+        policy: Overflow,
+        element: str,
+        generic: str = "Ravenchart.Queues",
     ) -> Instantiation:
         return Instantiation(
             name,
-            "Ravenchart.Queues",
+            generic,
             arguments(
                 Element_Type=Ref(of_type),
                 Null_Element=null,
@@ -280,9 +292,9 @@ class Glue(Site):
             null = default_value(self.system, port.type)
             of_type = type_name(self.system, port.type)
             items.append(Comment(f"[{self._element(port.name)}]"))
-            items.append(
-                self._queue(f"{name}_Mailbox", of_type, null, depth, policy, f"{port.name}.mailbox")
-            )
+            kind = "Releasing_Queues" if releases(self, port) else "Queues"
+            given = of_type, null, depth, policy, f"{port.name}.mailbox", f"Ravenchart.{kind}"
+            items.append(self._queue(f"{name}_Mailbox", *given))
             view = f"{self.component}.{name}_View"
             items.append(Object(f"{name}_Port", view))
             if port.on_overflow:
@@ -353,6 +365,8 @@ class Glue(Site):
             Do(f"{name}_Mailbox.Put", arguments(Ref("Item"), Ref("Status"))),
             *self._note("Arrived", port.name, "port"),
         ]
+        if releases(self, port):  # what it releases may run before Put returns
+            body = [*body[1:], body[0]]
         if port.kind is PortKind.SAMPLED:
             #  a new sample replaces the old one: nothing is lost
             return Subprogram(

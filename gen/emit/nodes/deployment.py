@@ -175,7 +175,7 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         args = arguments(
             Activity_Id=Ref("Row"),
             Minimum_Separation=fact(processor.name, "T"),
-            Wait=Ref(f"{ada_case(processor.released_by)}.Receiver.Wait"),
+            Wait=Ref(_wait(processor.released_by)),
         )
     if processor.on_overrun:
         shared += arguments(On_Executed=Ref("On_Executed"))
@@ -188,7 +188,7 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     if processor.released_by is None:
         withs.add("Ravenchart.Schedules")
     else:
-        withs.add(f"{root}.{ada_case(processor.released_by)}.Receiver")
+        withs.add(f"{root}.{_wait(processor.released_by).rpartition('.')[0]}")
     context = {f"{root}.Health_Counts", "Ravenchart.Health"}
     context |= {_owner_unit(system, s) for s in processor.slots}
     context |= {f"{root}.{ada_case(i)}" for i, _ in processor.raises}
@@ -204,6 +204,13 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         Unit(header, tuple(sorted(withs)), spec),
         Unit(header, tuple(sorted(context - withs)), body),
     ]
+
+
+def _wait(releaser: str) -> str:
+    """What a sporadic processor waits in: the receiver of a bus, or the mailbox of a port."""
+    instance, dot, port = releaser.rpartition(".")
+    waits = f"{ada_case(instance)}.Await_{ada_case(port)}"
+    return waits if dot else f"{ada_case(port)}.Receiver.Wait"
 
 
 def _checks(processor: Processor, offset: Expr) -> list[Decl]:

@@ -8,6 +8,7 @@ order; a literal by its position, a record field by field.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from ravenchart.gen.derive.completion import on_one_node
@@ -45,7 +46,7 @@ from ravenchart.gen.emit.tables.executions import ELEMENT_ID
 from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType, Type, Value
 from ravenchart.gen.model.component import Port
 from ravenchart.gen.model.instances import Instance
-from ravenchart.gen.model.system import System
+from ravenchart.gen.model.system import Processor, Slot, System
 
 Stimulus = tuple[str, str, Type | None]
 """Instance, event or input port, and the type of its value."""
@@ -54,7 +55,9 @@ Stimulus = tuple[str, str, Type | None]
 def simulated(system: System) -> System:
     """The part of a system that can be simulated: no bus, no trace, all on one node."""
     system = on_one_node(system)
-    processors = tuple(p for p in system.processors if p.released_by is None)
+    processors = tuple(
+        p for p in system.processors if p.released_by is None or p.released_by_port is not None
+    )
     nodes = tuple(replace(n, trace_depth=0, probe=None, supervision=None) for n in system.nodes)
     return replace(system, nodes=nodes, buses=(), messages=(), processors=processors)
 
@@ -91,7 +94,9 @@ def _number(of_type: ScalarType, value: Value) -> int:
 def emit_simulation(system: System, header: str) -> Unit:
     """The main program."""
     root = root_package(system)
-    order = sorted(system.processors, key=lambda p: -p.priority)
+    urgent = sorted(system.processors, key=lambda p: -p.priority)
+    order = [processor for processor in urgent if processor.released_by is None]
+    woken = [processor for processor in urgent if processor.released_by is not None]
     last = len(order)
     withs = {f"{root}.{ada_case(i.name)}" for i in system.instances}
     withs |= {f"{root}.{component_name(i.component)}" for i in system.instances}
@@ -103,10 +108,10 @@ def emit_simulation(system: System, header: str) -> Unit:
         for slot in processor.slots:
             if slot.of_bus:
                 continue
-            run = (
-                Assign("Executed", number(0)),
-                do(f"{root}.{ada_case(slot.owner)}.Run_{ada_case(slot.name)}", Ref("Executed")),
-            )
+            run = _run(root, slot)
+            above = sum(one.priority > processor.priority for one in woken)
+            if above:
+                rows.append(Do("Release_Waiting", arguments(number(above))))
             turn = OperatorChain("mod", (Ref("Count"), number(slot.divisor)))
             due = equal(turn, number(slot.phase))
             rows += run if slot.divisor == 1 else (IfStatement(((due, run),)),)
@@ -128,6 +133,7 @@ def emit_simulation(system: System, header: str) -> Unit:
             declarations=(
                 PlainType("Processor", f"range 1 .. {last}"),
                 PlainType("Instants", "array (Processor) of Long_Long_Integer"),
+                *_waiting(root, woken),
                 Subprogram(
                     "Release",
                     (Param("P", "in", "Processor"), Param("Count", "in", "Natural")),
@@ -150,6 +156,7 @@ def emit_simulation(system: System, header: str) -> Unit:
                         Periods=_instants([p.period for p in order]),
                         Release=Ref("Release"),
                         Take=Ref("Take"),
+                        **({"End_Instant": Ref("End_Instant")} if woken else {}),
                     ),
                     kind="procedure",
                 ),
@@ -158,6 +165,39 @@ def emit_simulation(system: System, header: str) -> Unit:
             body=(*_start(system), Do("Run")),
         ),
     )
+
+
+def _run(root: str, slot: Slot) -> tuple[Stmt, ...]:
+    """One execution of a row."""
+    name = f"{root}.{ada_case(slot.owner)}.Run_{ada_case(slot.name)}"
+    return Assign("Executed", number(0)), do(name, Ref("Executed"))
+
+
+def _waiting(root: str, woken: Sequence[Processor]) -> Iterator[Decl]:
+    """The processors that ports release: the first ``Last`` of them run what waits and is due."""
+    if not woken:
+        return
+    body: list[Stmt] = []
+    for number_, processor in enumerate(woken, 1):
+        end, earliest = processor.released_by_port, Ref(f"Earliest ({number_})")
+        assert end is not None
+        now = Ref("Ravenchart.Steps.Now")
+        due = OperatorChain(">=", (Ref("Last"), number(number_)))
+        late = OperatorChain(">=", (now, earliest))
+        following = Assign(earliest.text, OperatorChain("+", (now, number(processor.period))))
+        rows = [stmt for slot in processor.slots for stmt in _run(root, slot)]
+        ask = do(f"{root}.{ada_case(end.instance)}.Ask_{ada_case(end.port)}", Ref("Waiting"))
+        run = IfStatement(((Ref("Waiting"), (following, *rows)),))
+        body.append(IfStatement(((OperatorChain("and then", (due, late)), (ask, run)),)))
+    times = f"array (1 .. {len(woken)}) of Long_Long_Integer"
+    yield Object("Earliest", times, Ref("(others => 0)"))
+    yield Subprogram(
+        "Release_Waiting",
+        (Param("Last", "in", "Positive"),),
+        declarations=(Object("Executed", ELEMENT_ID), Object("Waiting", "Boolean")),
+        body=tuple(body),
+    )
+    yield Subprogram("End_Instant", body=(do("Release_Waiting", number(len(woken))),))
 
 
 def _start(system: System) -> tuple[Stmt, ...]:

@@ -1,0 +1,180 @@
+"""Rules for processors that a queued port releases: which ports may, and what these run.
+
+A value of one periodic row releases the processor. Its table handles that value and nothing
+else, so no row of it counts executions as time, and none waits for a value that another port has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.language.quantities import shown
+from ravenchart.gen.model.commands import Device
+from ravenchart.gen.model.component import PortKind
+from ravenchart.gen.model.instances import Connection, End, Instance
+from ravenchart.gen.model.system import UNFIT_PORT, Processor, System, Work
+from ravenchart.gen.origins import Origin
+from ravenchart.gen.resolve.system import Resolved
+
+TABLE = "RV-0716"
+"""What the table of a processor that a port releases must be."""
+
+Problem = tuple[str, Origin, str, str]
+"""What is wrong, where that is declared, a word on it, and what to do."""
+
+
+def ports_can_release(resolved: Resolved) -> Iterator[Diagnostic]:
+    """The port is queued, one periodic row sends to it, and its instance has nothing else."""
+    system = resolved.system
+    for processor in system.processors:
+        port = processor.released_by_port
+        if port is None:
+            continue
+        instance = system.instance(port.instance)
+        if instance.component.name in resolved.damaged:
+            continue
+        whole = {"processors", "messages", "connections"} <= resolved.sound_sections
+        senders = _of_senders(system, port) if whole else iter(())
+        at = processor.released_at or processor.origin
+        for problem in (*_of_port(instance, port), *_of_instance(system, instance, port), *senders):
+            message, declared, words, hint = problem
+            notes = [(declared, words)]
+            yield error(UNFIT_PORT, at, message, notes=notes, hint=hint)
+
+
+def tables_handle_the_port(resolved: Resolved) -> Iterator[Diagnostic]:
+    """The port region of the instance first, then activities of it, in each release."""
+    for processor in resolved.system.processors:
+        port = processor.released_by_port
+        if port is None or "processors" not in resolved.sound_sections:
+            continue
+        if not processor.slots or processor.slots[0].element != f"{port.instance}.ports":
+            message = f"{processor.name} is released by {port}, but does not handle it first"
+            hint = f"begin its table with `{port.instance}.ports`"
+            yield error(TABLE, processor.origin, message, hint=hint)
+        for slot in processor.slots:
+            fits = slot.work in (Work.PORT_REGION, Work.ACTIVITY)
+            if slot.owner != port.instance or not fits:
+                message = f"{processor.name} is released by {port}, but holds {slot.element}"
+                hint = "move it to a periodic processor"
+                if slot.work is Work.BUS_RECEIVE:
+                    hint = f"move it to a processor with `released_by: {slot.owner}`"
+                if not slot.of_bus and slot.owner != port.instance:
+                    hint += f"; the table of {processor.name} has rows of {port.instance} only"
+                yield error(TABLE, slot.origin, message, hint=hint)
+            elif slot.timing.period != processor.period:
+                message = (
+                    f"the period of {slot.element} is {shown(slot.timing.period)}, but "
+                    f"{processor.name} runs it in each of its releases, which are "
+                    f"{shown(processor.period)} apart at least"
+                )
+                hint = f"give {slot.element} and {processor.name} the same `period`"
+                yield error(TABLE, slot.origin, message, hint=hint)
+
+
+def _of_port(instance: Instance, end: End) -> Iterator[Problem]:
+    """What is wrong with the port itself."""
+    port = instance.component.port(end.port)
+    declared = port.origin, f"`{port.name}` is declared here"
+    if port.kind is not PortKind.QUEUED:
+        message = f"{end} is sampled: only the values of a queued port release a processor"
+        yield message, *declared, "add `kind: queued` and a `depth` to the port"
+    if port.max_age is not None:
+        message = f"{end} has `max_age`, but nothing looks at it while no value comes"
+        yield message, *declared, "remove `max_age`, or let a periodic processor handle the port"
+
+
+def _of_instance(system: System, instance: Instance, end: End) -> Iterator[Problem]:
+    """What the component has besides, that needs time or another port."""
+    component = instance.component
+    cannot = f"{end} cannot release a processor"
+    apart = "put it into a component of its own, on a periodic processor"
+    for region in component.regions:
+        message = f"{cannot}: {component.name} has the region {region.name}, which counts time"
+        yield message, region.origin, f"{region.name} is declared here", apart
+    for invariant in component.invariants:
+        message = f"{cannot}: {component.name} has the invariant {invariant.name}"
+        words = f"{invariant.name} is declared here"
+        yield (
+            message,
+            invariant.origin,
+            words,
+            "remove it: `check` proves it for periodic rows only",
+        )
+    for port in component.inputs():
+        if port.name != end.port:
+            message = f"{cannot}: {component.name} has another input port, `{port.name}`"
+            yield message, port.origin, f"`{port.name}` is declared here", apart
+    for provided in component.provides:
+        message = f"{cannot}: {component.name} provides the interface `{provided.name}`"
+        yield message, provided.origin, f"`{provided.name}` is declared here", apart
+    for activity in component.activities:
+        if activity.while_in is not None:
+            message = f"{cannot}: {activity.name} has `while`, so it is periodic"
+            yield message, activity.origin, f"{activity.name} is declared here", apart
+    for binding in system.bindings:
+        provider = binding.provider
+        if binding.instance == instance.name and not isinstance(provider, Device | None):
+            need = binding.need.name
+            message = f"{cannot}: {instance.name} calls `{need}` of another component"
+            yield message, binding.origin, "that is bound here", "bind it to a device"
+    for sent in system.messages:
+        if sent.source is not None and sent.source.instance == instance.name:
+            message = f"{cannot}: {sent.source} is sent as the message {sent.name}"
+            words = f"{sent.name} is declared here"
+            yield message, sent.origin, words, "let a periodic activity send the message"
+
+
+def _of_senders(system: System, end: End) -> Iterator[Problem]:
+    """What sends to the port must be one activity or region of a periodic processor."""
+    cannot = f"{end} cannot release a processor"
+    periodic = "let one row of a periodic processor send to it over a connection"
+    for message in system.messages:
+        if end in message.targets:
+            text = f"{cannot}: its values are those of the message {message.name}"
+            yield text, message.origin, f"{message.name} is declared here", periodic
+    for poll in system.polls:
+        if (poll.instance, poll.port) == (end.instance, end.port):
+            text = f"{cannot}: its values are those of the device {poll.device.name}"
+            yield text, poll.origin, "that is bound here", periodic
+    for connection in system.connections:
+        if connection.target == end:
+            yield from _of_connection(system, connection, cannot, periodic)
+
+
+def _of_connection(
+    system: System, connection: Connection, cannot: str, periodic: str
+) -> Iterator[Problem]:
+    source = system.instance(connection.source.instance)
+    senders = source.component.senders(connection.source.port)
+    if len(senders) > 1:
+        names = " and ".join(f"{source.name}.{one.name}" for one in senders)
+        yield (
+            f"{cannot}: {names} both send to it",
+            connection.origin,
+            "over this connection",
+            periodic,
+        )
+        return
+    for sender in senders:
+        element = f"{source.name}.{sender.name}"
+        words = f"{sender.name} is declared here"
+        if (processor := _runs(system, element)) is not None and processor.released_by:
+            text = f"{cannot}: {element} sends to it, which {processor.released_by} releases"
+            yield text, processor.origin, f"{processor.name} runs it", periodic
+        elif source.component.served_by(sender.name) is not None:
+            text = f"{cannot}: {element} sends to it, which serves calls"
+            yield text, sender.origin, words, periodic
+
+
+def _runs(system: System, element: str) -> Processor | None:
+    """The processor of a row, if one has it."""
+    rows = ((slot.element, one) for one in system.processors for slot in one.slots)
+    return next((one for name, one in rows if name == element), None)
+
+
+RELEASE_RULES: tuple[Callable[[Resolved], Iterator[Diagnostic]], ...] = (
+    ports_can_release,
+    tables_handle_the_port,
+)

@@ -1,0 +1,55 @@
+--  Bounded queue whose elements release a sporadic processor: the mailbox of a
+--  queued port that releases one.
+--
+--  Guarantees   strict order; what does not fit is given up by Policy and
+--               counted; an element put is never left while the caller of
+--               Wait suspends
+--  Tasking      any number of callers up to Ceiling; one caller of Wait, which
+--               alone calls Take
+--  Timing       constant; only Wait suspends
+--  Analysis     one shared object, ceiling Ceiling
+--
+--  Wait leaves the element where it is: until the processor handles it, it
+--  takes one of the places. The wake-up is a suspension object for the reason
+--  given in Ravenchart.Waiting_Queues.
+
+with System;
+with Ravenchart.Queueing;
+
+generic
+   type Element_Type is private;
+   Null_Element : Element_Type;
+   --  What Take hands over when there is nothing to take.
+   Capacity : Queueing.Capacity_Type;
+   Ceiling : System.Any_Priority;
+   --  At least the priority of every caller.
+   Policy : Queueing.Overflow_Policy;
+package Ravenchart.Releasing_Queues
+  with
+    SPARK_Mode,
+    Abstract_State =>
+      ((State with Synchronous, External => (Async_Readers, Async_Writers)),
+       (Wake_Up with Synchronous, External)),
+    Initializes    => (State, Wake_Up)
+is
+   procedure Put (Item : Element_Type; Status : out Queueing.Put_Status)
+   with Global => (In_Out => (State, Wake_Up));
+   --  Queue Item and wake the caller of Wait; a full queue gives up an element
+   --  and counts it.
+
+   procedure Take (Item : out Element_Type; Status : out Queueing.Take_Status)
+   with Global => (In_Out => State);
+   --  Hand over the oldest element, or Null_Element when Empty.
+
+   procedure Wait
+   with Global => (In_Out => (State, Wake_Up));
+   --  Suspend the one caller until there is an element.
+
+   function Is_Empty return Boolean
+   with Volatile_Function, Global => State;
+
+   function Lost return Event_Count
+   with Volatile_Function, Global => State;
+   --  How many elements were rejected or dropped.
+
+end Ravenchart.Releasing_Queues;
