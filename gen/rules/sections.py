@@ -20,5 +20,7 @@ def sections_are_part_of_tasks(system: System) -> Iterator[Diagnostic]:
             f"a call of {item.element} may take {shown(item.section)}, "
             f"longer than all of {task.element}, {shown(task.budget)}"
         )
-        hint = f"put rows of {task.element} into a table with others, or raise a `wcet` of them"
+        hint = f"raise the `wcet` of {task.element}"
+        if task.slots:
+            hint = f"put rows of {task.element} into a table with others, or raise a `wcet` of them"
         yield error("RV-0709", task.origin, message, hint=hint)

@@ -56,7 +56,9 @@ def test_a_device_with_a_start_is_shared_with_the_main_program_and_the_superviso
 
 
 def test_making_safe_counts_among_the_longest_calls() -> None:
-    system = _system({"make_safe: 20 us": "make_safe: 80 us"})
+    longer = {"make_safe: 20 us": "make_safe: 80 us"}
+    assert "longer than all of board.supervisor, 50 us" in _refusal(longer)
+    system = _system(longer | {SUPERVISION: SUPERVISION.replace("50 us", "90 us")})
     assert system.object("Right").section == 80_000
 
 

@@ -298,7 +298,7 @@ def test_a_search_is_stopped_and_what_has_changed_since_is_not_replaced(bench: R
     assert refused.json["error"] == "the model has changed since the search: search again"
     bench.act(kind="search", strategy="slack")
     state = bench.act(kind="stop").json
-    while state["search"]["running"]:
+    while state["search"]["running"] or state["search"]["strategy"] != "slack":
         state = page.get(timeout=PATIENCE)
     assert not state["search"]["old"]
     assert bench.act(kind="undo").status == 200
