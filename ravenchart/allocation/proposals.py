@@ -9,7 +9,7 @@ have in the model: what hands a value on comes before what takes it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ravenchart.analysis.core import allocation
@@ -56,7 +56,8 @@ class WantedTable:
     node: str
     """"" where a model of several nodes has it on each."""
     core: int
-    sporadic: bool
+    released_by: str | None
+    """What releases a sporadic one; None: it is periodic."""
     priority: int
     period: int
     offset: int
@@ -154,9 +155,10 @@ def _processor(rows: Sequence[tuple[Processor, Slot]], taken: Sequence[str]) -> 
     first = rows[0][0]
     period = min(slot.timing.period for _, slot in rows)
     same = len(origins) == 1 and len(first.slots) == len(rows)
+    fresh = f"every_{duration(period).replace(' ', '_')}"
     return replace(
         first,
-        name=first.name if same else _free(f"every_{duration(period).replace(' ', '_')}", taken),
+        name=first.name if same else free_name(fresh, taken),
         period=period,
         offset=first.offset if same else Ns(0),
         deadline=min(slot.timing.deadline for _, slot in rows),
@@ -174,7 +176,7 @@ def _processor(rows: Sequence[tuple[Processor, Slot]], taken: Sequence[str]) -> 
     )
 
 
-def _free(name: str, taken: Sequence[str]) -> str:
+def free_name(name: str, taken: Iterable[str]) -> str:
     """The name, with a number where it is taken."""
     used = {one.lower() for one in taken}
     free, number = name, 1
@@ -187,7 +189,7 @@ def _free(name: str, taken: Sequence[str]) -> str:
 def yaml(proposal: Proposal) -> str:
     """``processors:`` of the model, as it would be; without priorities, which are by deadline."""
     lines = [f"# {verdict_line(proposal.analysis)}", "processors:"]
-    for one in written(proposal.system):
+    for one in tables(proposal):
         lines.append(f"  {one.name}:")
         if one.node:
             lines.append(f"    node: {one.node}")
@@ -202,9 +204,9 @@ def yaml(proposal: Proposal) -> str:
             f"    deadline: {duration(one.deadline)}",
             f"    stack: {one.stack_bytes} B",
             "    activities:",
-            *(f"      - {slot.element}" for slot in one.slots),
+            *(f"      - {row}" for row in one.rows),
         ]
-        for key, events in _reactions(one):
+        for key, events in one.raises.items():
             if events:
                 lines.append(f"    {key}:")
                 lines += [f"      - {event}" for event in events]
@@ -221,7 +223,7 @@ def _reactions(processor: Processor) -> Iterator[tuple[str, tuple[str, ...]]]:
         yield key, tuple(f"{instance}.{event}" for instance, event in events)
 
 
-def written(system: System) -> Iterator[Processor]:
+def _written(system: System) -> Iterator[Processor]:
     """The processors as a model has them: one copy of what only serves a bus, for all its nodes."""
     seen: set[str] = set()
     for processor in system.processors:
@@ -252,7 +254,7 @@ def tables(proposal: Proposal) -> tuple[WantedTable, ...]:
             one.name,
             one.node,
             one.core,
-            one.released_by is not None,
+            one.released_by,
             one.priority,
             one.period,
             one.offset,
@@ -261,5 +263,5 @@ def tables(proposal: Proposal) -> tuple[WantedTable, ...]:
             tuple(slot.element for slot in one.slots),
             dict(_reactions(one)),
         )
-        for one in written(proposal.system)
+        for one in _written(proposal.system)
     )

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravenchart.allocation.proposals import WantedTable, stack_text
+from ravenchart.allocation.proposals import WantedTable, free_name, stack_text
 from ravenchart.analysis.units import duration
 from ravenchart.gen.files import spans
 from ravenchart.gen.files.spans import plain
@@ -110,8 +110,8 @@ def homes_of(places: ModelPlaces, tables: Sequence[WantedTable]) -> list[str | N
         rows = {row.lower() for row in table.rows}
         for processor in places.processors.values():
             count = sum(item.value.lower() in rows for item in places.table(processor))
-            stays = processor.mapping.scalar("released_by") is not None
-            if count and stays is table.sporadic:
+            sporadic = processor.mapping.scalar("released_by") is not None
+            if count and sporadic is (table.released_by is not None):
                 shared.append((-count, number, processor.name))
     homes: list[str | None] = [None] * len(tables)
     for _, number, name in sorted(shared, key=lambda one: one[:2]):
@@ -126,7 +126,7 @@ def _added(files: _Files, table: WantedTable) -> str:
     if found is None:
         raise LayoutError(f"no processor has the row {table.rows[0]}")
     origin, _ = found
-    name = _free(table.name, files.places)
+    name = free_name(table.name, files.places.processors)
     item = _taken(files, table.rows[0], stays=False)
     root = files.document(origin).root
     around = root.mapping("processors")
@@ -138,14 +138,6 @@ def _added(files: _Files, table: WantedTable) -> str:
         files.document(origin), around, origin.name, name, keys, "activities", item
     )
     return name
-
-
-def _free(name: str, places: ModelPlaces) -> str:
-    free, number = name, 1
-    while free.lower() in places.processors:
-        number += 1
-        free = f"{name}_{number}"
-    return free
 
 
 def _taken(files: _Files, row: str, *, stays: bool) -> TakenItem:

@@ -105,7 +105,7 @@ def small(tmp_path: Path, text: str = MODEL) -> tuple[Path, Evaluation]:
 
 
 MS = 1_000_000
-ONE = WantedTable("one", "cpu", 1, False, 1, 10 * MS, 0, 10 * MS, 32768, ("k.a", "k.b"), {})
+ONE = WantedTable("one", "cpu", 1, None, 1, 10 * MS, 0, 10 * MS, 32768, ("k.a", "k.b"), {})
 
 
 def test_two_processors_become_one_and_one_becomes_two(tmp_path: Path) -> None:

@@ -35,7 +35,7 @@ function told(search) {
 function Tables({ search: { best } }) {
   return html`<table><thead><tr><th>processor</th><th>activities</th><th class="number">R</th><th class="number">D</th>
     <th>verdict</th></tr></thead><tbody>${best.tables.flatMap((table) => table.rows.map((row, index) => html`<tr key=${table.name + row}>
-      <td>${index ? "" : html`<b>${table.name}</b>${table.sporadic ? " (stays)" : ""}`}</td><td>${row}</td>
+      <td>${index ? "" : html`<b>${table.name}</b>${table.released_by ? " (stays)" : ""}`}</td><td>${row}</td>
       <td class="number">${row in best.bounds ? time(best.bounds[row]) : ""}</td>
       <td class="number">${row in best.deadlines ? time(best.deadlines[row]) : ""}</td>
       <td>${row in best.bounds && html`<${Word} met=${best.bounds[row] !== null && best.bounds[row] <= best.deadlines[row]} />`}</td>
