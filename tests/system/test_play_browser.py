@@ -123,6 +123,7 @@ def test_the_event_file_is_saved_and_replayed(shown: BrowserPage, tmp_path: Path
     events = tmp_path / "events.yaml"
     saved.value.save_as(events)
     page.get_by_role("tab", name="Trace").click()
+    expect(page.get_by_role("tab", name="Trace")).to_have_attribute("aria-selected", "true")
     words = (str(PUMP), "--interpreter", "--events", str(events))
     done = subprocess.run(
         command(*words, name="simulate"), env=environment(), capture_output=True, text=True,

@@ -1,6 +1,6 @@
 // The workbench: one state from the server, shown in three panes.
 
-import { html, render, useEffect, useRef, useState } from "./preact.js";
+import { html, render, useEffect, useLayoutEffect, useRef, useState } from "./preact.js";
 import { Components } from "./components.js";
 import { Drawing } from "./drawing.js";
 import { Finding, Outcomes } from "./outcomes.js";
@@ -28,6 +28,8 @@ function App() {
     document.title = `${state.dirty ? "• " : ""}${state.system}: workbench`;
     if (wasMet.current && !state.met) setTab("findings");
     wasMet.current = state.met;
+  }, [state]);
+  useLayoutEffect(() => { // before the next key comes
     if (moved.current && document.activeElement === document.body) { // its element was replaced
       document.querySelector(`.processors [data-row="${CSS.escape(moved.current)}"]`)?.focus();
     }

@@ -1,6 +1,6 @@
 // A pane with a drawing of the model, as `ravenchart draw` draws it: chosen by its name, and zoomed.
 
-import { html, useEffect, useRef, useState } from "./preact.js";
+import { html, useEffect, useLayoutEffect, useRef, useState } from "./preact.js";
 import { get } from "./link.js";
 
 const STEP = 1.25;
@@ -34,10 +34,10 @@ export function Canvas({ names, chosen, selected, choose, version, marks, finish
   }, [chosen, version]);
 
   const svg = made?.svg;
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (svg) draw(paper.current, svg);
   }, [svg]);
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (svg) scale(paper.current, zoom, least);
   }, [svg, zoom]);
   useEffect(() => {
