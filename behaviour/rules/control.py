@@ -35,7 +35,7 @@ def _fired(thread: Thread) -> set[str]:
 def _model(reach: Reachable, thread: Thread, edge: Edge, condition: Term) -> Term | None:
     """Data with which a step is made and a condition holds besides."""
     solver = logic.solver()
-    solver.add(*reach.constants_over(reach.symbol), *reach.of_others(thread))
+    solver.add(*reach.typed, *reach.of_others(thread))
     solver.add(*reach.of_node(thread, edge.before.cells), edge.outcome.condition, condition)
     return solver.model() if solver.check() == z3.sat else None
 

@@ -9,8 +9,9 @@ Leino, *Houdini*, 2001); those that no proof needs are dropped again, by unsatis
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any, cast
 
 import z3
 
@@ -165,6 +166,8 @@ class _Search:
     symbols: dict[Variable, Term] = field(default_factory=dict)
     bad: dict[str, Term] = field(default_factory=dict)
     """The invariants that are kept so far, each with the condition that must not hold."""
+    made: dict[object, Any] = field(default_factory=dict)
+    """Terms that were made before: each by what it is of, as far as that changes."""
 
     def __post_init__(self) -> None:
         component = self.component
@@ -203,8 +206,17 @@ class _Search:
 
     # --- terms
 
+    def once(self, key: object, make: Callable[[], Any]) -> Any:
+        """What is made for a key, made at its first use."""
+        if key not in self.made:
+            self.made[key] = make()
+        return self.made[key]
+
     def written(self, move: ChartMove) -> list[tuple[Term, Term]]:
         """What stands for each variable after a move."""
+        return cast("list[tuple[Term, Term]]", self.once(move, lambda: self._written(move)))
+
+    def _written(self, move: ChartMove) -> list[tuple[Term, Term]]:
         own = self.initial if move.before is None else {}
         pairs = {n: v for n, v in own.items() if n[1] in self.region.writes}
         if move.before is None:
@@ -238,28 +250,39 @@ class _Search:
         place = move.before
         if place is None:
             return {}
-        known: dict[Held | str, Term] = {
-            (vertex, name): self.in_cells(name, self.symbol(name), self.allowed[vertex, name])
-            for vertex in place.vertices
-            if self.is_marked(vertex)
-            for name in self.cells
-        }
-        return known | {name: z3.Not(self.violated(name, place)) for name in self.bad}
+        known: dict[Held | str, Term] = {held: self.fact(held) for held in self.facts_at(place)}
+        return known | {name: self.refuted(name, place) for name in self.bad}
 
     def after(self, move: ChartMove) -> dict[Held | str, Term]:
         """What must hold behind a move, by the fact or invariant that says it."""
-        pairs = self.written(move)
         wanted: dict[Held | str, Term] = {
-            (vertex, name): z3.substitute(
-                self.in_cells(name, self.symbol(name), self.allowed[vertex, name]), *pairs
-            )
-            for vertex in move.after.vertices
-            if self.is_marked(vertex)
-            for name in self.cells
+            held: self.behind(move, (held, len(self.allowed[held])), self.fact(held))
+            for held in self.facts_at(move.after)
         }
         for name in self.bad:
-            wanted[name] = z3.substitute(z3.Not(self.violated(name, move.after)), *pairs)
-        return {key: z3.simplify(value) for key, value in wanted.items()}
+            wanted[name] = self.behind(move, name, self.refuted(name, move.after))
+        return wanted
+
+    def facts_at(self, place: Position) -> Iterator[Held]:
+        """What facts can speak of in a place."""
+        for vertex in filter(self.is_marked, place.vertices):
+            for name in self.cells:
+                yield vertex, name
+
+    def fact(self, held: Held) -> Term:
+        """That a data item is in the cells allowed for it so far; those only become more."""
+        name, cells = held[1], self.allowed[held]
+        return self.once((held, len(cells)), lambda: self.in_cells(name, self.symbol(name), cells))
+
+    def refuted(self, name: str, place: Position) -> Term:
+        """That a place does not violate an invariant."""
+        return self.once((place, name), lambda: z3.Not(self.violated(name, place)))
+
+    def behind(self, move: ChartMove, claim: object, term: Term) -> Term:
+        """That the term of a claim holds behind a move."""
+        return self.once(
+            (move, claim), lambda: z3.simplify(z3.substitute(term, *self.written(move)))
+        )
 
     def typed(self) -> list[Term]:
         """That every variable lies in its type."""

@@ -65,7 +65,7 @@ def invariants_hold(reach: Reachable, system: System) -> Iterator[Diagnostic]:
 def _is_excluded(reach: Reachable, bad: Term) -> bool:
     """Whether no combination of reachable nodes is bad."""
     solver = logic.solver()
-    solver.add(*reach.constants_over(reach.symbol), bad)
+    solver.add(*reach.typed, bad)
     solver.add(*(_somewhere(reach, thread) for thread in reach.threads))
     solver.add(*_written_by_users(reach))
     return bool(reach.budget.ask(solver) == z3.unsat)
@@ -141,7 +141,7 @@ def _breaking_step(reach: Reachable, system: System, bad: Term) -> Broken | None
     for thread in reach.threads:
         others = [term for name, term in nodes.items() if name != thread.name]
         stale = _stale(reach, system, thread)
-        old = [*reach.constants_over(reach.symbol), *reach.of_others(thread)]
+        old = [*reach.typed, *reach.of_others(thread)]
         given = [*before, *others, *(_substituted(term, stale) for term in old)]
         for edge in _distinct(thread):
             reach.budget.count()
@@ -158,8 +158,10 @@ def _breaking_step(reach: Reachable, system: System, bad: Term) -> Broken | None
 
 def _possible(reach: Reachable, terms: Sequence[Term]) -> Term | None:
     """A model of some terms; None when there is none."""
+    if any(map(z3.is_false, terms)):
+        return None
     solver = logic.solver()
-    solver.add(*reach.constants_over(reach.symbol), *terms)
+    solver.add(*reach.typed, *terms)
     answer = reach.budget.ask(solver)
     if answer == z3.unsat:
         return None

@@ -62,7 +62,7 @@ def _endless(
             reach.budget.count()
             terms = _goes_on(reach, thread, cycle)
             solver = logic.solver()
-            solver.add(*reach.constants_over(reach.symbol), *reach.of_others(thread), *terms)
+            solver.add(*reach.typed, *reach.of_others(thread), *terms)
             if reach.budget.ask(solver) == z3.sat:
                 yield cycle, valuation(reach, solver.model(), [terms[-1]])
                 break

@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import z3
 
@@ -71,7 +72,7 @@ class Reachable:
         for name in logic.tested((*expressions(component), *values)):
             self.symbol(name)
         self._user_bodies()
-        self.plain = logic.Questions(self.symbol, self.constants_over(self.symbol), self.budget.ask)
+        self.plain = logic.Questions(self.symbol, self.typed, self.budget.ask)
         self._run()
 
     # --- set-up
@@ -110,14 +111,17 @@ class Reachable:
             self.symbols[name] = logic.symbol(str(name), self.types[name])
         return self.symbols[name]
 
-    def constants_over(self, read: logic.Read) -> list[Term]:
+    @cached_property
+    def typed(self) -> list[Term]:
         """That variables lie in their types, and parameters are those of an instance."""
         typed = [
-            logic.within(read(name), type_)
+            logic.within(self.symbol(name), type_)
             for name, type_ in self.types.items()
             if type_ != BOOLEAN
         ]
-        sets = [z3.And([read(n) == v for n, v in one.items()]) for one in self.constants.values()]
+        sets = [
+            z3.And([self.symbol(n) == v for n, v in one.items()]) for one in self.constants.values()
+        ]
         return [*typed, z3.Or(sets)] if sets else typed
 
     def cell_of(self, name: Variable, value: Term) -> int:
@@ -196,7 +200,7 @@ class Reachable:
         """Every node of a thread, nearest first."""
         solver = logic.solver()
         others = self.of_others(thread)
-        solver.add(*self.constants_over(self.symbol), *others)
+        solver.add(*self.typed, *others)
         context = self._seen_of_others(thread)
         start = Situation(
             Configuration(), tuple(self.cell_of(name, self.initial[name]) for name in thread.own)
