@@ -87,7 +87,7 @@ def response(
     """
     task = own.task
     worst = {number: Worst() for number in range(WHOLE, len(task.rows))}
-    blocked = blocking.length if blocking else 0
+    blocked = task.held + (blocking.length if blocking else 0)
     several = len(own.goals) > 1
     repeat = math.inf
     job = 0

@@ -109,9 +109,11 @@ def _quickly(order: tuple[Task, ...], held: Mapping[str, Section], platform: Pla
     costs = [task.cost for task in order]
     if platform.context_switch:
         costs = [task.cost + switch_time(task, platform) for task in order]
-    blocked = [0] * len(order)
+    blocked = [task.held for task in order]
     if held:
-        blocked = [held[task.name].length if task.name in held else 0 for task in order]
+        blocked = [
+            task.held + (held[task.name].length if task.name in held else 0) for task in order
+        ]
     last = {task.priority: number for number, task in enumerate(order)}
     return busy_periods(
         [task.period for task in order], costs, [last[task.priority] for task in order], blocked

@@ -156,8 +156,8 @@ class Response:
 
     @property
     def blocked(self) -> int:
-        """The longest section of a less urgent task, suffered once."""
-        return 0 if self.blocking is None else self.blocking.length
+        """The longest section of a less urgent task, and what is given besides: suffered once."""
+        return self.task.held + (0 if self.blocking is None else self.blocking.length)
 
     @property
     def own(self) -> int:

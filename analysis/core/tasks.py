@@ -46,6 +46,9 @@ class Task:
     ``timed``      released by the tick of its core: late by up to one tick period
     ``sporadic``   nothing makes it arrive; the analysis of responses is the same
     ``best``       least execution time of a job, for the jitter of what it releases
+    ``held``       longest time that work of no task of the system, or a locking protocol of
+                   another kind, holds up all its jobs between two idle instants, besides the
+                   sections (the blocking term B of Audsley et al. 1993)
     ``suspensions`` times that a job waits for something: each costs two context switches
                    and the work of making it ready
 
@@ -64,6 +67,7 @@ class Task:
     timed: bool = False
     sporadic: bool = False
     best: int = 0
+    held: int = 0
     suspensions: int = 1
     offset: int | None = None
 
@@ -71,7 +75,7 @@ class Task:
         """Refuse what is out of range, with a ValueError that names field and task."""
         owner = f"task {self.name}"
         positive(owner, period=self.period, deadline=self.deadline, suspensions=self.suspensions)
-        natural(owner, jitter=self.jitter, best=self.best, offset=self.offset or 0)
+        natural(owner, jitter=self.jitter, best=self.best, held=self.held, offset=self.offset or 0)
         if self.sporadic and self.offset is not None:
             raise ValueError(f"offset of {owner} has no meaning: it is sporadic")
         if self.rows:

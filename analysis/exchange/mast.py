@@ -28,6 +28,7 @@ from .shapes import (
     last_bit,
     names,
     no_errors,
+    no_given_blocking,
     remarks,
     spelled_out,
     trees,
@@ -48,6 +49,7 @@ def export(network: Network, chains: Sequence[TimedChain], title: str) -> str:
     """The model of ``network``; ``chains`` that sample are not part of what MAST analyses."""
     exact(network)
     no_errors(network, "MAST")
+    no_given_blocking(network, "MAST")
     head = ["Times in ns.", *remarks(network, chains), *last_bit(network, "MAST")]
     network = background(unqueued(network))
     if _linked_releases(network):

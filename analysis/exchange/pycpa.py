@@ -99,7 +99,11 @@ def _lines(network: Network) -> Iterator[str]:
     held = blockers(network.tasks, network.sections, network.ceilings)
     least = network.least()
     yield "system = model.System()"
-    lengths = {items[name]: section.length for name, section in held.items()}
+    lengths = {
+        items[task.name]: task.held + (held[task.name].length if task.name in held else 0)
+        for task in network.tasks
+        if task.held or task.name in held
+    }
     yield f"blocking = {lengths!r}"
     for core in cores:
         yield f'{places[core]} = system.bind_resource(model.Resource("{places[core]}", Blocked()))'

@@ -69,6 +69,13 @@ def no_errors(network: Network, tool: str) -> None:
             raise Unfit(f"{tool} has no errors on a bus: leave out those of bus {bus}")
 
 
+def no_given_blocking(network: Network, tool: str) -> None:
+    """Refuse a blocking that is given as a number."""
+    for task in network.tasks:
+        if task.held:
+            raise Unfit(f"{tool} computes blocking itself: give sections for task {task.name}")
+
+
 def unqueued(network: Network) -> Network:
     """The same without first-in first-out queues, with bounds that are no smaller.
 

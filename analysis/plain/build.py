@@ -176,6 +176,7 @@ def _task(row: RowValues, table: list[TableRow]) -> Task:
         bool(row.number("timed")),
         bool(row.number("sporadic")),
         row.number("best"),
+        row.number("blocking"),
         offset=row.numbers.get("offset"),
     )
 

@@ -75,6 +75,7 @@ KINDS: Kinds = {
         "cost": Column(Form.TIME_UP, least=1),
         "jitter": _LATE,
         "best": _BEST,
+        "blocking": _LATE,
         "offset": Column(Form.TIME_DOWN),
         "timed": _FLAG,
         "sporadic": _FLAG,

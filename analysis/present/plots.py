@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from ravenchart.analysis.core.chains import Latency
-from ravenchart.analysis.system.critical import Slice
+from ravenchart.analysis.system.critical import GIVEN, Slice
 
 from .words import families
 
@@ -172,7 +172,7 @@ def _labels(slices: Sequence[Slice], blocked: str) -> dict[tuple[str, str], str]
     family = {member: name for name, members in families(rivals).items() for member in members}
     return {
         (piece.name, piece.kind): f"{piece.name}, {blocked}"
-        if piece.kind == "blocking"
+        if piece.kind == "blocking" and piece.name != GIVEN
         else family.get(piece.name, piece.name)
         for piece in slices
     }

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.responses import Response
+from ravenchart.analysis.system.critical import GIVEN
 from ravenchart.analysis.system.timing import Analysis, Verdict
 from ravenchart.analysis.units import microseconds, percent
 
@@ -146,7 +147,9 @@ def _task_parts(response: Response) -> list[TextPart]:
     parts = [TextPart("own", "its own execution", f"{jobs} jobs" if jobs > 1 else "", response.own)]
     if response.blocking is not None:
         inside = f"{response.blocking.user} in {response.blocking.resource}"
-        parts.append(TextPart("blocking", inside, "", response.blocked))
+        parts.append(TextPart("blocking", inside, "", response.blocking.length))
+    if response.task.held:
+        parts.append(TextPart("blocking", GIVEN, "", response.task.held))
     by_name = {share.task.name: share for share in response.interference}
     for family, members in families(by_name).items():
         each = [by_name[member] for member in members]

@@ -16,6 +16,9 @@ from ravenchart.analysis.core.responses import Response, demand_of, release_time
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.core.window import releases
 
+GIVEN = "its given blocking"
+"""The name of what holds a task up besides the sections."""
+
 MOST_JOBS = 400
 """A schedule of more jobs than this says nothing to the eye."""
 
@@ -46,8 +49,11 @@ def schedule(response: Response) -> tuple[Slice, ...]:
     heapify(jobs)
     ready: list[tuple[int, int, int, str, str]] = []
     now = response.blocked
+    section = 0 if response.blocking is None else response.blocking.length
     if response.blocking is not None:
-        found.append(Slice(response.blocking.user, "blocking", 0, now))
+        found.append(Slice(response.blocking.user, "blocking", 0, section))
+    if now > section:
+        found.append(Slice(GIVEN, "blocking", section, now))
     while jobs or ready:
         if not ready:
             now = max(now, jobs[0][0])

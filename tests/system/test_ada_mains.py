@@ -40,7 +40,7 @@ MAINS = (
 )
 
 
-SLOW = {"test_store", "test_protection", "test_wire"}
+SLOW = {"test_calls", "test_cmac", "test_protection", "test_store", "test_wire"}
 OF_DRIVERS = (
     ("socketcan", "test_socket_frames"),
     ("ctucanfd", "test_ctu_frames"),

@@ -12,7 +12,7 @@ import pytest
 from ravenchart.paths import ROOT
 from tests.support.examples import PATIENCE, becomes, bus_of, running
 
-pytestmark = pytest.mark.alone
+pytestmark = [pytest.mark.alone, pytest.mark.slow]
 
 NODE = 5
 EDS = ROOT / "examples" / "canopen_device" / "device.eds"

@@ -131,6 +131,7 @@ def written(folder: Path) -> Path:
     return model
 
 
+@pytest.mark.slow
 def test_the_body_of_the_page_builds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RAVENCHART_WARNINGS", "errors")
     assert main(["build", str(written(tmp_path))]) == 0

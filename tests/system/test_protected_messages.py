@@ -276,6 +276,7 @@ def test_what_the_bench_sends_with_a_fault_is_never_used(
     assert (trace.faults["Protection_Error"] >= len(FACES)) == (wrong != "loss")
 
 
+@pytest.mark.slow
 def test_a_scenario_sends_a_fault_by_its_name(playing: Playing) -> None:
     given = "with: {level: 700, mode: Stop, ready: true}"
     good = f"  - {{send: fifth_in, {given}}}\n"

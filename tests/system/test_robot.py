@@ -41,6 +41,7 @@ def _run(robot: tuple[checking.Checked, Path], scenario: str, folder: Path) -> R
     return live.played(play)
 
 
+@pytest.mark.slow
 def test_it_homes_reaches_its_targets_and_fails_safe_on_a_limit_switch(
     robot: tuple[checking.Checked, Path], tmp_path: Path
 ) -> None:

@@ -186,6 +186,7 @@ def test_a_scenario_is_played_by_slcan_over_a_serial_line(robot: Robot, tmp_path
     assert played(play)[-1] == SEEN
 
 
+@pytest.mark.slow
 def test_a_terminal_completes_names_and_goes_on_after_a_mistake(
     on_bus: Path, tmp_path: Path
 ) -> None:

@@ -64,6 +64,7 @@ def _events_for(case: str) -> str:
     return yaml.safe_dump(entries, sort_keys=False)
 
 
+@pytest.mark.slow
 def test_the_generated_code_gives_every_reference_trace(tmp_path: Path) -> None:
     system = system_of(_all_references())
     program = _program(system, tmp_path)

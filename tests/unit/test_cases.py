@@ -169,6 +169,7 @@ def test_the_same_effort_finds_the_same_cases(system: System, found: SearchResul
     assert CaseSearch(system, 60_000).found() == found
 
 
+@pytest.mark.slow
 def test_what_cannot_be_is_left_open() -> None:
     """The second of two complementary guards is only looked at where it is true."""
     part = PART.replace(

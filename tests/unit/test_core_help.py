@@ -19,7 +19,7 @@ from ravenchart.analysis.core.assignment import (
     with_priorities,
     with_ranks,
 )
-from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.blocking import Section, blockers
 from ravenchart.analysis.core.bus import Bus, Frame
 from ravenchart.analysis.core.sensitivity import growth, scaled, scaling, tightest
 from ravenchart.analysis.core.tasks import TableRow, Task
@@ -44,6 +44,38 @@ def task_sets(draw: st.DrawFn) -> tuple[list[Task], list[Section]]:
     return tasks, sections
 
 
+@settings(max_examples=200, deadline=None)
+@given(task_sets())
+def test_a_blocking_that_is_given_counts_as_the_section_that_it_stands_for(
+    some: tuple[list[Task], list[Section]],
+) -> None:
+    ordered = [replace(task, priority=number) for number, task in enumerate(some[0])]
+    held = blockers(ordered, some[1])
+    given = [
+        replace(task, held=held[task.name].length) if task.name in held else task
+        for task in ordered
+    ]
+    wanted = fixed_priority.analyse(ordered, some[1])
+    found = fixed_priority.analyse(given)
+    assert [(r.bound, r.blocked) for r in found] == [(r.bound, r.blocked) for r in wanted]
+    assert fixed_priority.bounds(given) == fixed_priority.bounds(ordered, some[1])
+
+
+def test_a_blocking_that_is_given_is_suffered_besides_the_sections() -> None:
+    tasks = [Task("high", 2, 20, 20, 3, held=4), Task("low", 1, 20, 20, 5)]
+    high, low = fixed_priority.analyse(tasks, [Section("o", "low", 2), Section("o", "high", 1)])
+    assert (high.bound, high.blocked) == (3 + 4 + 2, 6)
+    assert (low.bound, low.blocked) == (8, 0)
+
+
+@pytest.mark.parametrize("count", [2, 40])
+def test_many_tasks_are_held_up_as_few_are(count: int) -> None:
+    tasks = [Task(f"t{n}", n, 1000 + n, 1000, 2, held=5 + n) for n in range(count)]
+    wanted = [2 * (count - n) + 5 + n for n in range(count)]
+    assert list(fixed_priority.bounds(tasks)) == wanted
+    assert [r.bound for r in fixed_priority.analyse(tasks)] == wanted
+
+
 @settings(max_examples=150, deadline=None)
 @given(task_sets())
 def test_audsley_finds_an_order_exactly_when_there_is_one(
@@ -59,6 +91,7 @@ def test_audsley_finds_an_order_exactly_when_there_is_one(
         assert met(with_priorities(tasks, found), sections)
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @given(task_sets(), st.integers(0, 3), st.sets(st.integers(0, 3)))
 def test_audsley_finds_identifiers_exactly_when_there_are_some(

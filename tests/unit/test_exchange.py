@@ -68,6 +68,11 @@ def on_bus(bus: Bus, *frames: Frame) -> Network:
             "cheddar pycpa",
             "overheads become tasks of their own, and two tasks or messages have the name _tick",
         ),
+        (
+            Network((replace(TASK, held=3),)),
+            "mast",
+            f"MAST computes blocking itself: give sections for task {TASK.name}",
+        ),
     ],
 )
 def test_what_a_format_cannot_say_is_refused(network: Network, tool: str, message: str) -> None:

@@ -44,6 +44,7 @@ def test_the_largest_wcet_is_kept_and_a_microsecond_more_is_not(tmp_path: Path) 
     assert not schedulable(PUMP.replace(wcet, wcet.replace("30 us", f"{found + STEP} ns")), path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ROWS)
 def test_rows_of_one_component_grow_together(name: str, tmp_path: Path) -> None:
     robot = ROOT / "examples" / "cartesian_robot" / "model.yaml"

@@ -268,6 +268,7 @@ def test_advice_and_growth_come_after_the_state(bench: Running) -> None:
     assert bench.act(kind="undo").status == 200
 
 
+@pytest.mark.slow
 def test_a_search_shows_its_best_and_its_tables_become_a_change(bench: Running) -> None:
     page = bench.stream()
     assert bench.act(kind="adopt").status == bench.act(kind="stop").status == 422
