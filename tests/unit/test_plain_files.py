@@ -43,19 +43,6 @@ def task_file(**columns: str) -> str:
     return f"{','.join(given)}\n{','.join(given.values())}\n"
 
 
-def test_a_blocking_of_the_literature_is_taken_as_it_stands() -> None:
-    text = (
-        "task,priority,period_us,cost_us,blocking_ns\n"
-        "a,2,10,2,1500.5\n"
-        "b,1,20,4,\n"
-    )  # fmt: skip
-    found = system(text)
-    assert [task.held for task in found.network.tasks] == [1501, 0]
-    answer = everything(analyse(found))["tasks"]
-    assert [(one["blocked"], one["response"]) for one in answer] == [(1501, 3501), (0, 6000)]
-    assert (answer[0]["blocker"], answer[0]["object"]) == (None, None)
-
-
 # --- What is read -------------------------------------------------------------------------
 
 
@@ -286,6 +273,18 @@ def test_wrong_json_is_refused_by_line(text: str, message: str) -> None:
 
 def verdict(text: str, file: str = "a.csv") -> Any:
     return json.loads(json.dumps(everything(analyse(system(text, file)))))
+
+
+def test_a_blocking_of_the_literature_is_taken_as_it_stands() -> None:
+    text = (
+        "task,priority,period_us,cost_us,blocking_ns\n"
+        "a,2,10,2,1500.5\n"
+        "b,1,20,4,\n"
+    )  # fmt: skip
+    assert [task.held for task in system(text).network.tasks] == [1501, 0]
+    answer = verdict(text)["tasks"]
+    assert [(one["blocked"], one["response"]) for one in answer] == [(1501, 3501), (0, 6000)]
+    assert (answer[0]["blocker"], answer[0]["object"]) == (None, None)
 
 
 def test_overload_and_misses_have_a_verdict_and_a_reason() -> None:
