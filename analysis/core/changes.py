@@ -146,7 +146,7 @@ def stretched(network: Network, root: str, factor: Fraction) -> Network:
     return replace(
         network,
         tasks=tuple(
-            replace(task, period=changed(task), offset=None if task.name == root else task.offset)
+            replace(task.at_any_time() if task.name == root else task, period=changed(task))
             for task in network.tasks
         ),
         frames={

@@ -43,8 +43,8 @@ class Network:
     task or frame that is released by the completion of another, by which; its own
     jitter then comes on top. Its period is that of what releases it, or a multiple where
     not every job does. Names are distinct over tasks and frames. ``platforms`` goes by
-    the name of a core, ``ceilings`` by resource, as in `fixed_priority.analyse`. Only what
-    an event releases has an offset, and those of one core count from a common epoch.
+    the name of a core, ``ceilings`` by resource, as in `fixed_priority.analyse`. Nothing
+    that another releases has an offset.
     """
 
     tasks: tuple[Task, ...]
@@ -174,7 +174,7 @@ def analyses(network: Network) -> Iterator[Holistic]:
 
     For searches, which are done with the first if it meets what they look for.
     """
-    blind = tuple(replace(task, offset=None) for task in network.tasks)
+    blind = tuple(task.at_any_time() for task in network.tasks)
     known = blind != network.tasks
     found = analyse(replace(network, tasks=blind) if known else network)
     yield found

@@ -1,4 +1,4 @@
-"""Responses of tasks that one clock releases, each at its own offset from a common epoch.
+"""Responses of tasks that one clock releases, each at its own offset from an epoch.
 
 Release k of a task with the offset O is due at O + k T, so which releases meet is known.
 A busy period in which a job suffers most begins where a job of its level, as late as its
@@ -11,10 +11,12 @@ are tried. From the instant t on, for job q of the busy period, which arrives at
     R    = max over t and q of  t + w(q) - a(q)
 
 Tindell, Adding time-offsets to schedulability analysis (YCS 221, 1994); Palencia and
-Gonzalez Harbour, RTSS 1998, whose exact form this is: the tasks of a core are one
-transaction. Jobs of a table count with the rows of their own release. Where no sections,
-equal priorities or tables of unknown phase are, the bound is attained. It is never above
-that for all offsets, to which it falls back where the work allowed does not suffice.
+Gonzalez Harbour, RTSS 1998, whose exact form this is where the tasks of a core are one
+transaction. Of several epochs (transactions) the one counts that makes a response shortest;
+tasks of the others may be released at any time between. Jobs of a table count with the rows
+of their own release. Where no sections, equal priorities, tables of unknown phase or further
+epochs are, the bound is attained. It is never above that for all offsets, to which it falls
+back where the work allowed does not suffice.
 """
 
 from __future__ import annotations
@@ -76,13 +78,13 @@ def _released(task: Task, platform: Platform) -> Stream:
     return replace(stream_of(task, platform), demand=Demand((release_time(task, platform),)))
 
 
-def aligned(response: Response) -> tuple[Task, ...]:
-    """The tasks of its level whose offsets are used: at least two, or none.
+def aligned(response: Response, epoch: str = "") -> tuple[Task, ...]:
+    """The tasks of its level whose offsets from an epoch are used: at least two, or none.
 
     Short cycles come first, so that it depends on the set of tasks alone: which are
     more urgent must not matter to those that look for an order.
     """
-    known = [t for t in response.level.order[: response.level.reach] if t.offset is not None]
+    known = _of(epoch, response.level.order[: response.level.reach])
     known.sort(key=lambda task: (task.period * task.frame_count, task.period, task.name))
     found: list[Task] = []
     cycle, count = 1, 0
@@ -102,15 +104,29 @@ def closer(
 
     One stays as it is where offsets make it no shorter, and where the effort does not do.
     """
-    known = [task for task in order if task.offset is not None]
-    together = _together(known, platform)
+    known = {t.epoch: _of(t.epoch, order) for t in order if t.offset is not None}
+    apart = {epoch for epoch, some in known.items() if len(some) > 1}
+    together = {epoch for epoch in apart if _together(known[epoch], platform)}
     for plain in found:
-        met = together and (plain.jobs == 1 or plain.task.offset is None)
-        if len(known) < 2 or met or plain.bound is None or effort.left <= 0:
-            yield plain
-        else:
-            tasks = aligned(plain)
-            yield OffsetSearch(plain, tasks, effort).found() if tasks else plain
+        task, best = plain.task, plain
+        for epoch in sorted(apart):
+            inside = task.offset is not None and task.epoch == epoch
+            met = epoch in together and (plain.jobs == 1 or not inside)
+            if met or plain.bound is None or effort.left <= 0:
+                continue
+            tasks = aligned(plain, epoch)
+            tried = OffsetSearch(plain, tasks, effort).found() if tasks else plain
+            best = min(best, tried, key=_bound)
+        yield best
+
+
+def _of(epoch: str, tasks: Iterable[Task]) -> list[Task]:
+    """The tasks with offsets from an epoch."""
+    return [task for task in tasks if task.offset is not None and task.epoch == epoch]
+
+
+def _bound(response: Response) -> float:
+    return math.inf if response.bound is None else response.bound
 
 
 def _together(tasks: Sequence[Task], platform: Platform) -> bool:

@@ -52,8 +52,8 @@ class Task:
     ``suspensions`` times that a job waits for something: each costs two context switches
                    and the work of making it ready
 
-    ``offset``     arrival of job 0, of frame 0, after an epoch that all tasks of the core
-                   have in common; None where nobody knows
+    ``offset``     arrival of job 0, of frame 0, after an epoch; None where nobody knows
+    ``epoch``      which one: nothing is known of the distance of two epochs of a core
     """
 
     name: str
@@ -70,6 +70,7 @@ class Task:
     held: int = 0
     suspensions: int = 1
     offset: int | None = None
+    epoch: str = ""
 
     def __post_init__(self) -> None:
         """Refuse what is out of range, with a ValueError that names field and task."""
@@ -78,6 +79,8 @@ class Task:
         natural(owner, jitter=self.jitter, best=self.best, held=self.held, offset=self.offset or 0)
         if self.sporadic and self.offset is not None:
             raise ValueError(f"offset of {owner} has no meaning: it is sporadic")
+        if self.epoch and self.offset is None:
+            raise ValueError(f"epoch of {owner} has no meaning: it has no offset")
         if self.rows:
             natural(owner, cost=self.cost)
             distinct(f"rows of {owner}", [row.name for row in self.rows])
@@ -106,6 +109,10 @@ class Task:
             tuple(row for row in self.rows if k % row.every == row.phase) for k in range(count)
         )
 
+    def at_any_time(self) -> Task:
+        """The same task where nobody knows its offset."""
+        return replace(self, offset=None, epoch="")
+
     @property
     def utilisation(self) -> Fraction:
         """Share of its core that the task needs in the long run, overheads apart."""
@@ -117,4 +124,4 @@ class Task:
 
 def plain(task: Task) -> Task:
     """The same task with every row in every job, at any time: as one reckons by hand."""
-    return replace(task, cost=task.plain_cost, rows=(), offset=None)
+    return replace(task.at_any_time(), cost=task.plain_cost, rows=())

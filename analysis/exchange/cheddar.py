@@ -20,7 +20,18 @@ from ravenchart.analysis.core.chains import TimedChain
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.tasks import Task
 
-from .shapes import Unfit, dense, names, no_errors, remarks, seldom, spelled_out, unqueued, urgency
+from .shapes import (
+    Unfit,
+    dense,
+    names,
+    no_errors,
+    of_one_epoch,
+    remarks,
+    seldom,
+    spelled_out,
+    unqueued,
+    urgency,
+)
 
 LARGEST = 2**31 - 1
 """Cheddar's largest integer."""
@@ -56,7 +67,7 @@ def export(network: Network, chains: Sequence[TimedChain], title: str) -> str:
     del title
     no_errors(network, "Cheddar")
     given = network
-    network = spelled_out(unqueued(network))
+    network = spelled_out(unqueued(of_one_epoch(network)))
     items = tuple(_items(network))
     places = dict.fromkeys(item.place for item in items)
     unit = _unit(items)

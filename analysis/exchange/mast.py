@@ -29,6 +29,7 @@ from .shapes import (
     names,
     no_errors,
     no_given_blocking,
+    of_one_epoch,
     remarks,
     spelled_out,
     trees,
@@ -51,7 +52,7 @@ def export(network: Network, chains: Sequence[TimedChain], title: str) -> str:
     no_errors(network, "MAST")
     no_given_blocking(network, "MAST")
     head = ["Times in ns.", *remarks(network, chains), *last_bit(network, "MAST")]
-    network = background(unqueued(network))
+    network = background(unqueued(of_one_epoch(network)))
     if _linked_releases(network):
         network = spelled_out(network)
     writer = _Writer(network)

@@ -76,6 +76,22 @@ def no_given_blocking(network: Network, tool: str) -> None:
             raise Unfit(f"{tool} computes blocking itself: give sections for task {task.name}")
 
 
+def of_one_epoch(network: Network) -> Network:
+    """The same without the offsets of cores that have several epochs: no bound is smaller."""
+    several = _of_several_epochs(network)
+    tasks = (t.at_any_time() if t.core in several else t for t in network.tasks)
+    return replace(network, tasks=tuple(tasks))
+
+
+def _of_several_epochs(network: Network) -> set[str]:
+    """The cores with offsets from more than one epoch."""
+    found: dict[str, set[str]] = {}
+    for task in network.tasks:
+        if task.offset is not None:
+            found.setdefault(task.core, set()).add(task.epoch)
+    return {core for core, epochs in found.items() if len(epochs) > 1}
+
+
 def unqueued(network: Network) -> Network:
     """The same without first-in first-out queues, with bounds that are no smaller.
 
@@ -159,8 +175,10 @@ def remarks(network: Network, chains: Iterable[TimedChain]) -> Iterator[str]:
     for task in network.tasks:
         if task.frame_count > 1:
             yield f"Of table {task.name} every row counts in every job."
-    if any(task.offset for task in network.tasks):
+    if any(task.offset for task in of_one_epoch(network).tasks):
         yield "Offsets: bounds that make no use of them hold for any."
+    for core in sorted(_of_several_epochs(network)):
+        yield f"Left out: offsets on {core or 'the core'}, which count from several epochs."
     for name in in_queues(network):
         yield f"{name} shares a first-in first-out queue: its turn there is jitter."
     for chain in chains:

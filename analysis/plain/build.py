@@ -178,6 +178,7 @@ def _task(row: RowValues, table: list[TableRow]) -> Task:
         row.number("best"),
         row.number("blocking"),
         offset=row.numbers.get("offset"),
+        epoch=row.word("epoch"),
     )
 
 

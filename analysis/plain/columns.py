@@ -77,6 +77,7 @@ KINDS: Kinds = {
         "best": _BEST,
         "blocking": _LATE,
         "offset": Column(Form.TIME_DOWN),
+        "epoch": _TEXT,
         "timed": _FLAG,
         "sporadic": _FLAG,
         "released_by": _TEXT,

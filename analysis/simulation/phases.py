@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.bus import Frame
@@ -65,6 +65,13 @@ def chance_scenario(network: Network, chance: random.Random, until: int) -> Phas
         name: _chance_phase(item, network.sections, chance)
         for name, item in network.items().items()
     }
+    longest = max((task.period for task in network.tasks), default=0)
+    epochs = {(task.core, task.epoch): 0 for task in network.tasks if task.epoch}
+    epochs = {epoch: chance.randrange(2 * longest) for epoch in epochs}
+    for task in network.tasks:
+        if task.epoch:
+            phase = phases[task.name]
+            phases[task.name] = replace(phase, first=phase.first + epochs[task.core, task.epoch])
     return PhaseScenario(
         phases, {name: _chance_faults(network, name, chance, until) for name in network.buses}
     )

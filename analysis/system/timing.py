@@ -74,7 +74,7 @@ class Analysis:
         """The same where offsets are unknown: itself where none made a response shorter."""
         if not any(response.alignment for response in self.responses):
             return self
-        tasks = tuple(replace(task, offset=None) for task in self.network.tasks)
+        tasks = tuple(task.at_any_time() for task in self.network.tasks)
         network = replace(self.network, tasks=tasks)
         return replace(self, network=network, found=holistic.analyse(network))
 

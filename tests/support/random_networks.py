@@ -32,6 +32,15 @@ def random_network(chance: random.Random, *, plain: bool = False) -> Network:
     return Network(tuple(tasks), homes, {"can": bus} if frames else {}, released, tuple(sections))
 
 
+def with_epochs(network: Network, chance: random.Random) -> Network:
+    """The same with each offset from one of three epochs of its core."""
+    tasks = (
+        task if task.offset is None else replace(task, epoch=chance.choice(("", "x", "y")))
+        for task in network.tasks
+    )
+    return replace(network, tasks=tuple(tasks))
+
+
 def with_offsets(network: Network, chance: random.Random) -> Network:
     """The network with offsets of most tasks that can have one, some beyond their period."""
     tasks = tuple(

@@ -7,6 +7,8 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 from ravenchart.analysis.core import fixed_priority, holistic, offsets
 from ravenchart.analysis.core.assignment import audsley_tasks, with_priorities
@@ -38,6 +40,46 @@ def test_tasks_that_never_meet_do_not_delay_each_other() -> None:
     assert (response.alignment.start, response.lead) == (5, 0)
     assert response.alignment.tasks == {"a", "b"}
     assert response.interference == ()
+
+
+def test_nothing_is_known_of_the_distance_of_two_epochs() -> None:
+    a, b = task("a", 3, 4, 10, 0), task("b", 2, 3, 10, 5)
+    assert found(replace(a, epoch="x"), replace(b, epoch="x"))["b"].bound == 3
+    assert found(a, replace(b, epoch="x"))["b"].bound == 4 + 3
+    c = Task("c", 1, 20, 20, 1, offset=0, epoch="x")
+    assert found(a, b, c)["c"].bound == 4 + 1  # a and b never meet, whenever c comes
+    assert found(a, replace(b, epoch="y"), c)["c"].bound == 4 + 3 + 1
+    with pytest.raises(ValueError, match="epoch of task a has no meaning: it has no offset"):
+        replace(a, offset=None, epoch="x")
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from((4, 6, 8, 12)), st.integers(1, 3), st.integers(0, 11), st.booleans()
+        ),
+        min_size=2, max_size=5,
+    )
+)  # fmt: skip
+def test_no_distance_of_two_epochs_makes_a_longer_response(
+    some: list[tuple[int, int, int, bool]],
+) -> None:
+    tasks = [
+        Task(f"t{n}", n, period, 30, cost, offset=offset, epoch="x" if apart else "")
+        for n, (period, cost, offset, apart) in enumerate(some)
+    ]
+    bounds = fixed_priority.bounds([one.at_any_time() for one in tasks])
+    assume(None not in bounds)
+    responses = analyse(tasks)
+    for shift in range(24):
+        known = [
+            replace(one, epoch="", offset=(one.offset or 0) + (shift if one.epoch else 0))
+            for one in tasks
+        ]
+        for exact, several, free in zip(analyse(known), responses, bounds, strict=True):
+            assert exact.bound is not None and several.bound is not None and free is not None
+            assert exact.bound <= several.bound <= free
 
 
 def test_a_busy_period_may_begin_before_the_worst_job_arrives() -> None:

@@ -81,6 +81,16 @@ def test_what_a_format_cannot_say_is_refused(network: Network, tool: str, messag
             FORMATS[name](network, (), "x")
 
 
+def test_offsets_from_several_epochs_are_left_out_and_named() -> None:
+    tasks = replace(TASK, offset=3), replace(TASK, name="b", offset=4, epoch="x")
+    for name in ("mast", "cheddar"):
+        text = FORMATS[name](Network(tasks), (), "x")
+        assert "Left out: offsets on the core, which count from several epochs." in text
+        free = FORMATS[name](Network(tuple(task.at_any_time() for task in tasks)), (), "x")
+        assert [n for n in text.splitlines() if "several epochs" not in n] == free.splitlines()
+    assert "Phase" in FORMATS["mast"](Network(tasks[:1]), (), "x")
+
+
 # --- Cheddar ----------------------------------------------------------------------------
 
 
