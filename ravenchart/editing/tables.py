@@ -7,8 +7,9 @@ table without one becomes a processor of its own, and a processor that has lost 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from ravenchart.allocation.proposals import WantedTable, free_name, stack_text
@@ -44,6 +45,11 @@ class _Files:
     def processor(self, name: str) -> NamedEntry:
         return self.places.processors[name.lower()]
 
+    def change(self, name: str, make: Callable[[Document, NamedEntry], Document]) -> None:
+        """Put what is made of the document of a processor in its place."""
+        entry = self.processor(name)
+        self.documents[entry.file] = make(self.document(entry), entry)
+
     def texts(self, before: Texts) -> Texts:
         return {
             name: old if (made := self.documents[name]) is None else content(made, old)
@@ -58,10 +64,9 @@ def moved(places: ModelPlaces, row: str, to: str, place: int) -> dict[str, Docum
     """
     files = _Files(dict(places.documents))
     item = _taken(files, row, stays=edits.is_flow(files.processor(to).mapping, "activities"))
-    target = files.processor(to)
-    place = min(place, len(files.places.table(target)))
-    files.documents[target.file] = edits.with_item(
-        files.document(target), target.mapping, "activities", place, item
+    place = min(place, len(files.places.table(files.processor(to))))
+    files.change(
+        to, lambda now, entry: edits.with_item(now, entry.mapping, "activities", place, item)
     )
     return {
         name: made
@@ -93,10 +98,7 @@ def rearranged(path: Path, state: Evaluation, tables: Sequence[WantedTable]) -> 
                 files.documents |= moved(files.places, row, name, place)
     _without_empty(files, names)
     for entry in list(files.places.processors.values()):
-        now = files.processor(entry.name)
-        files.documents[now.file] = edits.without_entry(
-            files.document(now), now.mapping, "priority"
-        )
+        files.change(entry.name, lambda now, one: edits.without_entry(now, one.mapping, "priority"))
     _set_values(files, _understood(path, files, state), tables, names)
     _set_reactions(files, tables, names)
     _set_priorities(files, _understood(path, files, state), tables, names)
@@ -157,11 +159,13 @@ def _without_empty(files: _Files, kept: Sequence[str]) -> None:
     for entry in list(files.places.processors.values()):
         if entry.name in kept or files.places.table(entry):
             continue
-        now = files.processor(entry.name)
-        document = files.document(now)
-        around = document.root.mapping("processors")
-        assert around is not None, "a processor stands there"
-        files.documents[now.file] = edits.without_block(document, around, entry.name)
+        files.change(entry.name, _without)
+
+
+def _without(document: Document, entry: NamedEntry) -> Document:
+    around = document.root.mapping("processors")
+    assert around is not None, "a processor stands there"
+    return edits.without_block(document, around, entry.name)
 
 
 def _understood(path: Path, files: _Files, before: Evaluation) -> System:
@@ -179,17 +183,11 @@ def _set_values(
     for table, name in zip(tables, names, strict=True):
         now = _copy(system.processors, name)
         for key in TIMES:
-            entry, wanted = files.processor(name), getattr(table, key)
+            wanted = getattr(table, key)
             if getattr(now, key) != wanted:
-                files.documents[entry.file] = _with_time(
-                    files.document(entry), entry, key, duration(wanted)
-                )
-        entry = files.processor(name)
-        stack = entry.mapping.scalar("stack")
-        if now.stack_bytes < table.stack_bytes and stack is not None:
-            files.documents[entry.file] = edits.with_value(
-                files.document(entry), stack, stack_text(table.stack_bytes)
-            )
+                files.change(name, partial(_with_time, key=key, value=duration(wanted)))
+        if now.stack_bytes < table.stack_bytes:
+            files.change(name, partial(_with_stack, value=stack_text(table.stack_bytes)))
 
 
 def _set_reactions(files: _Files, tables: Sequence[WantedTable], names: Sequence[str]) -> None:
@@ -199,8 +197,7 @@ def _set_reactions(files: _Files, tables: Sequence[WantedTable], names: Sequence
             found = files.processor(name).mapping.get(key)
             known = {str(one).lower() for one in plain(found)} if found is not None else set()
             for event in (one for one in events if one.lower() not in known):
-                entry = files.processor(name)
-                files.documents[entry.file] = _with_event(files.document(entry), entry, key, event)
+                files.change(name, partial(_with_event, key=key, event=event))
 
 
 def _with_event(document: Document, entry: NamedEntry, key: str, event: str) -> Document:
@@ -221,10 +218,7 @@ def _set_priorities(
     if all(_copy(system.processors, n).priority == level for n, level in wanted.items()):
         return
     for name, level in wanted.items():
-        entry = files.processor(name)
-        files.documents[entry.file] = edits.with_entry(
-            files.document(entry), entry.mapping, _behind(entry), "priority", str(level)
-        )
+        files.change(name, partial(_with_key, key="priority", value=str(level)))
 
 
 def _copy(processors: Sequence[Processor], name: str) -> Processor:
@@ -236,6 +230,15 @@ def _with_time(document: Document, entry: NamedEntry, key: str, value: str) -> D
     now = entry.mapping.scalar(key)
     if now is not None:
         return edits.with_value(document, now, value)
+    return _with_key(document, entry, key, value)
+
+
+def _with_stack(document: Document, entry: NamedEntry, value: str) -> Document:
+    now = entry.mapping.scalar("stack")
+    return document if now is None else edits.with_value(document, now, value)
+
+
+def _with_key(document: Document, entry: NamedEntry, key: str, value: str) -> Document:
     return edits.with_entry(document, entry.mapping, _behind(entry), key, value)
 
 
