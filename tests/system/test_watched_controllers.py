@@ -102,6 +102,17 @@ def first_line(one: Marked) -> str:
     return line
 
 
+def rest_of(one: Marked) -> tuple[str, str]:
+    """What a monitor prints until it ends, to its output and its errors.
+
+    `communicate` would not have what the stream has read beyond the first line.
+    """
+    assert one.process.stdout is not None and one.process.stderr is not None
+    rest, errors = one.process.stdout.read(), one.process.stderr.read()
+    one.process.wait(LIMIT)
+    return rest, errors
+
+
 @pytest.mark.slow
 @pytest.mark.live
 def test_two_monitors_show_the_counts_of_the_report(watched: Watched) -> None:
@@ -111,7 +122,7 @@ def test_two_monitors_show_the_counts_of_the_report(watched: Watched) -> None:
     ):
         begun = [first_line(one) for one in (first, second)]
         ended = watched.process.stop(0.0)
-        texts = [one.process.communicate(timeout=LIMIT) for one in (first, second)]
+        texts = [rest_of(one) for one in (first, second)]
         assert [one.process.returncode for one in (first, second)] == [0, 0], texts
     assert ended.exit_code == 0, ended.warnings
     report = watched.report()
@@ -154,7 +165,7 @@ def test_a_controller_that_is_killed_ends_its_monitor(watched: Watched) -> None:
     with monitoring("--json", "--file", watched.file) as one:
         process = objects(first_line(one))[0]["process"]
         os.kill(process, signal.SIGKILL)
-        rest, errors = one.process.communicate(timeout=LIMIT)
+        rest, errors = rest_of(one)
         assert one.process.returncode == 1
     last = objects(rest)[-1]
     assert last["process"] is None and not last["ended"]
@@ -168,7 +179,7 @@ def test_a_monitor_that_is_interrupted_leaves_the_controller_alone(watched: Watc
         assert first_line(one)
         before = watched.sequence()
         one.process.send_signal(signal.SIGINT)
-        _, errors = one.process.communicate(timeout=LIMIT)
+        _, errors = rest_of(one)
         assert one.process.returncode == 130
         assert "Traceback" not in errors
     assert becomes(lambda: watched.sequence() > before + 3)
