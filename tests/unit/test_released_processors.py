@@ -197,6 +197,19 @@ def test_an_editor_proposes_instances_and_their_ports(behind: str, proposed: str
     assert proposed in [one.word for one in found]
 
 
+def test_a_name_that_is_neither_bus_nor_instance_is_told_so() -> None:
+    text = TEXT.replace("released_by: drive.level", "released_by: measuring")
+    (told,) = load(Path("model.yaml"), lambda path, limit: text.encode()).diagnostics
+    assert (told.code, told.message) == ("RV-0305", "there is no bus or instance named `measuring`")
+    assert told.hint == "name a bus, or a queued input port as `instance.port`"
+
+
+def test_the_table_of_a_port_that_is_sampled_is_not_judged() -> None:
+    text = TEXT.replace("released_by: drive.level", "released_by: panel.position")
+    told = load(Path("model.yaml"), lambda path, limit: text.encode()).diagnostics
+    assert [one.code for one in told] == ["RV-0715", "RV-0715"]  # sampled, and beside a region
+
+
 # --- Virtual time
 
 
