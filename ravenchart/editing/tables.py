@@ -153,7 +153,7 @@ def _taken(files: _Files, row: str, *, stays: bool) -> TakenItem:
 
 
 def _without_empty(files: _Files, kept: Sequence[str]) -> None:
-    """Processors that have lost all rows go."""
+    """Processors that have lost all rows go, and a section of a file with the last of them."""
     for entry in list(files.places.processors.values()):
         if entry.name in kept or files.places.table(entry):
             continue
@@ -161,7 +161,9 @@ def _without_empty(files: _Files, kept: Sequence[str]) -> None:
         document = files.document(now)
         around = document.root.mapping("processors")
         assert around is not None, "a processor stands there"
-        files.documents[now.file] = edits.without_block(document, around, entry.name)
+        last = len(around.entries) == 1
+        parent, key = (document.root, "processors") if last else (around, entry.name)
+        files.documents[now.file] = edits.without_block(document, parent, key)
 
 
 def _understood(path: Path, files: _Files, before: Evaluation) -> System:
