@@ -7,7 +7,7 @@ given a second meaning, and one that falls out of use is not given again.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from .origins import Origin
@@ -324,12 +324,34 @@ MOST = 100
 """Diagnostics that are printed of one file; the rest is counted."""
 
 
+UNDECLARED = ("RV-0305", "RV-0403", "RV-0411")
+"""Of a name that is not declared: each use has one, and they are printed once."""
+
+LISTED = 4
+"""Further uses of such a name whose locations are printed."""
+
+
 def render_all(diagnostics: Sequence[Diagnostic], sources: Sources) -> str:
     """Each as `render` has it, one below the other; of very many the first."""
-    lines = [render(one, sources) for one in diagnostics[:MOST]]
-    if len(diagnostics) > MOST:
-        lines.append(f"{len(diagnostics) - MOST:,} more errors or warnings are not shown")
+    alike: dict[object, list[Diagnostic]] = {}
+    for number, one in enumerate(diagnostics):
+        same = one.code in UNDECLARED
+        alike.setdefault((one.code, one.message, one.hint) if same else number, []).append(one)
+    found = list(alike.values())
+    lines = [render(_with_places(*same), sources) for same in found[:MOST]]
+    if len(found) > MOST:
+        left = sum(len(same) for same in found[MOST:])
+        lines.append(f"{left:,} more errors or warnings are not shown")
     return "\n".join(lines)
+
+
+def _with_places(first: Diagnostic, *others: Diagnostic) -> Diagnostic:
+    """The first with a note of where else the same is wrong."""
+    if not others:
+        return first
+    places = ", ".join(str(one.origin) for one in others[:LISTED])
+    more = f" and {len(others) - LISTED} more" if len(others) > LISTED else ""
+    return replace(first, notes=(*first.notes, (first.origin, f"also at {places}{more}")))
 
 
 def _excerpt(origin: Origin, sources: Sources) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ when it is called, so that `--help` does not wait for libraries that it has no u
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -127,6 +128,12 @@ class _Parser(argparse.ArgumentParser):
     """Says as a `_WrongCall` what is wrong with a call."""
 
     def error(self, message: str) -> NoReturn:
+        if found := re.match("argument COMMAND: invalid choice: '(.*?)'", message):
+            import difflib  # only here: every call would wait for it
+
+            near = difflib.get_close_matches(found[1], COMMANDS, 1)
+            hint = f"did you mean `{near[0]}`?" if near else f"`{self.prog} --help` lists them"
+            message = f"there is no command `{found[1]}`: {hint}"
         self.print_usage(sys.stderr)
         print(f"{self.prog}: error: {message}", file=sys.stderr)
         raise _WrongCall(message)

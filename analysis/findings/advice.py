@@ -146,6 +146,8 @@ def _relief(
     """What meeting all deadlines takes without each part, where that is less than with it."""
     nearly_none = Fraction(1, changes.STEPS)
     present = network_scaling(network, tasks, changes.STEPS)
+    if present is not None and present.factor >= 1:
+        return []  # deadlines are met: a limit of a chain or a queue is not
     found = []
     for name, members in costs.items():
         without = changes.shrunk(network, members, nearly_none)

@@ -14,7 +14,7 @@ from ravenchart.analysis.units import duration, microseconds, percent
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus
-from ravenchart.gen.model.system import Chain
+from ravenchart.gen.model.system import Carried, Chain
 from ravenchart.gen.origins import Origin
 
 MISSED = "RV-0901"
@@ -273,14 +273,17 @@ def _late_chain(
             (chain.origin, f"{name} takes up to {microseconds(time)} us of it")
             for name, time in hops[:LARGEST]
         ],
-        hint=_chain_hint(found, what, value),
+        hint=_chain_hint(chain, found, what, value),
     )
 
 
-def _chain_hint(found: Latency, what: str, value: int | None) -> str:
+def _chain_hint(chain: Chain, found: Latency, what: str, value: int | None) -> str:
     if value is not None:
         return "let its rows run more often, or in one processor in the order of the chain"
-    if what == "age" and any(_ages(hop) for hop in found.hops):
+    carried = any(isinstance(place, Carried) for place in chain.way)
+    if what == "age" and not carried and found.reaction is not None:
+        return "limit the reaction instead"
+    if what == "age" and carried and any(_ages(hop) for hop in found.hops):
         return (
             "limit the reaction instead; or, if the sender of the message queues one every period "
             "exactly, give it `sporadic: no`"
@@ -297,14 +300,18 @@ def _ages(hop: HopLatency) -> bool:
 def _unbounded(found: Latency, what: str) -> Iterator[str]:
     """Which hops have no bound, and why."""
     begun = found.hops[0].step.name
+    seldom = False
     for before, hop in zip((None, *found.hops), found.hops, strict=False):
         step = hop.step
         begun = begun if step.hop is HopKind.RELEASED else step.name
         if hop.response is None:
             yield f"{step.name} has no bound of its response"
         elif what == "age" and step.keeps:
+            seldom = True
             yield step.keeps
         elif what == "age" and _ages(hop):
+            if seldom:
+                continue  # it follows from that
             yield f"{begun} is sporadic: its next value may come at any later time"
         elif step.waits and (what == "reaction" or step.hop is HopKind.WOKEN):
             yield step.waits

@@ -3,13 +3,14 @@
 A journey begins when the first row of a chain runs, or a message from outside arrives,
 and goes on with what comes next in the trace at each place of the chain's way. The
 reaction that a journey shows is that to an input which the run before its first row
-has just missed. Frames are told apart by their order only: where several of a message
-are under way, a journey may look shorter than it was, never longer.
+has just missed. A row that sends only from some of its jobs reacts in these: a journey
+ends where a job sends nothing. Frames are told apart by their order only: where several
+of a message are under way, a journey may look shorter than it was, never longer.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
@@ -43,6 +44,10 @@ class Journey:
         return self.exceeded and self.observed <= self.bound + self.places * withheld
 
 
+Stage = tuple[Sequence[int], Sequence[int]]
+"""When something happened at a place, and the starts of the row whose job it was then."""
+
+
 def journeys(analysis: Analysis, seen: Observation) -> tuple[Journey, ...]:
     """The chains whose reaction has a bound and a limit, and was seen."""
     found = []
@@ -59,7 +64,7 @@ def journeys(analysis: Analysis, seen: Observation) -> tuple[Journey, ...]:
 
 def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
     """From each start of the first row to the end of the journey that the next one begins."""
-    starts, *others = _stages(chain, system, seen)
+    (starts, _), *others = _stages(chain, system, seen)
     first = [start for start in starts if start >= seen.ready]
     last = seen.executions.get(str(chain.way[-1]), 0)
     origins = first if isinstance(chain.way[0], Carried) else (None, *first)
@@ -71,28 +76,37 @@ def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
     return found
 
 
-def _end(start: int, stages: Sequence[Sequence[int]]) -> int | None:
+def _end(start: int, stages: Sequence[Stage]) -> int | None:
     """When what began then has come through all stages; None when it has not."""
     now = start
-    for stage in stages:
-        place = bisect_left(stage, now)
-        if place == len(stage):
+    for times, jobs in stages:
+        place, following = bisect_left(times, now), bisect_right(jobs, now)
+        if place == len(times):
             return None
-        now = stage[place]
+        if following < len(jobs) and times[place] >= jobs[following]:
+            return None  # this job sent nothing
+        now = times[place]
     return now
 
 
-def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Sequence[int]]:
+def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
     """When something happened at each place of a chain's way that the trace tells of."""
-    sources = {message.name: message.source for message in system.messages}
+    messages = {message.name: message for message in system.messages}
     inputs = {f"{i.name}.{port.name}" for i in system.instances for port in i.component.inputs()}
     rows = {slot.element for slot in system.slots}
+    jobs: Sequence[int] = ()  # of the row before
     for place in chain.way:
         if isinstance(place, Carried):
-            kind = "arrived" if sources[place.message] is None else "sent"
-            yield [r.time for r in seen.of(kind, place.message)]
+            message = messages[place.message]
+            at_once = message.source is not None and message.transmission is None
+            kind = "arrived" if message.source is None else "sent"
+            yield [r.time for r in seen.of(kind, place.message)], jobs if at_once else ()
+            jobs = ()
         elif place in inputs:
-            yield [r.time for r in seen.of("arrived", place)]
-            yield [r.time for r in seen.of("activity", f"{place.rpartition('.')[0]}.ports")]
+            yield [r.time for r in seen.of("arrived", place)], jobs
+            jobs = ()
+            yield [r.time for r in seen.of("activity", f"{place.rpartition('.')[0]}.ports")], jobs
         elif place in rows:
-            yield [r.time for r in seen.of("activity", place)]
+            times = [r.time for r in seen.of("activity", place)]
+            yield times, ()
+            jobs = times

@@ -280,6 +280,8 @@ def _malformed(text: str, token: Token) -> Malformed:
         return Malformed("RV-0401", at, f"`{token.text}` has no place in an expression", hint)
     found = re.match(r"\w+|\W", text[at:])
     word = found[0] if found else token.text
+    if hint is None and word.lower() in ("mod", "rem"):
+        hint = FOREIGN["%"]
     if hint is None and word in ("=", "/=", "<", ">"):
         hint = "comparisons cannot be chained: join them by `and`"
     return Malformed("RV-0401", at, f"`{word}` has no place here in the expression", hint)

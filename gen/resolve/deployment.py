@@ -18,7 +18,7 @@ from ravenchart.gen.files.schema_frames import (
     DelayedForm,
     RequestedForm,
 )
-from ravenchart.gen.language.names import Findings, NameScope
+from ravenchart.gen.language.names import Findings, NameScope, meant
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus, BusErrors, Message
@@ -218,6 +218,14 @@ def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | None:
             message = f"`{text}` must have the form bus or instance.port"
             hint = f"add a queued port of it: `{text}.port`"
             site.findings.error("RV-0306", origin, message, hint=hint)
+            return None
+        if not site.buses.knows(text) and not site.owners.knows(text):
+            site.buses.used(text, origin, site.findings)
+            site.findings.lose()
+            message = f"there is no bus or instance named `{text}`"
+            near = meant(text, site.buses.names())
+            hint = near or "name a bus, or a queued input port as `instance.port`"
+            site.findings.error("RV-0305", origin, message, hint=hint)
             return None
         bus = site.buses.look_up(text, origin, site.findings)
         return None if bus is None else bus.name

@@ -68,6 +68,14 @@ class Resolved:
 
 T = TypeVar("T")
 
+NEEDED = {
+    "components": "component",
+    "nodes": "node",
+    "instances": "instance",
+    "processors": "processor",
+}
+"""Sections without which there is no system, and what stands in them."""
+
 
 @dataclass(frozen=True, slots=True)
 class Merged:
@@ -87,8 +95,14 @@ class Merged:
         return [name for file in self.files for name in file.dropped(section)]
 
     def is_lost(self, section: str) -> bool:
-        """Whether a whole section was wrong in form somewhere."""
-        return any(file.lost(section) for file in self.files)
+        """Whether a whole section was wrong in form somewhere, or is missing where each has it."""
+        missing = section in NEEDED and self.is_empty(section)
+        return missing or any(file.lost(section) for file in self.files)
+
+    def is_empty(self, section: str) -> bool:
+        """Whether nothing stands in the section, and nothing was wrong in form there."""
+        damaged = any(file.lost(section) for file in self.files) or self.dropped(section)
+        return not self.entries(section) and not damaged
 
     def origin(self, section: str) -> Origin:
         """Where the section begins first; the beginning of the model without it."""
@@ -138,14 +152,8 @@ MOST_PROCESSORS = 30
 
 def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
     """What no system can do without, and what this version has once."""
-    for section, noun in (
-        ("components", "component"),
-        ("nodes", "node"),
-        ("instances", "instance"),
-        ("processors", "processor"),
-    ):
-        empty = not model.entries(section) and not model.dropped(section)
-        if whole and empty and not model.is_lost(section):
+    for section, noun in NEEDED.items():
+        if whole and model.is_empty(section):
             hint = f"declare one under `{section}:`"
             findings.error("RV-0801", model.origin(section), f"the system has no {noun}", hint=hint)
     for _, form in model.entries("buses")[1:]:

@@ -35,6 +35,7 @@ def ports_can_release(resolved: Resolved) -> Iterator[Diagnostic]:
         if instance.component.name in resolved.damaged:
             continue
         whole = {"processors", "messages", "connections"} <= resolved.sound_sections
+        whole = whole and _is_queued(instance, port)
         senders = _of_senders(system, port) if whole else iter(())
         at = processor.released_at or processor.origin
         for problem in (*_of_port(instance, port), *_of_instance(system, instance, port), *senders):
@@ -49,6 +50,8 @@ def tables_handle_the_port(resolved: Resolved) -> Iterator[Diagnostic]:
         port = processor.released_by_port
         if port is None or "processors" not in resolved.sound_sections:
             continue
+        if not _is_queued(resolved.system.instance(port.instance), port):
+            continue  # that is an error of its own, and perhaps another port is meant
         if not processor.slots or processor.slots[0].element != f"{port.instance}.ports":
             message = f"{processor.name} is released by {port}, but does not handle it first"
             hint = f"begin its table with `{port.instance}.ports`"
@@ -73,11 +76,15 @@ def tables_handle_the_port(resolved: Resolved) -> Iterator[Diagnostic]:
                 yield error(TABLE, slot.origin, message, hint=hint)
 
 
+def _is_queued(instance: Instance, end: End) -> bool:
+    return instance.component.port(end.port).kind is PortKind.QUEUED
+
+
 def _of_port(instance: Instance, end: End) -> Iterator[Problem]:
     """What is wrong with the port itself."""
     port = instance.component.port(end.port)
     declared = port.origin, f"`{port.name}` is declared here"
-    if port.kind is not PortKind.QUEUED:
+    if not _is_queued(instance, end):
         message = f"{end} is sampled: only the values of a queued port release a processor"
         yield message, *declared, "add `kind: queued` and a `depth` to the port"
     if port.max_age is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import difflib
+import re
 import sys
 from pathlib import Path
 
@@ -31,11 +32,11 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Print it; the exit status."""
     code = options.code.strip("[]").upper()
-    if code.isdigit():
-        code = f"RV-{code:>04}"
+    if number := re.fullmatch(r"(?:RV-?)?(\d{1,4})", code):
+        code = f"RV-{number[1]:>04}"
     if code not in CODES:
         near = difflib.get_close_matches(code, CODES, 3)
-        hint = f"; there are {', '.join(near)}" if near else ""
+        hint = f"; similar codes: {', '.join(near)}" if near else ""
         raise Refused(f"ravenchart: error: no message has the code {options.code}{hint}")
     found = explanations()[code]
     options.answer.result = ExplainResult(

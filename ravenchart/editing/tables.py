@@ -155,7 +155,7 @@ def _taken(files: _Files, row: str, *, stays: bool) -> TakenItem:
 
 
 def _without_empty(files: _Files, kept: Sequence[str]) -> None:
-    """Processors that have lost all rows go."""
+    """Processors that have lost all rows go, and a section of a file with the last of them."""
     for entry in list(files.places.processors.values()):
         if entry.name in kept or files.places.table(entry):
             continue
@@ -165,7 +165,9 @@ def _without_empty(files: _Files, kept: Sequence[str]) -> None:
 def _without(document: Document, entry: NamedEntry) -> Document:
     around = document.root.mapping("processors")
     assert around is not None, "a processor stands there"
-    return edits.without_block(document, around, entry.name)
+    last = len(around.entries) == 1
+    parent, key = (document.root, "processors") if last else (around, entry.name)
+    return edits.without_block(document, parent, key)
 
 
 def _understood(path: Path, files: _Files, before: Evaluation) -> System:

@@ -262,7 +262,7 @@ class Session:
         if self._disk.outside:
             self.number += 1
             names = ", ".join(self._disk.outside)
-            raise ChangeRefusedError(f"{names} has changed on the disk, so nothing was saved")
+            raise ChangeRefusedError(f"nothing was saved: changed on the disk: {names}")
 
     def _see_disk(self) -> None:
         """Analyse what is on the disk now."""

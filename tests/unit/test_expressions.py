@@ -162,9 +162,16 @@ def test_malformed_expression_is_refused_where_it_goes_wrong(text: str, at: int)
 
 @pytest.mark.parametrize(
     ("text", "hint"),
-    [("a == b", "equality is `=`"), ("a != b", "inequality is `/=`"), ("a && b", "write `and`")],
+    [
+        ("a == b", "equality is `=`"),
+        ("a != b", "inequality is `/=`"),
+        ("a && b", "write `and`"),
+        ("a % b", "there is no remainder operator"),
+        ("a mod b = 0", "there is no remainder operator"),
+        ("a modus", None),
+    ],
 )
-def test_operator_of_another_language_is_answered_with_ours(text: str, hint: str) -> None:
+def test_operator_of_another_language_is_answered_with_ours(text: str, hint: str | None) -> None:
     found = parse(text)
     assert isinstance(found, Malformed)
     assert found.hint == hint

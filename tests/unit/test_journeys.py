@@ -84,5 +84,16 @@ def test_a_reaction_above_its_bound_is_told(analysis: Analysis) -> None:
     assert [j.chain for j in found if j.exceeded] == ["planned"]
 
 
+def test_a_job_that_sends_nothing_is_no_reaction(analysis: Analysis) -> None:
+    panel = [*PANEL[:-1], "100 activity supervisor.plan", "100.1 sent supervisor_order"]
+    drive = [
+        *DRIVE[:1],
+        *(f"{float(n.split()[0]) + 20} {n.split(maxsplit=1)[1]}" for n in DRIVE[1:4]),
+    ]
+    planned = next(j for j in journeys(analysis, seen(analysis, panel, drive, late=7 * MS)))
+    # from the plan at 80; the one at 60 had sent nothing for what its run before had missed
+    assert (planned.count, planned.observed) == (1, 25_300_000)
+
+
 def test_what_never_arrives_is_no_reaction(analysis: Analysis) -> None:
     assert not journeys(analysis, seen(analysis, PANEL, DRIVE[:1], late=7 * MS))

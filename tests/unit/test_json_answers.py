@@ -82,7 +82,8 @@ def test_a_wrong_call_is_an_answer(words: tuple[str, ...], capsys: PRINTED) -> N
 def test_an_unknown_command_is_an_answer_without_command(capsys: PRINTED) -> None:
     answer = answered(capsys, "chekc", status=2)
     assert answer["command"] is None
-    assert "invalid choice" in answer["diagnostics"][0]["message"]
+    found = answer["diagnostics"][0]["message"]
+    assert found == "there is no command `chekc`: did you mean `check`?"
 
 
 @pytest.mark.slow

@@ -121,3 +121,15 @@ def test_a_reception_beside_other_rows_is_the_only_error() -> None:
     text = GRIPPER.read_text()
     assert text.count("boss_1.ports") == 1
     assert errors(GRIPPER, text.replace("boss_1.ports", "link.receive")) == ["RV-0705"]
+
+
+@pytest.mark.parametrize("section", ["components", "nodes", "instances", "processors"])
+def test_a_section_that_is_missing_is_the_only_error(section: str) -> None:
+    for model in (NODES, COMPOSITES, GRIPPER, REGISTERS):
+        text = model.read_text()
+        root = spans.spans(text)
+        assert root is not None
+        found = root.entry(section)
+        if found is not None:  # two_nodes includes its components
+            key, value = found
+            assert errors(model, text[: key.start] + text[value.end :]) == ["RV-0801"], model

@@ -130,6 +130,18 @@ def test_two_processors_become_one_and_one_becomes_two(tmp_path: Path) -> None:
     )
 
 
+def test_the_last_processor_of_an_included_file_takes_its_section_along(tmp_path: Path) -> None:
+    slow = MODEL[MODEL.index("  # writes") : MODEL.index("# the end")]
+    shutdown = "shutdown: {raises: [], grace: 0 ms}\n"
+    other = tmp_path / "slow.yaml"
+    other.write_text(f"{shutdown}# tables\nprocessors:\n{slow}# the end\n")
+    main = MODEL.replace(slow, "").replace(shutdown, "include: [slow.yaml]\n")
+    path, state = small(tmp_path, main)
+    texts = rearranged(path, state, (ONE,))
+    assert text_of(texts, "shutdown") == f"{shutdown}# the end\n"
+    assert bounds(evaluate(path, texts).analysis).keys() == {"k.a", "k.b"}
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [

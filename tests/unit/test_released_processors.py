@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.core.chains import HopKind
+from ravenchart.analysis.findings.advice import lines, of_model
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.system.depths import depths
 from ravenchart.analysis.system.timing import Analysis, analyse
@@ -113,6 +114,25 @@ def test_a_chain_that_begins_with_such_a_row_has_no_bound() -> None:
     assert why in [text for one in findings(found) for _, text in one.notes]
 
 
+def test_an_age_behind_what_is_sent_now_and_then_has_one_reason_and_a_hint_that_works() -> None:
+    old = "path: [gauge.measure, drive.move], reaction: 30 ms, age: 10 ms}"
+    new = "path: [gauge.measure, valve.act], reaction: 90 ms"
+    often = ("30 ms", "20 ms")
+    (told,) = findings(analyse(system_of((old, new + ", age: 90 ms}"), often)))
+    assert told.message == "the age of follow has no bound; its limit is 90 ms"
+    why = "gauge.measure gives gauge.order a new value in some of its jobs only"
+    assert [text for _, text in told.notes] == [why]
+    assert told.hint == "limit the reaction instead"
+    assert not list(findings(analyse(system_of((old, new + "}"), often))))
+
+
+def test_where_deadlines_are_met_no_execution_time_is_to_blame() -> None:
+    old = "path: [gauge.measure, drive.move], reaction: 30 ms, age: 10 ms}"
+    found = of_model(analyse(system_of((old, "path: [gauge.measure, valve.act], age: 90 ms}"))))
+    assert found is not None
+    assert not any("all else" in line for line in lines(found))
+
+
 def test_several_values_of_one_execution_wait_for_each_other() -> None:
     blown = "  shown: {path: [panel.Lamp, horn.blow], reaction: 50 ms}"
     found = analyse(
@@ -175,6 +195,19 @@ def test_an_editor_proposes_instances_and_their_ports(behind: str, proposed: str
     offset = TEXT.index(behind) + len(behind)
     found = proposals(path, str(path), offset, {str(path): TEXT})
     assert proposed in [one.word for one in found]
+
+
+def test_a_name_that_is_neither_bus_nor_instance_is_told_so() -> None:
+    text = TEXT.replace("released_by: drive.level", "released_by: measuring")
+    (told,) = load(Path("model.yaml"), lambda path, limit: text.encode()).diagnostics
+    assert (told.code, told.message) == ("RV-0305", "there is no bus or instance named `measuring`")
+    assert told.hint == "name a bus, or a queued input port as `instance.port`"
+
+
+def test_the_table_of_a_port_that_is_sampled_is_not_judged() -> None:
+    text = TEXT.replace("released_by: drive.level", "released_by: panel.position")
+    told = load(Path("model.yaml"), lambda path, limit: text.encode()).diagnostics
+    assert [one.code for one in told] == ["RV-0715", "RV-0715"]  # sampled, and beside a region
 
 
 # --- Virtual time

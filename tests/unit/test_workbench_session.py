@@ -240,7 +240,7 @@ def test_a_change_outside_is_never_overwritten_unseen(session: Session, folder: 
     time(session, "joint_x.position_control", "wcet", "400 us")
     theirs = path.read_bytes() + b"# theirs\n"
     path.write_bytes(theirs)
-    with pytest.raises(ChangeRefusedError, match="has changed on the disk"):
+    with pytest.raises(ChangeRefusedError, match="nothing was saved: changed on the disk: "):
         session.save(late=True)
     assert path.read_bytes() == theirs and list(session.outside) == [str(path)]
     session.keep()
