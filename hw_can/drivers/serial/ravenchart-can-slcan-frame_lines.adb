@@ -340,7 +340,7 @@ is
    function Data_Of (F : Any_Frames.Any_Frame) return Fd_Frames.Fd_Bytes is
    begin
       return Result : Fd_Frames.Fd_Bytes := (others => 0) do
-         for I in Result'Range loop
+         for I in 0 .. Carried (F) - 1 loop
             Result (I) := Any_Frames.Byte (F, I);
             pragma Loop_Invariant
               (for all J in 0 .. I => Result (J) = Any_Frames.Byte (F, J));

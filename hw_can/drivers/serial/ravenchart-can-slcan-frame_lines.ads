@@ -223,9 +223,9 @@ is
    with
      Global => null,
      Post   =>
-       (for all I in Fd_Frames.Fd_Index =>
+       (for all I in 0 .. Carried (F) - 1 =>
           Data_Of'Result (I) = Any_Frames.Byte (F, I));
-   --  The bytes of data of F; 0 beyond its length.
+   --  The bytes of data that F carries; 0 behind them.
 
    function Stands_For
      (Line  : Line_Bytes;
@@ -258,7 +258,7 @@ is
           else A.Plain.Kind = B.Plain.Kind)
        and then
          (for all I in 0 .. Carried (A) - 1 =>
-            Data_Of (A) (I) = Data_Of (B) (I)))
+            Any_Frames.Byte (A, I) = Any_Frames.Byte (B, I)))
    with
      Ghost,
      Global => null;

@@ -131,7 +131,6 @@ is
       Last : out Line_Length) is
    begin
       Write (F, Line, Last);
-      Lemma_Read_Back (Line, Last, F);
       Last        := Last + 1;
       Line (Last) := Carriage_Return;
    end Format_Line;
