@@ -37,6 +37,8 @@ SCENARIO = {"MODE": "checks", "CAN_DRIVER": "loopback", "RAVENCHART_WARNINGS": "
 """A warning that a break leaves behind would be no merit of the tests."""
 HANGS = 60.0
 """Seconds after which a program of facts is given up, and the mutant noticed."""
+PROVED_WITH = {"hw_can/drivers/serial": "slcan"}
+"""The driver without which gnatprove would not read a folder; for all others any will do."""
 NO_FACTS = ("bench_runtime", "bus_load", "float_lines", "iso_tp_line", "slcan_fuzz")
 """Programs of tests/ada that do not print facts."""
 EXPLAINED = Path(__file__).parent / "explained_runtime.toml"
@@ -69,7 +71,7 @@ class Checkout:
         else:
             if found := self._facts():
                 return Verdict("tests", found)
-            return self._proved()
+            return self._proved(file)
         finally:
             path.write_text(text, encoding="utf-8")
 
@@ -94,20 +96,27 @@ class Checkout:
                 return f"{program.name}: {wrong[0] if wrong else last}"
         return ""
 
-    def _proved(self) -> Verdict:
-        """All that `make prove ONLY=runtime-loopback` proves, with the verdicts of earlier runs."""
+    def _proved(self, file: Path) -> Verdict:
+        """All that `make prove ONLY=runtime-loopback` proves, with the verdicts of earlier runs.
+
+        Of a unit that needs another driver: the unit, and those of its folder.
+        """
         objects = self.folder / "obj"
+        home = file.parent.as_posix()
+        driver = PROVED_WITH.get(home, SCENARIO["CAN_DRIVER"])
+        beside = (path.name for path in (self.folder / home).glob("*.adb"))
         task = proving.ProofTask(
             self.folder / "proofs" / "proofs.gpr",
-            self._scenario,
+            {**self._scenario, "CAN_DRIVER": driver},
             tuple(
                 objects / name / "gnatprove"
-                for name in ("proofs-checks-loopback", "checks-loopback")
+                for name in (f"proofs-checks-{driver}", f"checks-{driver}")
             ),
             tuple(
                 p for p in self.folder.rglob("*") if p.is_dir() and objects not in (p, *p.parents)
             ),
             whole=True,
+            units=tuple(sorted(beside)) if home in PROVED_WITH else (),
         )
         try:
             proving.prove(task)

@@ -1,73 +1,16 @@
-with Ravenchart.Can.Fd_Frames;
+with Ravenchart.Can.Slcan.Frame_Lines;
 
 package body Ravenchart.Can.Slcan
   with SPARK_Mode
 is
-   use type Fd_Frames.Bit_Rate_Use;
+   use Frame_Lines;
 
-   subtype Byte_Value is Interfaces.Unsigned_8;
-
-   function Code (C : Character) return Byte_Value
-   is (Character'Pos (C))
+   function Is_Command
+     (Line : Line_Bytes; Count : Content_Length; Letter : Character)
+      return Boolean
+   is (Count = 1 and then Line (1) = Code (Letter))
    with Global => null;
-   --  The ASCII code of C.
-
-   Capital : constant Byte_Value := Character'Pos ('a') - Character'Pos ('A');
-   --  By how much the code of a capital is below that of the small letter.
-
-   subtype Digit_Value is Byte_Value range 0 .. 15;
-   --  What one digit is worth.
-
-   function Is_Digit (B : Byte_Value) return Boolean
-   is (B in Code ('0') .. Code ('9')
-         | Code ('A') .. Code ('F')
-         | Code ('a') .. Code ('f'))
-   with Global => null;
-   --  Is B a hexadecimal digit?
-
-   function Digit (B : Byte_Value) return Digit_Value
-   is (if B <= Code ('9') then B - Code ('0')
-       elsif B <= Code ('F') then B - Code ('A') + 10
-       else B - Code ('a') + 10)
-   with
-     Global => null,
-     Pre    => Is_Digit (B);
-   --  What the digit B is worth.
-
-   function Image (Value : Digit_Value) return Byte_Value
-   is (if Value < 10 then Code ('0') + Value
-       else Code ('A') + (Value - 10))
-   with Global => null;
-   --  The digit that is worth Value.
-
-   function Id_Digits (Format : Frame_Format) return Positive
-   is (if Format = Standard then 3 else 8)
-   with Global => null;
-   --  Digits of the identifier in a line.
-
-   procedure Read_Frame
-     (Line  : Line_Bytes;
-      Count : Content_Length;
-      Found : out Boolean;
-      F     : out Any_Frames.Any_Frame)
-   with
-     Global => null,
-     Pre    => Count >= 1,
-     Post   => (if not Found then F = Any_Frames.Null_Any_Frame);
-   --  The frame that the first Count bytes of Line stand for, if Found.
-
-   procedure Read_Line
-     (Line   : Line_Bytes;
-      Count  : Content_Length;
-      Result : out Outcome;
-      F      : out Any_Frames.Any_Frame)
-   with
-     Global => null,
-     Post   =>
-       Result /= Incomplete
-       and then
-         (if Result /= Frame_Line then F = Any_Frames.Null_Any_Frame);
-   --  What the first Count bytes of Line say.
+   --  Is the line this command, without anything behind it?
 
    function Settings_Are_Sound
      (Line : Line_Bytes; Count : Content_Length) return Boolean
@@ -84,79 +27,39 @@ is
    with Global => null;
    --  Is the line one of the commands that need no action here?
 
-   ----------------
-   -- Read_Frame --
-   ----------------
+   function Needs_No_Action
+     (Line : Line_Bytes; Count : Content_Length) return Boolean
+   is (Settings_Are_Sound (Line, Count)
+       or else (Count = 1 and then Line (1) in Code ('z') | Code ('Z')))
+   with Global => null;
+   --  Is it one of these, or an adapter's word that it has sent?
 
-   procedure Read_Frame
-     (Line  : Line_Bytes;
-      Count : Content_Length;
-      Found : out Boolean;
-      F     : out Any_Frames.Any_Frame)
-   is
-      Format  : constant Frame_Format :=
-        (if Line (1) in Code ('t') | Code ('r') | Code ('d') | Code ('b')
-         then Standard else Extended);
-      Is_Fd   : constant Boolean :=
-        Line (1) in Code ('d') | Code ('D') | Code ('b') | Code ('B');
-      Kind    : constant Frame_Kind :=
-        (if Line (1) in Code ('r') | Code ('R') then Remote else Data);
-      Header  : constant Positive := 1 + Id_Digits (Format) + 1;
-      --  Where the digit of the length stands.
-      Id_Bits : Interfaces.Unsigned_64 := 0;
-      Length  : Fd_Frames.Fd_Length;
-      Place   : Positive;
-      Bytes   : Fd_Frames.Fd_Bytes := (others => 0);
-      Bits    : Interfaces.Unsigned_64 := 0;
-   begin
-      Found := False;
-      F     := Any_Frames.Null_Any_Frame;
-      if Count < Header
-        or else not (for all I in 2 .. Count => Is_Digit (Line (I)))
-      then
-         return;
-      end if;
-      for I in 2 .. Header - 1 loop
-         Id_Bits := 16 * Id_Bits
-           + Interfaces.Unsigned_64 (Digit (Line (I)));
-      end loop;
-      Length := Fd_Frames.Length_Of
-        (Fd_Frames.Length_Code (Digit (Line (Header))));
-      if Id_Bits > Interfaces.Unsigned_64 (Identifier'Last)
-        or else not Fits (Identifier (Id_Bits), Format)
-        or else (Length > 8 and then not Is_Fd)
-        or else Count /=
-          Header + (if Kind = Data then 2 * Length else 0)
-      then
-         return;
-      end if;
-      Found := True;
-      if Kind = Remote then
-         F := Any_Frames.To_Any
-           (Remote_Frame (Identifier (Id_Bits), Format, Length));
-         return;
-      end if;
-      for I in 0 .. Length - 1 loop
-         Place     := Header + 1 + 2 * I;
-         Bytes (I) :=
-           16 * Digit (Line (Place)) + Digit (Line (Place + 1));
-      end loop;
-      if Is_Fd then
-         F := Any_Frames.To_Any
-           (Fd_Frames.Fd_Data_Frame
-              (Identifier (Id_Bits), Format, Length, Bytes,
-               (if Line (1) in Code ('b') | Code ('B')
-                then Fd_Frames.Switched_Rate
-                else Fd_Frames.Constant_Rate)));
-      else
-         for I in 0 .. Length - 1 loop
-            Bits := Bits or Interfaces.Shift_Left
-              (Interfaces.Unsigned_64 (Bytes (I)), 8 * I);
-         end loop;
-         F := Any_Frames.To_Any
-           (Data_Frame (Identifier (Id_Bits), Format, Length, Bits));
-      end if;
-   end Read_Frame;
+   procedure Read_Line
+     (Line   : Line_Bytes;
+      Count  : Content_Length;
+      Result : out Outcome;
+      F      : out Any_Frames.Any_Frame)
+   with
+     Global => null,
+     Post   =>
+       Result /= Incomplete
+       and then (Result = Empty_Line) = (Count = 0)
+       and then (Result = Frame_Line) = Is_Frame_Line (Line, Count)
+       and then
+         (Result = Open_Channel) = Is_Command (Line, Count, 'O')
+       and then
+         (Result = Close_Channel) = Is_Command (Line, Count, 'C')
+       and then
+         (Result = Version_Query) = Is_Command (Line, Count, 'V')
+       and then
+         (Result = Serial_Query) = Is_Command (Line, Count, 'N')
+       and then
+         (Result = Other_Command) = Needs_No_Action (Line, Count)
+       and then
+         (if Result = Frame_Line
+          then Stands_For (Line, Count, F)
+          else F = Any_Frames.Null_Any_Frame);
+   --  What the first Count bytes of Line say. Every other line is rejected.
 
    ---------------
    -- Read_Line --
@@ -168,27 +71,22 @@ is
       Result : out Outcome;
       F      : out Any_Frames.Any_Frame)
    is
-      Found : Boolean;
+      Read : constant Reading := Frame_In (Line, Count);
    begin
-      F := Any_Frames.Null_Any_Frame;
+      F := Read.F;
       if Count = 0 then
          Result := Empty_Line;
-      elsif Line (1) in Code ('t') | Code ('T') | Code ('r') | Code ('R')
-                      | Code ('d') | Code ('D') | Code ('b') | Code ('B')
-      then
-         Read_Frame (Line, Count, Found, F);
-         Result := (if Found then Frame_Line else Rejected_Line);
-      elsif Count = 1 and then Line (1) = Code ('O') then
+      elsif Read.Found then
+         Result := Frame_Line;
+      elsif Is_Command (Line, Count, 'O') then
          Result := Open_Channel;
-      elsif Count = 1 and then Line (1) = Code ('C') then
+      elsif Is_Command (Line, Count, 'C') then
          Result := Close_Channel;
-      elsif Count = 1 and then Line (1) = Code ('V') then
+      elsif Is_Command (Line, Count, 'V') then
          Result := Version_Query;
-      elsif Count = 1 and then Line (1) = Code ('N') then
+      elsif Is_Command (Line, Count, 'N') then
          Result := Serial_Query;
-      elsif Settings_Are_Sound (Line, Count)
-        or else (Count = 1 and then Line (1) in Code ('z') | Code ('Z'))
-      then
+      elsif Needs_No_Action (Line, Count) then
          Result := Other_Command;
       else
          Result := Rejected_Line;
@@ -230,44 +128,9 @@ is
    procedure Format_Line
      (F    : Any_Frames.Any_Frame;
       Line : out Line_Bytes;
-      Last : out Line_Length)
-   is
-      Letter : constant Character :=
-        (if F.Family = Any_Frames.Flexible
-         then (if F.Fd.Rate = Fd_Frames.Switched_Rate then 'b' else 'd')
-         elsif F.Plain.Kind = Data then 't'
-         else 'r');
-      Format       : constant Frame_Format := Any_Frames.Format (F);
-      Digits_Of_Id : constant Positive := Id_Digits (Format);
-      Header       : constant Positive := 1 + Digits_Of_Id + 1;
-      Id_Bits      : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Any_Frames.Id (F));
-      Length       : constant Fd_Frames.Fd_Length :=
-        (if F.Family = Any_Frames.Flexible then F.Fd.Length
-         else F.Plain.Length);
-      Value        : Byte_Value;
+      Last : out Line_Length) is
    begin
-      Line     := (others => 0);
-      Line (1) := Code (Letter) - (if Format = Standard then 0 else Capital);
-      for I in 1 .. Digits_Of_Id loop
-         Line (1 + I) := Image
-           (Digit_Value
-              (Interfaces.Shift_Right (Id_Bits, 4 * (Digits_Of_Id - I))
-               and 15));
-      end loop;
-      Line (Header) := Image (Digit_Value (Fd_Frames.Code (Length)));
-      Last          := Header;
-      if F.Family = Any_Frames.Flexible or else F.Plain.Kind = Data then
-         for I in 0 .. Length - 1 loop
-            Value :=
-              (if F.Family = Any_Frames.Flexible
-               then Fd_Frames.Byte (F.Fd, I)
-               else Can.Byte (F.Plain, I));
-            Line (Header + 1 + 2 * I) := Image (Value / 16);
-            Line (Header + 2 + 2 * I) := Image (Value mod 16);
-         end loop;
-         Last := Header + 2 * Length;
-      end if;
+      Write (F, Line, Last);
       Last        := Last + 1;
       Line (Last) := Carriage_Return;
    end Format_Line;
