@@ -19,7 +19,7 @@ from ravenchart.running.runs import run_controller
 from tests.support import live
 from tests.support.faults import shows
 
-pytestmark = pytest.mark.alone
+pytestmark = [pytest.mark.alone, pytest.mark.slow]
 
 HERE = Path("examples/cartesian_robot")
 
@@ -41,7 +41,6 @@ def _run(robot: tuple[checking.Checked, Path], scenario: str, folder: Path) -> R
     return live.played(play)
 
 
-@pytest.mark.slow
 def test_it_homes_reaches_its_targets_and_fails_safe_on_a_limit_switch(
     robot: tuple[checking.Checked, Path], tmp_path: Path
 ) -> None:

@@ -212,6 +212,7 @@ def test_drives_of_a_scenario_are_simulated_and_pushed(far: FarEnd, tmp_path: Pa
         with pytest.raises(WordError, match="no simulated drive `q`\n  hint: one of x, y, z"):
             near.pull("q", "low")
         near.send("Home", **ZERO)
+        near.wait_for("condition", "Ready", 2)
     with can.LogReader(log) as reader:
         kept = {frame.arbitration_id for frame in reader}
     assert {0x080, 0x120, 0x121, 0x122, 0x180} <= kept
