@@ -116,17 +116,14 @@ def closer(
                 continue
             tasks = aligned(plain, epoch)
             tried = OffsetSearch(plain, tasks, effort).found() if tasks else plain
-            best = min(best, tried, key=_bound)
+            if tried.bound is not None and (best.bound is None or tried.bound <= best.bound):
+                best = tried  # where the job is no sooner done, its rows may be
         yield best
 
 
 def _of(epoch: str, tasks: Iterable[Task]) -> list[Task]:
     """The tasks with offsets from an epoch."""
     return [task for task in tasks if task.offset is not None and task.epoch == epoch]
-
-
-def _bound(response: Response) -> float:
-    return math.inf if response.bound is None else response.bound
 
 
 def _together(tasks: Sequence[Task], platform: Platform) -> bool:
