@@ -92,6 +92,11 @@ def blockers(
     return found
 
 
+def held_up(task: Task, section: Section | None) -> int:
+    """How long a task is held up: by its longest section below, and by what is given besides."""
+    return task.held + (0 if section is None else section.length)
+
+
 HeldSection = tuple[int, int, Section]
 """Indices of the levels that a section can hold up, the last one not included."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .blocking import Section
+from .blocking import Section, held_up
 from .multiframe import Demand
 from .platform import Platform
 from .responses import Level, Reason, Response, RowResponse, demand_of, jitter_of, switch_time
@@ -87,7 +87,7 @@ def response(
     """
     task = own.task
     worst = {number: Worst() for number in range(WHOLE, len(task.rows))}
-    blocked = task.held + (blocking.length if blocking else 0)
+    blocked = held_up(task, blocking)
     several = len(own.goals) > 1
     repeat = math.inf
     job = 0

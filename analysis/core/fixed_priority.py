@@ -22,7 +22,7 @@ from fractions import Fraction
 from itertools import groupby
 from operator import attrgetter
 
-from .blocking import Section, blockers
+from .blocking import Section, blockers, held_up
 from .busy_period import Contender, response
 from .checks import distinct
 from .kernel import WORTH_IT, busy_periods
@@ -109,11 +109,7 @@ def _quickly(order: tuple[Task, ...], held: Mapping[str, Section], platform: Pla
     costs = [task.cost for task in order]
     if platform.context_switch:
         costs = [task.cost + switch_time(task, platform) for task in order]
-    blocked = [task.held for task in order]
-    if held:
-        blocked = [
-            task.held + (held[task.name].length if task.name in held else 0) for task in order
-        ]
+    blocked = [held_up(task, held.get(task.name)) for task in order]
     last = {task.priority: number for number, task in enumerate(order)}
     return busy_periods(
         [task.period for task in order], costs, [last[task.priority] for task in order], blocked

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
-from .blocking import Section
+from .blocking import Section, held_up
 from .multiframe import Demand
 from .platform import Platform
 from .streams import Stream
@@ -157,7 +157,7 @@ class Response:
     @property
     def blocked(self) -> int:
         """The longest section of a less urgent task, and what is given besides: suffered once."""
-        return self.task.held + (0 if self.blocking is None else self.blocking.length)
+        return held_up(self.task, self.blocking)
 
     @property
     def own(self) -> int:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import keyword
 from collections.abc import Iterator, Sequence
 
-from ravenchart.analysis.core.blocking import blockers
+from ravenchart.analysis.core.blocking import blockers, held_up
 from ravenchart.analysis.core.bus import Frame
 from ravenchart.analysis.core.chains import HopKind, TimedChain
 from ravenchart.analysis.core.holistic import Network
@@ -99,11 +99,8 @@ def _lines(network: Network) -> Iterator[str]:
     held = blockers(network.tasks, network.sections, network.ceilings)
     least = network.least()
     yield "system = model.System()"
-    lengths = {
-        items[task.name]: task.held + (held[task.name].length if task.name in held else 0)
-        for task in network.tasks
-        if task.held or task.name in held
-    }
+    blocked = {task.name: held_up(task, held.get(task.name)) for task in network.tasks}
+    lengths = {items[name]: length for name, length in blocked.items() if length}
     yield f"blocking = {lengths!r}"
     for core in cores:
         yield f'{places[core]} = system.bind_resource(model.Resource("{places[core]}", Blocked()))'
