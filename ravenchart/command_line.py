@@ -129,10 +129,9 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         if found := re.match("argument COMMAND: invalid choice: '(.*?)'", message):
-            import difflib  # only here: every call would wait for it
+            from ravenchart.gen.language.names import meant  # only here: every call would wait
 
-            near = difflib.get_close_matches(found[1], COMMANDS, 1)
-            hint = f"did you mean `{near[0]}`?" if near else f"`{self.prog} --help` lists them"
+            hint = meant(found[1], COMMANDS) or f"`{self.prog} --help` lists them"
             message = f"there is no command `{found[1]}`: {hint}"
         self.print_usage(sys.stderr)
         print(f"{self.prog}: error: {message}", file=sys.stderr)
