@@ -41,7 +41,8 @@ class Ended:
     """How the process ended. ``exit_code`` is negative for a signal.
 
     ``real_time``: while it ran, at least one of its threads had a real-time policy.
-    ``stolen``: time in ns that a hypervisor took of its core meanwhile, 0 where none did.
+    ``stolen``: time in ns that a hypervisor took of its core meanwhile at the most, 0 where
+    there is none that ever took any.
     """
 
     exit_code: int
@@ -57,13 +58,22 @@ class Ended:
         return tuple(line.removeprefix(ERROR) for line in own) if self.exit_code else ()
 
 
-def stolen_time(core: int) -> int:
-    """Time in ns that a hypervisor has taken of a core so far: `steal` of proc(5)."""
-    ticks = 0
+def _stolen_ticks(core: int) -> int:
+    """Ticks of the kernel that a hypervisor has taken of a core so far: `steal` of proc(5)."""
     with suppress(OSError, ValueError, IndexError):
         for line in Path("/proc/stat").read_text(encoding="ascii").splitlines():
             if line.startswith(f"cpu{core} "):
-                ticks = int(line.split()[8])
+                return int(line.split()[8])
+    return 0
+
+
+def stolen_time(before: int, after: int) -> int:
+    """Time in ns that was stolen at the most between two counts of whole ticks.
+
+    A count is up to a tick behind, so it may have been a tick more than their difference. Where
+    the count has always been 0 there is nobody who steals.
+    """
+    ticks = after - before + 1 if after else 0
     return ticks * (10**9 // os.sysconf("SC_CLK_TCK"))
 
 
@@ -97,7 +107,7 @@ class ControllerProcess:
         self._warnings: list[str] = []
         self._real_time = False
         self._core = core
-        self._stolen = stolen_time(core)
+        self._stolen = _stolen_ticks(core)
         self._asked: float | None = None
         assert self._process.stdout is not None
         assert self._process.stderr is not None
@@ -173,7 +183,7 @@ class ControllerProcess:
         self._unlink_snapshots()
         for reader in self._readers:
             reader.join(timeout=1.0)
-        stolen = stolen_time(self._core) - self._stolen
+        stolen = stolen_time(self._stolen, _stolen_ticks(self._core))
         warnings = tuple(self._warnings)
         return Ended(self._process.returncode, killed, self._real_time, warnings, stolen)
 

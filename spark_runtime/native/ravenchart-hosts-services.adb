@@ -30,6 +30,9 @@ is
    function C_Get_Scheduler (Process_Id : C_Int) return C_Int
    with Import, Convention => C, External_Name => "sched_getscheduler";
 
+   function C_Lock_Memory (Pages : C_Int) return C_Int
+   with Import, Convention => C, External_Name => "mlockall";
+
    function C_Get_Environment
      (Name : Interfaces.C.char_array) return Interfaces.C.Strings.chars_ptr
    with Import, Convention => C, External_Name => "getenv";
@@ -59,6 +62,8 @@ is
    Ignore_Signal        : constant Interfaces.C.long := 1;
    Standard_Error       : constant C_Int := 2;
    Fifo_Policy          : constant C_Int := 1;
+   Present_Pages        : constant C_Int := 1;
+   Future_Pages         : constant C_Int := 2;
    No_File              : constant C_Int := -1;
 
    --  State
@@ -168,6 +173,12 @@ is
            (Stream,
             "warning: real-time priorities are not available: run as root"
             & " or grant CAP_SYS_NICE; response times are then not bounded"
+            & ASCII.LF);
+      elsif C_Lock_Memory (Present_Pages + Future_Pages) /= 0 then
+         Write_All
+           (Stream,
+            "warning: the memory cannot be locked: run as root or grant"
+            & " CAP_IPC_LOCK; until then a task may have to wait for a page"
             & ASCII.LF);
       end if;
       Snapshots.Open;

@@ -115,3 +115,25 @@ def test_an_ordinary_user_is_told_that_there_are_no_real_time_priorities(
         assert (place / "trace").read_text().endswith("END\n")
     finally:
         shutil.rmtree(place)
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="needs root for real-time priorities")
+@pytest.mark.parametrize("allowed", [True, False])
+def test_its_memory_is_locked_or_it_says_that_it_cannot(
+    robot: tuple[checking.Checked, Path], tmp_path: Path, *, allowed: bool
+) -> None:
+    without = ["setpriv", "--inh-caps=-ipc_lock", "--bounding-set=-ipc_lock"]
+    process = subprocess.Popen(
+        [*([] if allowed else without), robot[1].absolute()],
+        env={**os.environ, "RAVENCHART_TRACE": str(tmp_path / "trace")},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(0.8)
+    status = Path(f"/proc/{process.pid}/status").read_text(encoding="ascii")
+    process.send_signal(signal.SIGTERM)
+    _, said = process.communicate(timeout=5)
+    assert process.returncode == 0
+    assert ("VmLck:\t       0 kB" not in status) is allowed
+    assert ("the memory cannot be locked" not in said) is allowed

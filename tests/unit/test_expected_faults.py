@@ -12,7 +12,7 @@ from ravenchart.analysis.system.observed import Observation, Releases, TraceMap
 from ravenchart.gen.language.terms import Ns
 from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, parse_scenario
 from ravenchart.running import expected, judge
-from ravenchart.running.process import Ended
+from ravenchart.running.process import Ended, stolen_time
 from tests.support.faults import shows
 
 ENDED = Ended(0, killed=False, real_time=True, warnings=())
@@ -159,3 +159,14 @@ def test_without_priorities_the_times_of_executions_say_nothing() -> None:
 def test_an_expectation_that_says_nothing_is_refused(entry: str) -> None:
     with pytest.raises(ScenarioError):
         plan(entry)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "longest"),
+    [(0, 0, 0), (7, 7, 10_000_000), (7, 9, 30_000_000)],
+)
+def test_a_count_of_stolen_ticks_may_be_a_tick_behind(
+    monkeypatch: pytest.MonkeyPatch, before: int, after: int, longest: int
+) -> None:
+    monkeypatch.setattr("os.sysconf", {"SC_CLK_TCK": 100}.__getitem__)
+    assert stolen_time(before, after) == longest
