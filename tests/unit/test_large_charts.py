@@ -64,3 +64,14 @@ def test_each_further_leaf_of_a_hierarchy_is_as_many_lines() -> None:
 
 def test_240_leaves_are_few_lines() -> None:
     assert _unit(large_chart(24), "adb").count("\n") <= 240 * 150
+
+
+@pytest.mark.parametrize(("leaves", "apart"), [(20, False), (60, True)])
+def test_in_a_large_chart_a_leaf_beside_composites_has_its_own_function(
+    leaves: int, apart: bool
+) -> None:
+    # 20 s of a prover became 0.1 s.
+    text = _unit(random_model(leaves, 1), "adb")
+    whole = text[text.index("function Select_Transition") : text.index("package Chart")]
+    assert whole.count("when Motion_States.L") > 0
+    assert ("On_E" not in whole) is apart

@@ -44,6 +44,9 @@ from .shape import PASSING, RegionShape
 
 FEW = 8
 """Up to so many leaves are selected for by the function of the state around them."""
+MANY = 80
+"""A lane of more transitions has a function for each leaf beside composites: the prover sees
+either one leaf or what its functions promise, and never both."""
 WORTH = 2
 """So many transitions of the states around its leaves a state has a function for."""
 _BOUNDS = (Param("First", "in", "Transition"), Param("Last", "in", "Transition"))
@@ -184,7 +187,8 @@ def _of_place(shape: RegionShape, lane: Lane, place: Place) -> list[Decl]:
     children = [s.name for s in shape.region.children(place.owner, place.region)]
     literals = tuple(shape.literals_in(place))
     at_once = len(literals) <= FEW
-    few = at_once or sum(map(shape.is_literal, children)) <= FEW
+    beside = sum(map(shape.is_literal, children)) <= FEW
+    few = at_once or (beside and sum(f.lane == lane for f in shape.firings) <= MANY)
     for child in literals if at_once else (*children, *shape.compounds.passed(place)):
         passing = shape.region.pseudostate(child) is not None
         chosen: Expr = Call(f"In_{ada_case(child)}", shape.situation_args())
