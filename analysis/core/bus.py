@@ -24,7 +24,8 @@ INTERMISSION = 3
 class Frame:
     """A message as the bus sees it; all times in ticks.
 
-    ``rank``      its place in arbitration, lower wins (`frames.rank`); no two have the same
+    ``rank``      its place in arbitration, lower wins (`frames.rank`); of two that have the same
+                  either may go first, each time anew
     ``cost``      longest transmission with the three bits to the next frame, above 0
     ``period``    distance of its queuing events (least distance when ``sporadic``), above 0
     ``deadline``  from the event that makes the sender queue it, above 0

@@ -21,19 +21,22 @@ queue, with all frames of the queue before it; to others it has, as more jitter,
 time until it is sent. Safe, not exact. Of a queue that is handed to the controller frame by
 frame, any less urgent frame may be sent before each: then all frames of the bus count,
 as often as they come, for whatever the order, a bus that is not idle sends them all.
+
+Frames of one rank are more urgent than each other: either may go first, each time anew.
+Identifiers of a bus differ. Published systems have ranks that do not.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import pairwise
+from itertools import groupby
 
 from .bus import Bus, Frame
 from .can_response import FrameLevel, FrameResponse, frame_response
 from .checks import distinct
 from .responses import Reason
-from .window import Effort, Load, Window, fixed_cost, rate
+from .window import Effort, Load, Source, Window, fixed_cost, rate
 
 FRAME_EFFORT = 200_000
 """Changes of release numbers that one frame's analysis may take; then it has no bound."""
@@ -48,16 +51,11 @@ ROUNDS = 100
 def analyse(frames: Sequence[Frame], bus: Bus) -> tuple[FrameResponse, ...]:
     """The worst-case response of every frame of one bus, in the order given.
 
-    ValueError for a name or a rank that two of them have.
+    ValueError for a name that two of them have.
     """
     distinct("messages", [frame.name for frame in frames])
     effort = Effort(WHOLE_EFFORT)
     order = tuple(sorted(frames, key=lambda frame: frame.rank))
-    for one, other in pairwise(order):
-        if one.rank == other.rank:
-            raise ValueError(
-                f"the identifiers of messages {one.name} and {other.name} are the same"
-            )
     delays = _queue_delays(order, bus, effort)
     found = {item.frame.name: item for item in _of_bus(order, bus, delays, effort)}
     return tuple(found[frame.name] for frame in frames)
@@ -156,26 +154,39 @@ def _of_bus(
     waiting, busy, used = Window(), Window(), Load()
     known = {name: delay for name, delay in delays.items() if delay is not None}
     reason: Reason | None = None
-    for number, frame in enumerate(order):
-        level = FrameLevel(order, number + 1, bus, known)
-        late = frame.jitter + known.get(frame.name, 0)
-        source = fixed_cost(frame.period, late, frame.cost)
-        used.add(source)
-        if frame.queue:
-            yield _in_queue(frame, order, bus, delays, effort)
-            if delays[frame.name] is None:
-                reason = reason or Reason.RIVAL
-        else:
+    for _, group in groupby(enumerate(order, 1), key=lambda placed: placed[1].rank):
+        members = list(group)
+        level = FrameLevel(order, members[-1][0], bus, known)
+        lost = any(frame.queue and delays[frame.name] is None for _, frame in members)
+        if lost and len(members) > 1:
+            reason = reason or Reason.RIVAL
+        for _, frame in members:
+            used.add(_source(frame, known))
+        for _, frame in members:
+            if frame.queue:
+                yield _in_queue(frame, order, bus, delays, effort)
+                continue
             reason = reason or _obstacle(level, used, frame, waiting, busy, effort)
-            if reason is None:
-                allowed = Effort(min(FRAME_EFFORT, effort.left))
-                effort.left -= allowed.left
-                yield frame_response(frame, level, waiting.fork(), busy.fork(), allowed)
-                effort.left += allowed.left
-            else:
+            if reason is not None:
                 yield FrameResponse(frame, level, None, reason=reason)
-        busy.add(number, source)
-        waiting.add(number, fixed_cost(frame.period, late + bus.bit_time, frame.cost))
+                continue
+            allowed = Effort(min(FRAME_EFFORT, effort.left))
+            effort.left -= allowed.left
+            if len(members) > 1:
+                yield _alone(frame, level, allowed)
+            else:
+                yield frame_response(frame, level, waiting.fork(), busy.fork(), allowed)
+            effort.left += allowed.left
+        if lost:
+            reason = reason or Reason.RIVAL
+        for number, frame in members:
+            busy.add(number, _source(frame, known))
+            waiting.add(number, _source(frame, known, bus.bit_time))
+
+
+def _source(frame: Frame, delays: Mapping[str, int], later: int = 0) -> Source:
+    """What a frame takes of the bus, as late as its jitter, its queue and ``later`` let it be."""
+    return fixed_cost(frame.period, frame.jitter + delays.get(frame.name, 0) + later, frame.cost)
 
 
 def _obstacle(
@@ -200,8 +211,8 @@ def _in_queue(
     frame: Frame, order: tuple[Frame, ...], bus: Bus, delays: Delays, effort: Effort
 ) -> FrameResponse:
     """The response of a frame of a queue, at the least urgent rank that goes before it."""
-    reach = max(n for n, other in enumerate(order, 1) if other.queue == frame.queue)
-    reach = len(order) if frame.reloaded else reach
+    last = max(other.rank for other in order if other.queue == frame.queue)
+    reach = sum(frame.reloaded or other.rank <= last for other in order)
     known = {name: delay for name, delay in delays.items() if delay is not None}
     level = FrameLevel(order, reach, bus, known)
     if delays[frame.name] is None:

@@ -180,14 +180,15 @@ def reordered(network: Network, movable: Collection[str], holds: Met) -> Iterato
 
 def moved(network: Network, name: str, holds: Met) -> Iterator[Change]:
     """How few places the late frame ``name`` must move up in the order of its bus."""
-    for frames in network.frames.values():
+    wide = _spread(network)
+    for frames in wide.frames.values():
         now = _now(frames)
         if name not in now:
             continue
         rest = [other for other in now if other != name]
         for place in reversed(range(now.index(name))):
             order = (*rest[:place], name, *rest[place:])
-            if holds(_in_order(network, frames, order)):
+            if holds(_in_order(wide, frames, order)):
                 yield Change(ChangeKind.PLACE, name, enough=True, order=order)
                 return
         yield Change(ChangeKind.PLACE, name, enough=False)
@@ -240,11 +241,12 @@ def _in_order(network: Network, items: Sequence[Task | Frame], order: Sequence[s
 
 
 def _spread(network: Network) -> Network:
-    """No two tasks of a core with one priority; ceilings above their users stay above all.
+    """No two tasks of a core with one priority, nor two frames of a bus with one rank.
 
-    Tasks of one priority were delayed by each other, and now only one is by the other.
+    They were delayed by each other, and now only one is by the other. Ceilings above their
+    users stay above all.
     """
-    count = len(network.tasks) + 1
+    count = max(len(network.tasks), *map(len, network.frames.values()), 0) + 1
     seen: dict[tuple[str, int], int] = {}
     tasks = []
     for task in network.tasks:
@@ -258,4 +260,8 @@ def _spread(network: Network) -> Network:
                  if s.resource == resource and s.user in priorities]  # fmt: skip
         if not users or ceiling > max(users):
             above[resource] = max(highest, ceiling * count)
-    return replace(network, tasks=tuple(tasks), ceilings=above)
+    frames = {
+        bus: tuple(replace(frame, rank=frame.rank * count + n) for n, frame in enumerate(some))
+        for bus, some in network.frames.items()
+    }
+    return replace(network, tasks=tuple(tasks), frames=frames, ceilings=above)

@@ -112,7 +112,9 @@ def _lines(network: Network) -> Iterator[str]:
     for bus, frames in network.frames.items():
         scheduler = f"schedulers.SPNPScheduler(cycle_time={network.buses[bus].bit_time})"
         yield f'{places[bus]} = system.bind_resource(model.Resource("{places[bus]}", {scheduler}))'
-        for level, frame in enumerate(sorted(frames, key=lambda frame: frame.rank), 1):
+        levels = dense(frame.rank for frame in frames)
+        for frame in sorted(frames, key=lambda frame: frame.rank):
+            level = levels[frame.rank]
             yield _task(items[frame.name], places[bus], frame, level, least[frame.name])
     for name, item in network.items().items():
         by = network.released_by.get(name)

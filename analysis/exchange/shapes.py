@@ -278,6 +278,6 @@ def trees(network: Network, tool: str) -> list[ReleaseTree]:
 
 
 def urgency(frames: Sequence[Frame]) -> dict[str, int]:
-    """A larger number for a more urgent frame, from 1 up."""
-    order = sorted(frames, key=lambda frame: -frame.rank)
-    return {frame.name: number for number, frame in enumerate(order, 1)}
+    """A larger number for a more urgent frame, from 1 up; the same for those of one rank."""
+    levels = dense(-frame.rank for frame in frames)
+    return {frame.name: levels[-frame.rank] for frame in frames}

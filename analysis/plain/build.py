@@ -100,8 +100,9 @@ def _system(rows: dict[str, list[RowValues]], reading: ReadFile) -> PlainSystem 
     ]
     buses = {row.name: row for row in rows.get("bus", ())}
     on: dict[str, list[Frame]] = {}
+    highest = max((row.number("priority") for row in rows.get("message", ())), default=0)
     for row in rows.get("message", ()):
-        frame = _made(row, reading, lambda row: _frame(row, buses[row.word("bus")]))
+        frame = _made(row, reading, lambda row: _frame(row, buses[row.word("bus")], highest))
         if frame is not None:
             on.setdefault(row.word("bus"), []).append(frame)
     platforms = {row.name: _made(row, reading, _platform) for row in rows.get("core", ())}
@@ -201,8 +202,15 @@ def _bus(row: RowValues) -> Bus:
     return Bus(-(-SECOND // row.number("bit_rate")), row.number("unknown"), errors)
 
 
-def _frame(row: RowValues, bus: RowValues) -> Frame:
+def _frame(row: RowValues, bus: RowValues, highest: int) -> Frame:
+    """A message; ``highest`` is the most urgent priority that any message has."""
     extended = bool(row.number("extended"))
+    if ("identifier" in row.numbers) == ("priority" in row.numbers):
+        raise ValueError(f"message {row.name} must have either an identifier or a priority")
+    if "priority" in row.numbers:
+        rank = highest - row.number("priority")
+    else:
+        rank = frames.rank(row.number("identifier"), extended=extended)
     cost = row.number("cost")
     if bool(cost) == ("bytes" in row.numbers):
         raise ValueError(f"message {row.name} must have either bytes or cost_us")
@@ -214,7 +222,7 @@ def _frame(row: RowValues, bus: RowValues) -> Frame:
     period = row.number("period")
     return Frame(
         row.name,
-        frames.rank(row.number("identifier"), extended=extended),
+        rank,
         period,
         row.number("deadline", period),
         cost,
@@ -226,15 +234,22 @@ def _frame(row: RowValues, bus: RowValues) -> Frame:
 
 
 def _ranks(rows: dict[str, list[RowValues]], on: dict[str, list[Frame]], reading: ReadFile) -> None:
-    """Two messages of one bus must not have the same identifier."""
-    lines = {row.name: row.entry.line for row in rows.get("message", ())}
+    """Two messages of one bus must not have the same identifier, nor one only a priority."""
+    known = {row.name: row for row in rows.get("message", ())}
     for bus, some in on.items():
         seen: dict[int, str] = {}
+        placed = {frame.name: "priority" in known[frame.name].numbers for frame in some}
         for frame in some:
             other = seen.setdefault(frame.rank, frame.name)
-            if other != frame.name:
+            line = known[frame.name].entry.line
+            if placed[frame.name] != placed[some[0].name]:
+                have, has = ("an identifier", "a priority")[:: -1 if placed[some[0].name] else 1]
                 reading.complain(
-                    lines[frame.name],
+                    line, f"message {frame.name} has {has} and {some[0].name} {have} on bus {bus}"
+                )
+            elif other != frame.name and not placed[frame.name]:
+                reading.complain(
+                    line,
                     f"identifier of message {frame.name} is already that of {other} on bus {bus}",
                 )
 

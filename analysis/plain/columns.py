@@ -100,7 +100,8 @@ KINDS: Kinds = {
     },
     "message": {
         "bus": NEEDED,
-        "identifier": Column(Form.NUMBER, required=True),
+        "identifier": Column(Form.NUMBER),
+        "priority": Column(Form.NUMBER, least=_ANY),
         "extended": _FLAG,
         "fd": _FLAG,
         "bytes": Column(Form.NUMBER),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import permutations
 from typing import Any
 
 import pytest
@@ -25,6 +26,18 @@ def frame(name: str, place: int, cost: int, period: int, **more: Any) -> Frame:
     return Frame(name, place, period, more.pop("deadline", period), cost, **more)
 
 
+def lists_of_frames(queues: bool) -> st.SearchStrategy[list[Frame]]:
+    shapes = st.tuples(
+        st.integers(1, 4), st.integers(8, 40), st.integers(0, 9), st.sampled_from(["", "q", "r"])
+    )
+    return st.lists(shapes, min_size=1, max_size=5).map(
+        lambda found: [
+            frame(f"m{n}", n, cost, period, jitter=late, queue=name if queues else "")
+            for n, (cost, period, late, name) in enumerate(found)
+        ]
+    )
+
+
 @pytest.mark.parametrize(
     ("made", "message"),
     [
@@ -32,10 +45,6 @@ def frame(name: str, place: int, cost: int, period: int, **more: Any) -> Frame:
         (lambda: frame("m", 1, 1, -9), "period of message m must be an integer above 0, not -9"),
         (lambda: frame("m", 1, 1, 9, jitter=-1), "jitter of message m must be an integer from 0"),
         (lambda: analyse([frame("m", 1, 1, 9)] * 2, BUS), "two messages have the name m"),
-        (
-            lambda: analyse([frame("m", 1, 1, 9), frame("n", 1, 1, 9)], BUS),
-            "the identifiers of messages m and n are the same",
-        ),
         (lambda: Bus(0), "bit_time of the bus must be an integer above 0, not 0"),
         (lambda: Errors(0), "period of the error model must be an integer above 0, not 0"),
         (lambda: classic_bits(9), "length of a classic frame must be at most 8, not 9"),
@@ -119,6 +128,52 @@ def test_load_above_one_has_no_bound_below_that_place() -> None:
     assert load([r.frame for r in found]) == Fraction(11, 10)
 
 
+# --- Of one rank -----------------------------------------------------------------------
+
+
+def test_frames_of_one_rank_are_sent_before_each_other() -> None:
+    a, b, c, d = analyse(
+        [frame("a", 1, 2, 50), frame("b", 2, 3, 50), frame("c", 2, 5, 50), frame("d", 3, 7, 50)],
+        BUS,
+    )
+    assert (a.bound, d.bound) == (7 + 2, 2 + 3 + 5 + 7)
+    assert (b.bound, c.bound) == (7 + 2 + 5 + 3, 7 + 2 + 3 + 5)
+    assert (b.blocker, c.blocker) == ("d", "d")
+    assert [(i.frame.name, i.time) for i in b.interference] == [("c", 5), ("a", 2)]
+
+
+def test_a_queue_is_no_more_urgent_than_what_has_the_rank_of_its_last() -> None:
+    frames = [
+        frame("a", 1, 4, 90, queue="q"),
+        frame("b", 2, 4, 90, queue="q"),
+        frame("c", 2, 4, 90),
+    ]
+    assert [r.bound for r in analyse(frames, BUS)] == [12, 12, 12]
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.data())
+def test_with_one_rank_a_response_is_the_longest_of_all_orders(data: st.DataObject) -> None:
+    frames = data.draw(lists_of_frames(queues=data.draw(st.booleans())))
+    first = data.draw(st.integers(0, len(frames) - 1))
+    last = data.draw(st.integers(first, len(frames) - 1))
+    tied = [replace(f, rank=first) if first <= f.rank <= last else f for f in frames]
+    found = {r.frame.name: r.bound for r in analyse(tied, BUS)}
+    longest: dict[str, int | None] = {}
+    for order in permutations(range(first, last + 1)):
+        ranks = dict(zip(range(first, last + 1), order, strict=True))
+        for one in analyse([replace(f, rank=ranks.get(f.rank, f.rank)) for f in frames], BUS):
+            name, known = one.frame.name, longest.get(one.frame.name, 0)
+            longest[name] = None if known is None or one.bound is None else max(known, one.bound)
+    if any(f.queue for f in frames):
+        assert all(
+            bound is None or (most := longest[n]) is not None and most <= bound
+            for n, bound in found.items()
+        )
+    else:
+        assert found == longest
+
+
 # --- First in, first out -------------------------------------------------------------------
 
 
@@ -144,18 +199,6 @@ def test_queues_that_wait_for_each_other_settle_or_have_no_bound() -> None:
     full = [replace(f, period=33) for f in frames]
     for response in analyse(full, BUS):
         assert response.bound is not None or response.reason is not None
-
-
-def lists_of_frames(queues: bool) -> st.SearchStrategy[list[Frame]]:
-    shapes = st.tuples(
-        st.integers(1, 4), st.integers(8, 40), st.integers(0, 9), st.sampled_from(["", "q", "r"])
-    )
-    return st.lists(shapes, min_size=1, max_size=5).map(
-        lambda found: [
-            frame(f"m{n}", n, cost, period, jitter=late, queue=name if queues else "")
-            for n, (cost, period, late, name) in enumerate(found)
-        ]
-    )
 
 
 @settings(max_examples=150, deadline=None)

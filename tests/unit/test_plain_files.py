@@ -219,6 +219,15 @@ def test_a_wrong_value_is_named_by_line_and_column(columns: dict[str, str], mess
             "a.csv:6: error: identifier of message n is already that of m on bus b",
         ),
         (
+            "bus,bit_rate\nb,125000\n\nmessage,bus,bytes,period_ms\nm,b,8,9\n",
+            "a.csv:5: error: message m must have either an identifier or a priority",
+        ),
+        (
+            "bus,bit_rate\nb,125000\n\nmessage,bus,identifier,priority,bytes,period_ms\n"
+            "m,b,5,,8,9\nn,b,,5,8,9\n",
+            "a.csv:6: error: message n has a priority and m an identifier on bus b",
+        ),
+        (
             "bus,bit_rate\nb,125000\n\nmessage,bus,identifier,period_ms\nm,b,5,8\n",
             "message m must have either bytes or cost_us",
         ),
@@ -467,3 +476,11 @@ def test_every_column_is_described() -> None:
         for name, column in columns.items():
             suffix = "_us" if column.form.timed else ""
             assert f"| `{name}{suffix}` |" in section, (kind, name)
+
+
+def test_messages_of_one_priority_may_go_before_each_other() -> None:
+    text = "bus,bit_rate\nb,1000000\n\nmessage,bus,priority,cost_us,period_ms\n"
+    found = load(text + "m,b,7,100,9\nn,b,7,200,9\nk,b,-1,50,9\n", "a.csv")
+    assert isinstance(found, PlainSystem)
+    responses = analyse(found).found.responses
+    assert [responses[name].bound for name in "mnk"] == [350_000, 350_000, 350_000]
