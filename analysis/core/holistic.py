@@ -5,8 +5,8 @@ systems (1994). What is released by the completion of something else arrives wit
 at the latest, and has as jitter the difference to its best case. Jitter begins at
 zero and only grows; responses grow with it, so the first state that repeats itself
 is the least, and a system without one is not bounded by the values it went through.
-Steps of a chain count as independent of each other: safe, and above what analyses
-that use offsets between them would give (Palencia and Gonzalez Harbour 1998).
+Steps of a chain count as independent of each other, safe, unless the network is
+``together``: then `transactions` finds what their distances make shorter.
 
 A best case is the sum of the best cases (`best`) along the chain, 0 unless given.
 """
@@ -24,6 +24,7 @@ from .checks import distinct
 from .platform import Platform
 from .responses import Reason, Response
 from .tasks import Task
+from .transactions import ends
 
 ROUNDS = 200
 """Rounds of the iteration; where it has not settled then, what is released has no bound."""
@@ -44,7 +45,8 @@ class Network:
     jitter then comes on top. Its period is that of what releases it, or a multiple where
     not every job does. Names are distinct over tasks and frames. ``platforms`` goes by
     the name of a core, ``ceilings`` by resource, as in `fixed_priority.analyse`. Nothing
-    that another releases has an offset.
+    that another releases has an offset. ``together``: steps of one chain count with the
+    distances that they have.
     """
 
     tasks: tuple[Task, ...]
@@ -54,6 +56,7 @@ class Network:
     sections: tuple[Section, ...] = ()
     platforms: Mapping[str, Platform] = field(default_factory=dict)
     ceilings: Mapping[str, int] = field(default_factory=dict)
+    together: bool = False
 
     def __post_init__(self) -> None:
         """Refuse names given twice, unknown names, circles and other periods."""
@@ -110,18 +113,20 @@ class Holistic:
 
     ``inherited`` is the jitter that an item has from its releasers, and ``best`` the
     least time from the event of its chain to its arrival. The bound of a response
-    counts from there: ``best + bound`` is the time from the event of the chain.
+    counts from there: ``best + bound`` is the time from the event of the chain. ``ends`` are
+    such times that are shorter, as the steps of a chain do not all meet.
     """
 
     responses: Mapping[str, Response | FrameResponse]
     inherited: Mapping[str, int]
     best: Mapping[str, int]
     rounds: int
+    ends: Mapping[str, int] = field(default_factory=dict)
 
     def from_event(self, name: str) -> int | None:
         """The longest time from the event that begins its chain to its completion."""
         bound = self.responses[name].bound
-        return None if bound is None else self.best[name] + bound
+        return None if bound is None else self.ends.get(name, self.best[name] + bound)
 
     @property
     def met(self) -> bool:
@@ -150,23 +155,27 @@ def analyse(network: Network) -> Holistic:
     best = {name: sum(least[one] for one in network.releasers(name)) for name in items}
     late: dict[str, int | None] = dict.fromkeys(items, 0)
     rounds, strained, settled = 0, 0, False
+    sooner: dict[str, int] = {}
     while not settled and rounds < ROUNDS and strained < STRAINED:
         rounds += 1
         responses = _responses(network, late)
         strained += any(r.reason is Reason.EFFORT for r in responses.values())
+        if network.together:
+            sooner = ends(network, responses, best)
         found: dict[str, int | None] = dict.fromkeys(items, 0)
         for name, by in network.released_by.items():
             bound = responses[by].bound
-            jitter = None if bound is None else best[by] + bound - best[name]
+            end = None if bound is None else sooner.get(by, best[by] + bound)
+            jitter = None if end is None else end - best[name]
             lost = jitter is None or jitter > LATEST * items[name].period
             found[name] = None if lost else jitter
         settled = found == late
         late = found
     if not settled:
         late = {name: None if network.releasers(name) else 0 for name in items}
-        responses = _responses(network, late)
+        responses, sooner = _responses(network, late), {}
     known = {name: jitter for name, jitter in late.items() if jitter is not None}
-    return Holistic(responses, known, best, rounds)
+    return Holistic(responses, known, best, rounds, sooner)
 
 
 def analyses(network: Network) -> Iterator[Holistic]:

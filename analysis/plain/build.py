@@ -131,6 +131,7 @@ def _system(rows: dict[str, list[RowValues]], reading: ReadFile) -> PlainSystem 
             tuple(sections),
             {name: made for name, made in platforms.items() if made is not None},
             ceilings,
+            together=True,
         )
         blockers(network.tasks, network.sections, network.ceilings)
     except ValueError as fault:

@@ -102,6 +102,7 @@ def _common(name: str, response: Response | FrameResponse, found: Holistic) -> J
         "response": needed,
         "slack": None if needed is None else deadline - needed,
         "met": found.meets(name),
+        "by_distances": name in found.ends,
         "reason": response.reason.value if response.reason else None,
         "window": response.window if response.bound is not None else None,
     }

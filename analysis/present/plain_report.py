@@ -12,7 +12,7 @@ from .bars import row_of, slack_of
 from .page import page
 from .report import Execution
 from .rows import chain_picture, hops_of, instants_of
-from .words import offset_lines, overload_lines
+from .words import distance_lines, offset_lines, overload_lines
 
 SHOWN = 300
 """Rows of a table; the tightest come first."""
@@ -49,7 +49,7 @@ def render_plain(
         "chains": [
             (one.chain.name, hops_of(one), one, chain_picture(one)) for one in result.latencies
         ],
-        "by_offsets": offset_lines(found.responses.values()),
+        "shorter": [*offset_lines(found.responses.values()), *distance_lines(found)],
         "executions": executions,
         "compared_with": earlier,
     }

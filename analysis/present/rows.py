@@ -45,6 +45,8 @@ def instants_of(found: Holistic, names: Iterable[str]) -> list[tuple[str, int, M
     """Pictures of the first critical instants that can be drawn, with where they end."""
     drawn: list[tuple[str, int, Markup]] = []
     for name in names:
+        if name in found.ends:
+            continue  # the picture would be that of the longer bound
         response = found.responses[name]
         if len(drawn) == SHOWN_INSTANTS:
             break

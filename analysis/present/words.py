@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ravenchart.analysis.core.can_response import FrameResponse
+from ravenchart.analysis.core.holistic import Holistic
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.system.critical import GIVEN
 from ravenchart.analysis.system.timing import Analysis, Verdict
@@ -140,6 +141,17 @@ def offset_lines(found: Iterable[Response | FrameResponse]) -> tuple[str, ...]:
     if not names:
         return ()
     return (f"By their offsets: R of {', '.join(names)}. All others hold for any offsets.",)
+
+
+def distance_lines(found: Holistic) -> tuple[str, ...]:
+    """Which responses are shorter as the steps of a chain do not all meet, in two sentences."""
+    if not found.ends:
+        return ()
+    names = ", ".join(found.ends)
+    return (
+        f"By the distances of the steps of chains: R of {names}. "
+        "Their parts are those of the longer bound without distances.",
+    )
 
 
 def _task_parts(response: Response) -> list[TextPart]:

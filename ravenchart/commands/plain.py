@@ -21,7 +21,7 @@ from ravenchart.analysis.plain.observed import budgets, observed
 from ravenchart.analysis.plain.results import Json, PlainResult, analyse, everything, loads
 from ravenchart.analysis.present.plain_report import render_plain
 from ravenchart.analysis.present.report import Execution
-from ravenchart.analysis.present.words import offset_lines, overload_lines
+from ravenchart.analysis.present.words import distance_lines, offset_lines, overload_lines
 from ravenchart.analysis.units import duration, percent
 from ravenchart.failures import Refused
 from ravenchart.terminal import console
@@ -147,7 +147,7 @@ def show(result: PlainResult, out: Console) -> None:
     out.print(_table(result))
     if len(found.responses) > SHOWN:
         out.print(f"and {len(found.responses) - SHOWN} more with more slack", markup=False)
-    for line in offset_lines(found.responses.values()):
+    for line in (*offset_lines(found.responses.values()), *distance_lines(found)):
         out.print(line, markup=False)
     for latency in result.latencies:
         out.print(

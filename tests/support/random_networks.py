@@ -125,3 +125,38 @@ def _chain(
     taker = Task("taker", chance.randint(0, 9), sender.period, sender.deadline, 3, core=core)
     frames = [*frames[:number], frame, *frames[number + 1 :]]
     return [*tasks, taker], frames, {frame.name: sender.name, taker.name: frame.name}
+
+
+def random_transactions(chance: random.Random) -> Network:
+    """Two cores, perhaps a bus, and chains that come back to them; other tasks between."""
+    names = ["c0", "c1", *["can"] * chance.randint(0, 1)]
+    tasks: list[Task] = []
+    frames: list[Frame] = []
+    released: dict[str, str] = {}
+    share = chance.choice((0.04, 0.08, 0.14))
+    for number in range(chance.randint(1, 3)):
+        period = chance.choice(PERIODS)
+        before, sporadic = "", chance.random() < 0.3
+        for step in range(chance.randint(1, 5)):
+            name, cost = f"x{number}.{step}", max(2, int(period * share * chance.uniform(0.3, 1.7)))
+            best = chance.choice((0, cost, chance.randint(0, cost)))
+            jitter = chance.choice((0, 0, chance.randint(0, period // 2)))
+            home, deadline = chance.choice(names), 9 * period
+            if home == "can":
+                rank = chance.randint(0, 9)
+                frames.append(
+                    Frame(name, rank, period, deadline, cost, jitter, best=best,
+                          sporadic=sporadic and not before)
+                )  # fmt: skip
+            else:
+                tasks.append(
+                    Task(name, chance.randint(0, 5), period, deadline, cost, jitter, home,
+                         best=best, sporadic=sporadic and not before)
+                )  # fmt: skip
+            if before:
+                released[name] = before
+            before = name
+    errors = Errors(4_000, bits=31) if chance.random() < 0.2 else None
+    buses = {"can": Bus(1, errors=errors)} if frames else {}
+    homes = {"can": tuple(frames)} if frames else {}
+    return Network(tuple(tasks), homes, buses, released, together=True)

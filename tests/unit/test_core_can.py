@@ -167,7 +167,7 @@ def test_with_one_rank_a_response_is_the_longest_of_all_orders(data: st.DataObje
             longest[name] = None if known is None or one.bound is None else max(known, one.bound)
     if any(f.queue for f in frames):
         assert all(
-            bound is None or (most := longest[n]) is not None and most <= bound
+            bound is None or ((most := longest[n]) is not None and most <= bound)
             for n, bound in found.items()
         )
     else:
