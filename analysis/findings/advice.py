@@ -64,6 +64,8 @@ class Advice:
     room: bool
     changes: tuple[Change, ...]
     relief: tuple[tuple[str, Fraction], ...] = ()
+    limits: bool = False
+    """A chain is above its limit: the changes bring it below that, too."""
 
 
 def of_model(analysis: Analysis) -> Advice | None:
@@ -82,7 +84,9 @@ def of_model(analysis: Analysis) -> Advice | None:
     periods += [message.element for message in system.messages if message.source is None]
     order = [*(task.element for task in free), *(m.element for m in system.messages)]
     choices = Choices(costs, periods, order)
-    return advice(network, choices, analysis.scaling, analysis.schedulable, kept(analysis))
+    found = advice(network, choices, analysis.scaling, analysis.schedulable, kept(analysis))
+    late = any(not latency.met for _, latency in analysis.limited)
+    return found and replace(found, limits=late)
 
 
 def kept(analysis: Analysis) -> Met:
@@ -172,7 +176,9 @@ def lines(found: Advice | None) -> tuple[str, ...]:
     """The advice in words: a heading, what suffices, and what does not."""
     if found is None:
         return ()
-    aim = f"let all execution times grow by {percent(ROOM)}" if found.room else "meet all deadlines"
+    aim = "keep all deadlines and limits" if found.limits else "meet all deadlines"
+    if found.room:
+        aim = f"let all execution times grow by {percent(ROOM)}"
     enough = [change for change in found.changes if change.enough]
     rest = [change for change in found.changes if not change.enough]
     told = [f"To {aim}, one of these is enough:"] if enough else [f"No single change would {aim}."]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
 
 from ravenchart.analysis.core.can_response import FrameResponse
@@ -14,7 +14,7 @@ from ravenchart.analysis.units import duration, microseconds, percent
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus
-from ravenchart.gen.model.system import Carried, Chain
+from ravenchart.gen.model.system import Carried, Chain, Gap
 from ravenchart.gen.origins import Origin
 
 MISSED = "RV-0901"
@@ -240,21 +240,37 @@ def _of_chains(analysis: Analysis) -> Iterator[Diagnostic]:
     for chain in analysis.system.chains:
         gap = chain.gap
         if gap is not None:
-            message = f"the chain {chain.name} is broken: no values go from {gap[0]} to {gap[1]}"
-            hint = "name what lies between them"
-            event = chain.gap_event
-            if event is not None:
-                name, source, region = event
-                hint = (
-                    f"the event {name} leads from {source} to {region}; a chain follows values: "
-                    f"let {region} read what {source} holds or writes"
-                )
-            yield error(NO_WAY, chain.origin, message, hint=hint)
+            message = (
+                f"the chain {chain.name} is broken: no values go from {gap.before} to {gap.after}"
+            )
+            yield error(NO_WAY, chain.origin, message, hint=_gap_hint(gap))
     for chain, found in analysis.limited:
         pairs = (("reaction", found.reaction, chain.reaction), ("age", found.age, chain.age))
         for what, value, limit in pairs:
             if limit is not None and (value is None or value > limit):
                 yield _late_chain(chain, found, what, value, limit)
+
+
+def _gap_hint(gap: Gap) -> str:
+    """What closes the gap, as far as the model tells."""
+    if gap.event is not None:
+        name, source, region = gap.event
+        return (
+            f"the event {name} leads from {source} to {region}; a chain follows values: "
+            f"let {region} read what {source} holds or writes"
+        )
+    if gap.turned:
+        return f"values go from {gap.after} to {gap.before}: give the two in that order"
+    ends, begins = _few(gap.reached), _few(gap.sources)
+    first = f"values of {gap.before} end at {ends}" if ends else f"nothing uses {gap.before}"
+    then = f"those of {gap.after} begin at {begins}" if begins else f"nothing leads to {gap.after}"
+    return f"{first}, and {then}: connect the two, or let a row read the one and make the other"
+
+
+def _few(places: Sequence[str]) -> str:
+    """Some places, and how many more there are."""
+    more = f" and {len(places) - LARGEST} more" if len(places) > LARGEST else ""
+    return ", ".join(places[:LARGEST]) + more
 
 
 def _late_chain(

@@ -14,7 +14,7 @@ from itertools import pairwise
 
 from ravenchart.gen.model.commands import Server
 from ravenchart.gen.model.statechart import OnEvent
-from ravenchart.gen.model.system import Carried, Chain, Stop, System
+from ravenchart.gen.model.system import Carried, Chain, Gap, Stop, System
 
 from .calls import published_by, rows_of
 
@@ -61,12 +61,13 @@ def flow_of(system: System) -> Flow:
     return flow
 
 
-def _event_over(system: System, flow: Flow, gap: tuple[str, str]) -> tuple[str, str, str] | None:
+def _event_over(
+    system: System, flow: Flow, before: Stop, after: Stop
+) -> tuple[str, str, str] | None:
     """An event on the way over a gap of a chain: itself, what raises it and the region it is for.
 
-    Places are as chains name them. None where no single event joins both sides.
+    None where no single event joins both sides.
     """
-    before, after = map(_stop, gap)
     for instance in system.instances:
         component = instance.component
         taken = [
@@ -94,14 +95,7 @@ def _event_over(system: System, flow: Flow, gap: tuple[str, str]) -> tuple[str, 
 def routed(system: System) -> System:
     """The system with the way of each of its chains."""
     flow = flow_of(system)
-    chains = (_routed(chain, flow) for chain in system.chains)
-    told = (
-        chain
-        if chain.gap is None
-        else replace(chain, gap_event=_event_over(system, flow, chain.gap))
-        for chain in chains
-    )
-    return replace(system, chains=tuple(told))
+    return replace(system, chains=tuple(_routed(chain, system, flow) for chain in system.chains))
 
 
 def _stop(place: str) -> Stop:
@@ -109,16 +103,42 @@ def _stop(place: str) -> Stop:
     return place if "." in place else Carried(place)
 
 
-def _routed(chain: Chain, flow: Flow) -> Chain:
+def _routed(chain: Chain, system: System, flow: Flow) -> Chain:
     """A chain with its way, or the gap in it."""
     nodes = [_stop(place) for place in chain.path]
     way = nodes[:1]
     for before, after in pairwise(nodes):
         part = _shortest(flow, before, after)
         if not part:
-            return replace(chain, way=(), gap=(str(before), str(after)))
+            return replace(chain, way=(), gap=_gap(system, flow, before, after))
         way += part[1:]
     return replace(chain, way=tuple(way), gap=None)
+
+
+def _gap(system: System, flow: Flow, before: Stop, after: Stop) -> Gap:
+    """What is known of two places between which no values go."""
+    back: defaultdict[Stop, list[Stop]] = defaultdict(list)
+    for place, following in flow.items():
+        for one in following:
+            back[one].append(place)
+    return Gap(
+        str(before),
+        str(after),
+        _event_over(system, flow, before, after),
+        bool(_shortest(flow, after, before)),
+        _ends(flow, before),
+        _ends(back, after),
+    )
+
+
+def _ends(flow: Flow, first: Stop) -> tuple[str, ...]:
+    """The places behind a place from which nothing goes on."""
+    seen, ahead = {first}, [first]
+    for place in ahead:
+        new = [one for one in flow.get(place, ()) if one not in seen]
+        seen.update(new)
+        ahead += new
+    return tuple(dict.fromkeys(str(one) for one in ahead if one != first and not flow.get(one)))
 
 
 def _shortest(flow: Flow, first: Stop, last: Stop) -> list[Stop]:

@@ -190,6 +190,22 @@ Stop = Carried | str
 
 
 @dataclass(frozen=True, slots=True)
+class Gap:
+    """Two places of a chain, as its path names them, between which no values go."""
+
+    before: str
+    after: str
+    event: tuple[str, str, str] | None
+    """An event that leads over the gap: itself, what raises it, and the region it is for."""
+    turned: bool
+    """Values go the other way."""
+    reached: tuple[str, ...]
+    """Where values from the first place end."""
+    sources: tuple[str, ...]
+    """Where values of the second place begin."""
+
+
+@dataclass(frozen=True, slots=True)
 class Chain:
     """A way that values take, and how long it may take them; None: no limit.
 
@@ -206,9 +222,7 @@ class Chain:
     age: Ns | None
     """From the sampling of an input until the output made of it."""
     way: tuple[Stop, ...] = ()
-    gap: tuple[str, str] | None = None
-    gap_event: tuple[str, str, str] | None = None
-    """An event that leads over the gap: itself, what raises it, and the region it is for."""
+    gap: Gap | None = None
 
 
 @dataclass(frozen=True, slots=True)

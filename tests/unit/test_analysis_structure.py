@@ -86,7 +86,8 @@ def test_a_way_goes_through_the_places_named_or_says_where_it_is_broken() -> Non
     one = replace(plant(), chains=tuple(Chain("c", HERE, path, Ns(1), None) for path in chains))
     whole, broken = routed(one).chains
     assert (whole.way[0], whole.way[-1], whole.gap) == (Carried("raw_level"), "pump.drive", None)
-    assert (broken.way, broken.gap) == ((), ("pump.drive", "raw_level"))
+    assert broken.gap is not None and broken.way == ()
+    assert (broken.gap.before, broken.gap.after) == ("pump.drive", "raw_level")
 
 
 def boxes_of(svg: str) -> list[tuple[float, float]]:

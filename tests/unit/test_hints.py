@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.analysis.findings import advice
+from ravenchart.analysis.system.timing import analyse
 from ravenchart.behaviour.rules.invariants import Broken, _not_inductive
 from ravenchart.building import checking
 from ravenchart.command_line import main
@@ -89,8 +91,17 @@ def test_a_chain_that_goes_by_an_event_names_it_and_its_hint_mends_it(tmp_path: 
     assert "RV-0904" not in _refused(tmp_path, mended)
 
 
-def test_a_gap_that_no_event_bridges_wants_what_lies_between(tmp_path: Path) -> None:
-    assert "hint: name what lies between them" in _refused(tmp_path, model())
+def test_a_gap_that_no_event_bridges_has_its_two_ends_named(tmp_path: Path) -> None:
+    assert (
+        "hint: values of incoming end at one.level, and those of outgoing begin at one.Main: "
+        "connect the two, or let a row read the one and make the other"
+    ) in _refused(tmp_path, model())
+
+
+def test_a_chain_the_wrong_way_round_is_told_the_order(tmp_path: Path) -> None:
+    turned = model().replace("path: [incoming, outgoing]", "path: [outgoing, one.Main]")
+    said = _refused(tmp_path, turned)
+    assert "hint: values go from one.Main to outgoing: give the two in that order" in said
 
 
 def test_without_a_search_no_number_of_situations_is_told() -> None:
@@ -156,3 +167,10 @@ def test_a_system_is_not_named_like_a_parent_of_units_of_gnat() -> None:
     for name in "AGIS":
         found = loaded(model().replace("system: Telling", f"system: {name}")).diagnostics
         assert "RV-0304" in [d.code for d in found]
+
+
+def test_where_a_chain_is_late_the_advice_speaks_of_limits() -> None:
+    late = model(right=", guard: level > 3").replace("reaction: 90 ms", "reaction: 9 ms")
+    found = loaded(late).system
+    assert found is not None
+    assert "keep all deadlines and limits" in advice.lines(advice.of_model(analyse(found)))[0]
