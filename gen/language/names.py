@@ -271,12 +271,21 @@ class NameScope(Generic[T]):
         else:
             findings.uses.append(NameUse(known[0], origin, self.kind, known[1]))
 
+    def _meant(self, name: str) -> str | None:
+        """A hint for an unknown name; where only built-in ones are known, to declare it."""
+        near = meant(name, self.names())
+        items = self.items.values()
+        built_in = items and all(origin is None and item is not None for _, origin, item in items)
+        if built_in and nearest(name, self.names()) is None:
+            return f"declare it in `{self.kind}s:`"
+        return near
+
     def look_up(self, name: str, origin: Origin, findings: Findings) -> T | None:
         """The item of that name; reported when the name is not declared."""
         self.used(name, origin, findings)
         if not self.knows(name):
             message = f"there is no {self.kind} named `{name}`"
-            findings.error("RV-0305", origin, message, hint=meant(name, self.names()))
+            findings.error("RV-0305", origin, message, hint=self._meant(name))
         found = self.find(name)
         if found is None:
             findings.lose()

@@ -174,3 +174,10 @@ def test_where_a_chain_is_late_the_advice_speaks_of_limits() -> None:
     found = loaded(late).system
     assert found is not None
     assert "keep all deadlines and limits" in advice.lines(advice.of_model(analyse(found)))[0]
+
+
+def test_where_no_type_is_declared_the_hint_is_to_declare_it() -> None:
+    text = model(right=", guard: level > 3").replace("types: {Level: {range: [0, 9]}}\n", "")
+    hints = {d.hint for d in loaded(text).diagnostics if d.code == "RV-0305"}
+    assert "declare it in `types:`" in hints
+    assert not any(hint and "one of: Boolean" in hint for hint in hints)
