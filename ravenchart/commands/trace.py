@@ -60,6 +60,9 @@ def execute(options: argparse.Namespace) -> int:
     if timeline.gaps:
         what = common.several(timeline.gaps, "trace record")
         say(options.answer, f"warning: {what} lost: the trace has gaps")
+    if timeline.values_lost:
+        what = common.several(timeline.values_lost, "recorded value")
+        say(options.answer, f"warning: {what} lost: the values have gaps")
     for what, number in timeline.lost.items():
         print(f"lost: {what}, {common.several(number, 'time')}")
     events = sum(row.at is not None for row in timeline.rows)

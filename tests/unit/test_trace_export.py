@@ -161,9 +161,9 @@ def test_the_rows_are_the_records_and_the_counts(
     assert "warning: 3 trace records lost: the trace has gaps" in printed.err
     with out.open(encoding="utf-8", newline="") as file:
         head, *rows = list(csv.reader(file))
-    assert head == ["time_ns", "node", "kind", "element", "detail"]
+    assert head == ["time_ns", "node", "kind", "element", "detail", "unit"]
     timed = [row for row in rows if row[0]]
-    assert timed[1][0] == "1500" and timed[1][2:] == ["state", "bed.Infusion", "Self_Test"]
+    assert timed[1][0] == "1500" and timed[1][2:] == ["state", "bed.Infusion", "Self_Test", ""]
     assert len(timed) == 9 and [int(row[0]) for row in timed] == sorted(int(r[0]) for r in timed)
     counts = {(row[2], row[3]): row[4] for row in rows if not row[0]}
     assert counts["lost", "trace"] == "3" and counts["faults", "Overrun"] == "1"
@@ -226,7 +226,7 @@ def test_a_simulation_has_a_track_for_each_place(
     rows = tmp_path / "simulated.csv"
     assert main(["trace", model, str(path), "--out", str(rows)]) == 0
     assert rows.read_text().splitlines()[1] == (
-        "0,Infusion_System,behaviour,bed.Keys,Listening.entry"
+        "0,Infusion_System,behaviour,bed.Keys,Listening.entry,"
     )
 
 

@@ -51,7 +51,9 @@ from ravenchart.gen.emit.certificate.certified import (
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID
 from ravenchart.gen.emit.tables.trace_calls import element_constant, note, row_number, traced
 from ravenchart.gen.emit.tables.trace_map import elements
+from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.recording import OBJECT
 from ravenchart.gen.model.system import Processor, Slot, System, Work
 
 from .reports import emit_main, emit_reports
@@ -66,6 +68,8 @@ def emit_deployment(system: System, header: str) -> tuple[Unit, ...]:
     units = [_health(system, header), _elements(system, header)]
     if traced(system):
         units.append(_trace(system, header))
+    if recording(system):
+        units.append(_recording(system, header))
     units += [_probe(system, n, header) for n in system.nodes if n.probe is not None]
     for bus in system.buses:
         units += emit_bus(system, bus, header)
@@ -106,6 +110,13 @@ def _trace(system: System, header: str) -> Unit:
     depth = max(n.trace_depth for n in system.nodes)
     args = arguments(Capacity=number(depth), Ceiling=priority(system.object("trace").ceiling))
     return _holding(system, "Trace", "Buffer", "Ravenchart.Trace_Buffers", args, header)
+
+
+def _recording(system: System, header: str) -> Unit:
+    """The buffer of values: as deep as the trace."""
+    depth = max(n.trace_depth for n in system.nodes)
+    args = arguments(Capacity=number(depth), Ceiling=priority(system.object(OBJECT).ceiling))
+    return _holding(system, UNIT, "Values", "Ravenchart.Value_Buffers", args, header)
 
 
 def _probe(system: System, node: Node, header: str) -> Unit:

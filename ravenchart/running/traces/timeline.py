@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from ravenchart.analysis.system.observed import NumberedElement, Observation, Visit
+from ravenchart.analysis.system.observed import VALUE, NumberedElement, Observation, Visit
 from ravenchart.gen.language.terms import NO_TIME, Ns
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.system import Processor, System
+
+from .values import Point, Quantity, Series, spans
 
 Arguments = dict[str, int | float | str | bool]
 
@@ -30,6 +33,7 @@ class Slice:
     start: Ns
     end: Ns
     open: bool = False
+    kind: str = "state"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +49,17 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class TraceRow:
-    """A record as a row; of a count at the end of a run, ``detail`` is the number."""
+    """A record as a row; of a count at the end of a run, ``detail`` is the number.
+
+    A recorded value counts in the ``unit``.
+    """
 
     at: Ns | None
     process: str
     kind: str
     element: str
     detail: str
+    unit: str = ""
 
 
 @dataclass(slots=True)
@@ -63,10 +71,26 @@ class Timeline:
     tracks: list[Track] = field(default_factory=list)
     slices: list[Slice] = field(default_factory=list)
     marks: list[Mark] = field(default_factory=list)
+    series: list[Series] = field(default_factory=list)
+    """The recorded values, by element."""
     lost: dict[str, int] = field(default_factory=dict)
     gaps: int = 0
+    values_lost: int = 0
     complete: bool = True
     """Of a run: it ended by itself, and the counts of its end are there."""
+
+    def take(self, series: Series, end: Ns) -> None:
+        """Add recorded values, until the end of the trace."""
+        quantity = series.quantity
+        self.series.append(series)
+        for at, number in series.points:
+            text = quantity.text(number)
+            self.rows.append(TraceRow(at, series.process, VALUE, series.name, text, quantity.unit))
+        if quantity.literals:
+            track = Track(series.process, series.name)
+            self.tracks.append(track)
+            for number, start, stop, still in spans(series.points, end):
+                self.slices.append(Slice(track, quantity.text(number), start, stop, still, VALUE))
 
 
 def of_run(system: System, parts: dict[str, Observation]) -> Timeline:
@@ -80,6 +104,7 @@ def of_run(system: System, parts: dict[str, Observation]) -> Timeline:
         lost = {f"{node}.{what}" if several else what: n for what, n in part.losses.items()}
         found.lost |= {what: n for what, n in lost.items() if n}
         found.gaps += part.trace_lost
+        found.values_lost += part.values_lost
         found.complete = found.complete and part.complete
     found.rows.sort(key=lambda row: (row.at is None, row.at or NO_TIME))
     return found
@@ -122,7 +147,18 @@ class _Run:
                     owner = name.rpartition(".")[0]
                     where = owner if record.element.kind in ("port", "event") else name
                     self._mark(where, f"{kind} {name}", kind, at, value=record.value)
+        self._values()
         self._counts()
+
+    def _values(self) -> None:
+        """The recorded values: those of an enumeration are slices as well."""
+        points: defaultdict[int, list[Point]] = defaultdict(list)
+        for one in self.seen.values:
+            points[one.element.number].append((self._time(one.time), one.value))
+        for element in self.seen.map.of_kind(VALUE):
+            quantity = Quantity.of(element.literals, element.unit)
+            series = Series(self.node, element.name, quantity, tuple(points[element.number]))
+            self.found.take(series, self._time(self.seen.end))
 
     def _time(self, time: Ns) -> Ns:
         return Ns(time + self.late)

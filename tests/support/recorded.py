@@ -1,0 +1,52 @@
+"""The model that records values, and what each of its elements is worth in execution after
+execution."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import count, islice
+
+from ravenchart.paths import ROOT
+
+FOLDER = ROOT / "tests" / "feature" / "recorded"
+MODEL = FOLDER / "model.yaml"
+
+Values = dict[str, list[str]]
+"""By element, as the formats show them."""
+
+
+def expected(executions: int) -> Values:
+    """What `give` and the port region record in so many executions, written down by hand."""
+    heights = [str(min(-1000 + 7 * k, 1000)) for k in range(1, executions + 1)]
+    hues = ["Green", *["Blue"] * (executions - 1)][:executions]
+    warm = [str(int(height) > -990) for height in heights]
+    far = [str(-(2**62) if int(height) < 0 else 2**62 - 1) for height in heights]
+    heat = [f"{(-400 + 3 * k) / 10:.1f}" for k in range(1, executions + 1)]
+    return {
+        "giver.height": heights,
+        "giver.hue": hues,
+        "giver.far": far,
+        "giver.reading.height": heights,
+        "giver.reading.hue": hues,
+        "giver.reading.warm": warm,
+        "taker.reading.height": heights,
+        "taker.heat": heat,
+    }
+
+
+def counted(executions: int) -> list[str]:
+    """What `Counting` records as `count` in so many executions: up to 4, every second time."""
+    return list(islice((str(min(1 + k // 2, 4)) for k in count()), executions))
+
+
+def alike(found: Values, wanted: Values) -> bool:
+    """Whether all values that were found are those wanted, from the first on."""
+    return all(found[name] == values[: len(found[name])] for name, values in wanted.items())
+
+
+def grouped(rows: Sequence[tuple[str, str]]) -> Values:
+    """Pairs of an element and a value, by element."""
+    made: Values = {}
+    for element, value in rows:
+        made.setdefault(element, []).append(value)
+    return made
