@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
+
+from asammdf import MDF
 
 from ravenchart.paths import ROOT
 
@@ -46,3 +49,11 @@ def grouped(rows: Sequence[tuple[str, str]]) -> Values:
     for element, value in rows:
         made.setdefault(element, []).append(value)
     return made
+
+
+def read_back(path: Path, element: str) -> list[tuple[int, int]]:
+    """The times in ns, and the numbers that a file of MDF has of an element, by asammdf."""
+    with MDF(path) as mdf:
+        signal = mdf.get(element, raw=True)
+        times = [round(float(at) * 1e9) for at in signal.timestamps]
+        return list(zip(times, map(int, signal.samples), strict=True))

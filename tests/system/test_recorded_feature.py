@@ -15,10 +15,11 @@ from ravenchart.analysis.system.observed import Observation, read_map, read_trac
 from ravenchart.building import checking, generation, programs
 from ravenchart.command_line import main
 from ravenchart.commands.simulate import build_simulation, executed, interpreted
+from ravenchart.running.traces.formats import FORMATS
 from ravenchart.running.traces.timeline import Timeline, of_run
 from tests.support import recorded
 from tests.support.interpreted import stimuli_of, system_of
-from tests.support.recorded import FOLDER, MODEL, Values
+from tests.support.recorded import FOLDER, MODEL, Values, read_back
 
 SECONDS = 0.5
 PRINTED = pytest.CaptureFixture[str]
@@ -59,6 +60,11 @@ def test_a_run_has_each_value_once_in_order(tmp_path: Path) -> None:
     assert {name: found[name] for name in wanted} == wanted
     assert found["taker.count"] == recorded.counted(releases)
     assert [one.time for one in seen.values] == sorted(one.time for one in seen.values)
+    path = tmp_path / "run.mf4"
+    path.write_bytes(FORMATS[".mf4"](timeline))
+    for element in seen.map.of_kind("value"):
+        points = [(one.time, one.value) for one in seen.values if one.element == element]
+        assert read_back(path, element.name) == points
 
 
 @pytest.mark.slow

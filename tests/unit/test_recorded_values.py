@@ -5,24 +5,30 @@ from __future__ import annotations
 import csv
 import json
 import re
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+from asammdf import MDF
 
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.observed import TraceError, TraceMap, read_map, read_trace, together
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.command_line import main
 from ravenchart.gen.emit.program import generate
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded
 from ravenchart.paths import ROOT
 from ravenchart.running import expected as expectations
 from ravenchart.running.judge import failures
 from ravenchart.running.process import Ended
+from ravenchart.running.traces.timeline import Slice, Timeline, Track
 from ravenchart.running.traces.values import Quantity, spans
 from tests.support.pump import loaded
-from tests.support.recorded import MODEL
+from tests.support.recorded import MODEL, read_back
 
 PRINTED = pytest.CaptureFixture[str]
 TEXT = MODEL.read_text(encoding="utf-8")
@@ -251,6 +257,70 @@ def test_perfetto_has_counters_of_numbers_and_slices_of_literals(
         ("giver.hue", "Blue", 40000.1, 0, True),
     ]
     assert {e["pid"] for e in events if e["ph"] == "C"} == {1}
+
+
+def test_mdf_has_the_numbers_with_units_literals_and_states(
+    trace: tuple[Path, Path], tmp_path: Path
+) -> None:
+    model, path = trace
+    own = read_map((model.parent / "generated" / "trace.json").read_text(encoding="utf-8"))
+    chart = own.named("taker.Counting", "region").number
+    states = (f"T 50 State {chart} 0", f"T 10000050 State {chart} 1")
+    path.write_text("\n".join(lines_of(own, *states, *TOLD)) + "\n")
+    out = tmp_path / "out.mf4"
+    assert main(["trace", str(model), str(path), "--out", str(out)]) == 0
+    assert read_back(out, "giver.height") == [(100, -993), (20000100, -986)]
+    assert read_back(out, "giver.far") == [(400, -(2**62))]
+    assert read_back(out, "taker.heat") == [(300, -397)]
+    with MDF(out) as mdf:
+        heat, hue, counting = (mdf.get(n) for n in ("taker.heat", "giver.hue", "taker.Counting"))
+        assert (heat.unit, mdf.get("giver.height").unit) == ("degC", "mm")
+        assert list(heat.samples) == pytest.approx([-39.7])
+        assert list(hue.samples) == [b"Green", b"Green", b"Blue"]
+        assert list(counting.samples) == [b"Waiting", b"Counted"]
+        assert [round(at * 1e9) for at in counting.timestamps] == [50, 10000050]
+        assert len(mdf.get("taker.count").samples) == 0
+        assert "lost values" in mdf.header.comment
+        assert str(mdf.groups[0].channel_group.acq_name) == "board"  # type: ignore[union-attr]
+
+
+def test_mdf_without_asammdf_or_values_is_refused_with_what_to_do(
+    trace: tuple[Path, Path], tmp_path: Path, capsys: PRINTED, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model, path = trace
+    out = tmp_path / "out.mf4"
+    with monkeypatch.context() as patch:
+        patch.setitem(sys.modules, "asammdf", None)
+        assert main(["trace", str(model), str(path), "--out", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert 'asammdf, which is not installed: python -m pip install "asammdf>=8.8"' in said
+    model.write_text(WITHOUT, encoding="utf-8")
+    assert main(["generate", str(model)]) == 0
+    own = read_map((model.parent / "generated" / "trace.json").read_text(encoding="utf-8"))
+    path.write_text("\n".join(lines_of(own, "END")) + "\n")
+    assert main(["trace", str(model), str(path), "--out", str(out)]) == 2
+    assert "the model records no values: name ports" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_states_inside_others_are_values_with_gaps() -> None:
+    timeline = Timeline("System")
+    track, other = Track("board", "bed.Infusion.Motor"), Track("board", "bed.Infusion_2")
+    timeline.tracks += [track, other]
+    timeline.slices += [
+        Slice(track, "On", Ns(10), Ns(20)), Slice(track, "Off", Ns(20), Ns(30)),
+        Slice(other, "On", Ns(0), Ns(9)), Slice(track, "On", Ns(50), Ns(60), open=True),
+    ]  # fmt: skip
+    region = SimpleNamespace(element="bed.Infusion", item=_region())
+    timeline.take_states(SimpleNamespace(recorded=(region,)))  # type: ignore[arg-type]
+    (series,) = timeline.states
+    texts = [(at, series.quantity.text(number)) for at, number in series.points]
+    assert texts == [(10, "On"), (20, "Off"), (30, "-"), (50, "On")]
+
+
+def _region() -> Region:
+    (item,) = [one.item for one in system_of(TEXT).recorded if isinstance(one.item, Region)]
+    return item
 
 
 @pytest.mark.parametrize(("unit", "number", "text", "value"), [

@@ -255,5 +255,5 @@ def test_another_suffix_and_a_missing_file_are_refused(tmp_path: Path, capsys: P
     model = str(PUMP / "model.yaml")
     with pytest.raises(SystemExit):
         main(["trace", model, "trace.txt", "--out", "out.txt"])
-    assert "'out.txt' has no suffix of .csv, .json" in capsys.readouterr().err
+    assert "'out.txt' has no suffix of .csv, .json, .mf4" in capsys.readouterr().err
     assert main(["trace", model, str(tmp_path / "none"), "--out", str(tmp_path / "o.csv")]) == 2

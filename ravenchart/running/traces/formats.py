@@ -1,4 +1,4 @@
-"""A timeline as CSV, and as JSON in the trace event format that Perfetto and Chrome open.
+"""A timeline as CSV, as MDF 4, and as JSON in the trace event format that Perfetto and Chrome open.
 
 The format: "Trace Event Format" (Google). Times (``ts``, ``dur``) are in microseconds. A slice is a
 complete event (``X``), a mark an instant event (``i``), a value a counter event (``C``), and names
@@ -13,8 +13,10 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from ravenchart.failures import Unusable
 from ravenchart.gen.language.terms import Ns
 
+from . import mdf
 from .timeline import Timeline, Track
 from .values import Series
 
@@ -42,7 +44,18 @@ def as_events(timeline: Timeline) -> str:
     return f'{json.dumps(head)[:-1]}, "traceEvents": [\n{lines}\n]}}\n'
 
 
-FORMATS: Mapping[str, Callable[[Timeline], str]] = {".csv": as_csv, ".json": as_events}
+def as_mdf(timeline: Timeline) -> bytes:
+    """The recorded values, and the states of the charts that `record` names, as MDF 4."""
+    if not timeline.series and not timeline.states:
+        raise Unusable("the model records no values: name ports and data items under `record:`")
+    return mdf.written([*timeline.series, *timeline.states], _about(timeline))
+
+
+FORMATS: Mapping[str, Callable[[Timeline], bytes]] = {
+    ".csv": lambda timeline: as_csv(timeline).encode(),
+    ".json": lambda timeline: as_events(timeline).encode(),
+    ".mf4": as_mdf,
+}
 """By the suffix of the file."""
 
 

@@ -83,6 +83,7 @@ def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
     for series in recorded.series():
         found.take(series, now)
     found.rows.sort(key=lambda row: row.at or NO_TIME)
+    found.take_states(system)
     return found
 
 

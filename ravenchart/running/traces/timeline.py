@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 
 from ravenchart.analysis.system.observed import VALUE, NumberedElement, Observation, Visit
 from ravenchart.gen.language.terms import NO_TIME, Ns
 from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Processor, System
 
 from .values import Point, Quantity, Series, spans
+
+INACTIVE = "-"
+"""Stands for a state where none is active."""
 
 Arguments = dict[str, int | float | str | bool]
 
@@ -73,6 +78,8 @@ class Timeline:
     marks: list[Mark] = field(default_factory=list)
     series: list[Series] = field(default_factory=list)
     """The recorded values, by element."""
+    states: list[Series] = field(default_factory=list)
+    """The states of the regions that are recorded."""
     lost: dict[str, int] = field(default_factory=dict)
     gaps: int = 0
     values_lost: int = 0
@@ -92,6 +99,31 @@ class Timeline:
             for number, start, stop, still in spans(series.points, end):
                 self.slices.append(Slice(track, quantity.text(number), start, stop, still, VALUE))
 
+    def take_states(self, system: System) -> None:
+        """Add what the recorded regions show as slices, each track by itself."""
+        regions = [one.element for one in system.recorded if isinstance(one.item, Region)]
+        for track in self.tracks:
+            slices = [one for one in self.slices if one.track == track and one.kind == "state"]
+            if slices and any(_is_in(track.name, region) for region in regions):
+                self.states.append(_states(track, slices))
+
+
+def _is_in(track: str, region: str) -> bool:
+    """Whether a track is that of a region, or of one inside its states."""
+    return track == region or track.startswith((f"{region}.", f"{region} in "))
+
+
+def _states(track: Track, slices: Sequence[Slice]) -> Series:
+    """States as a value over time; `-` where none of the track is active."""
+    literals = dict.fromkeys(one.name for one in slices)
+    numbers = {name: number for number, name in enumerate((*literals, INACTIVE))}
+    points: list[Point] = []
+    for one, later in zip_longest(slices, slices[1:]):
+        points.append((one.start, numbers[one.name]))
+        if not one.open and (later is None or later.start > one.end):
+            points.append((one.end, numbers[INACTIVE]))
+    return Series(track.process, track.name, Quantity.of(tuple(numbers), None), tuple(points))
+
 
 def of_run(system: System, parts: dict[str, Observation]) -> Timeline:
     """What runs of the nodes of a system showed; times count from the first start of all."""
@@ -107,6 +139,7 @@ def of_run(system: System, parts: dict[str, Observation]) -> Timeline:
         found.values_lost += part.values_lost
         found.complete = found.complete and part.complete
     found.rows.sort(key=lambda row: (row.at is None, row.at or NO_TIME))
+    found.take_states(system)
     return found
 
 
