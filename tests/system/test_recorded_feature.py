@@ -15,6 +15,7 @@ from ravenchart.analysis.system.observed import Observation, read_map, read_trac
 from ravenchart.building import checking, generation, programs
 from ravenchart.command_line import main
 from ravenchart.commands.simulate import build_simulation, executed, interpreted
+from ravenchart.running.snapshots import SnapshotFile, parsed
 from ravenchart.running.traces.formats import FORMATS
 from ravenchart.running.traces.timeline import Timeline, of_run
 from tests.support import recorded
@@ -22,6 +23,8 @@ from tests.support.interpreted import stimuli_of, system_of
 from tests.support.recorded import FOLDER, MODEL, Values, read_back
 
 SECONDS = 0.5
+LIVE = "live"
+"""The file of snapshots."""
 PRINTED = pytest.CaptureFixture[str]
 
 
@@ -31,7 +34,10 @@ def _run(folder: Path, seconds: float) -> tuple[Observation, Timeline]:
     generation.write_program(checked)
     (program,) = programs.programs_of(checked)
     trace, built = folder / "trace.txt", program.build()
-    process = subprocess.Popen([built], env={"RAVENCHART_TRACE": str(trace)})
+    snapshots = folder / LIVE
+    snapshots.touch()
+    files = {"RAVENCHART_TRACE": str(trace), "RAVENCHART_MONITOR": str(snapshots)}
+    process = subprocess.Popen([built], env=files)
     time.sleep(seconds)
     process.send_signal(signal.SIGTERM)
     assert process.wait(5) == 0
@@ -60,11 +66,16 @@ def test_a_run_has_each_value_once_in_order(tmp_path: Path) -> None:
     assert {name: found[name] for name in wanted} == wanted
     assert found["taker.count"] == recorded.counted(releases)
     assert [one.time for one in seen.values] == sorted(one.time for one in seen.values)
+    text = SnapshotFile(folder / LIVE).text()
+    assert text is not None
+    shown = {t.last.element: t for t in parsed(text, seen.map, LIVE).tallies}
     path = tmp_path / "run.mf4"
     path.write_bytes(FORMATS[".mf4"](timeline))
     for element in seen.map.of_kind("value"):
         points = [(one.time, one.value) for one in seen.values if one.element == element]
         assert read_back(path, element.name) == points
+        last = shown[element].last
+        assert (shown[element].count, last.time, last.value) == (len(points), *points[-1])
 
 
 @pytest.mark.slow
