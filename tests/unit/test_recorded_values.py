@@ -23,6 +23,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded
 from ravenchart.paths import ROOT
 from ravenchart.running import expected as expectations
+from ravenchart.running import value_plots
 from ravenchart.running.judge import failures
 from ravenchart.running.process import Ended
 from ravenchart.running.traces.timeline import Slice, Timeline, Track
@@ -301,6 +302,27 @@ def test_mdf_without_asammdf_or_values_is_refused_with_what_to_do(
     assert main(["trace", str(model), str(path), "--out", str(out)]) == 2
     assert "the model records no values: name ports" in capsys.readouterr().err
     assert not out.exists()
+
+
+def test_the_report_draws_what_was_recorded(trace_map: TraceMap) -> None:
+    seen = read_trace(lines_of(trace_map, *TOLD), trace_map)
+    ((caption, drawing),) = value_plots.pictures(seen)
+    assert caption == "Recorded values over time, in the time of the controller."
+    for text in ("giver.height in mm", "taker.heat in degC", "giver.hue", "Green", "Blue"):
+        assert f">{text}</text>" in drawing, text
+    assert "taker.warm" not in drawing, "nothing was recorded of it"
+    assert list(value_plots.pictures(read_trace(lines_of(trace_map, "END"), trace_map))) == []
+    assert list(value_plots.pictures(None)) == []
+
+
+def test_of_very_many_values_the_extremes_are_drawn() -> None:
+    points = [(Ns(n * 1000), n % 7) for n in range(100_000)]
+    points[51_234] = (points[51_234][0], 99)
+    points[77_777] = (points[77_777][0], -99)
+    found = list(value_plots.thinned(points))
+    assert len(found) <= 4 * value_plots.MOST_INTERVALS and found == sorted(set(found))
+    assert {points[0], points[-1], points[51_234], points[77_777]} <= set(found) <= set(points)
+    assert list(value_plots.thinned(points[:2000])) == points[:2000]
 
 
 def test_states_inside_others_are_values_with_gaps() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import zip_longest
@@ -13,7 +12,7 @@ from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Processor, System
 
-from .values import Point, Quantity, Series, spans
+from .values import Point, Quantity, Series, series_of, spans
 
 INACTIVE = "-"
 """Stands for a state where none is active."""
@@ -185,12 +184,7 @@ class _Run:
 
     def _values(self) -> None:
         """The recorded values: those of an enumeration are slices as well."""
-        points: defaultdict[int, list[Point]] = defaultdict(list)
-        for one in self.seen.values:
-            points[one.element.number].append((self._time(one.time), one.value))
-        for element in self.seen.map.of_kind(VALUE):
-            quantity = Quantity.of(element.literals, element.unit)
-            series = Series(self.node, element.name, quantity, tuple(points[element.number]))
+        for series in series_of(self.seen, self.node, self.late):
             self.found.take(series, self._time(self.seen.end))
 
     def _time(self, time: Ns) -> Ns:

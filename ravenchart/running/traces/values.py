@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from itertools import pairwise
 
+from ravenchart.analysis.system.observed import VALUE, Observation
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.language.units import count_of
 
@@ -66,3 +68,13 @@ def _changes(points: Iterable[Point]) -> Iterator[Point]:
         if number != last:
             yield at, number
             last = number
+
+
+def series_of(seen: Observation, process: str, late: int = 0) -> Iterator[Series]:
+    """All recorded values of a run, ``late`` ns after the times in its trace."""
+    points: defaultdict[int, list[Point]] = defaultdict(list)
+    for one in seen.values:
+        points[one.element.number].append((Ns(one.time + late), one.value))
+    for element in seen.map.of_kind(VALUE):
+        quantity = Quantity.of(element.literals, element.unit)
+        yield Series(process, element.name, quantity, tuple(points[element.number]))
