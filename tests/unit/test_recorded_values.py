@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import re
 import sys
 from pathlib import Path
@@ -30,6 +29,7 @@ from ravenchart.running.traces.timeline import Slice, Timeline, Track
 from ravenchart.running.traces.values import Quantity, spans
 from tests.support.pump import loaded
 from tests.support.recorded import MODEL, read_back
+from tests.support.trace_events import events_of, well_formed
 
 PRINTED = pytest.CaptureFixture[str]
 TEXT = MODEL.read_text(encoding="utf-8")
@@ -239,7 +239,8 @@ def test_perfetto_has_counters_of_numbers_and_slices_of_literals(
 ) -> None:
     out = tmp_path / "out.json"
     assert main(["trace", *map(str, trace), "--out", str(out)]) == 0
-    events = json.loads(out.read_text(encoding="utf-8"))["traceEvents"]
+    whole, events, named = events_of(out)
+    well_formed(whole)
     counters = [(e["name"], e["ts"], e["args"]["value"]) for e in events if e["ph"] == "C"]
     assert counters == [
         ("giver.height in mm", 0.1, -993),
@@ -247,7 +248,6 @@ def test_perfetto_has_counters_of_numbers_and_slices_of_literals(
         ("giver.far", 0.4, -(2**62)),
         ("giver.height in mm", 20000.1, -986),
     ]
-    named = {(e["pid"], e["tid"]): e["args"]["name"] for e in events if e["name"] == "thread_name"}
     slices = [
         (named[e["pid"], e["tid"]], e["name"], e["ts"], e["dur"], "args" in e)
         for e in events

@@ -6,7 +6,6 @@ import csv
 import json
 import shutil
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,11 +13,11 @@ from ravenchart.analysis.system.observed import read_map
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
 from tests.support.answers import answered
+from tests.support.trace_events import events_of, well_formed
 
 PUMP = ROOT / "examples" / "pump"
 NODES = ROOT / "examples" / "two_nodes"
 PRINTED = pytest.CaptureFixture[str]
-Json = dict[str, Any]
 
 
 def lines_of(folder: Path, *told: str, end: bool = True) -> str:
@@ -66,49 +65,6 @@ def trace(tmp_path: Path) -> Path:
     path = tmp_path / "trace.txt"
     path.write_text(lines_of(PUMP / "generated", *told), encoding="ascii")
     return path
-
-
-def events_of(out: Path) -> tuple[Json, list[Json], dict[tuple[int, int], str]]:
-    """The JSON object, its events, and its tracks by process and thread."""
-    whole = json.loads(out.read_text(encoding="utf-8"))
-    events = whole["traceEvents"]
-    tracks = {
-        (one["pid"], one["tid"]): one["args"]["name"]
-        for one in events
-        if one["name"] == "thread_name"
-    }
-    return whole, events, tracks
-
-
-def well_formed(whole: Json) -> None:
-    """As the trace event format asks for, clause by clause."""
-    assert set(whole) == {"displayTimeUnit", "otherData", "traceEvents"}
-    assert whole["displayTimeUnit"] in ("ms", "ns")
-    last = 0.0
-    for one in whole["traceEvents"]:
-        assert isinstance(one["pid"], int) and isinstance(one["tid"], int), one
-        assert one["pid"] != one["tid"], "that thread would be called the main one"
-        match one["ph"]:
-            case "M":
-                known = {"process_name": "name", "thread_name": "name",
-                         "thread_sort_index": "sort_index"}  # fmt: skip
-                assert list(one["args"]) == [known[one["name"]]]
-                assert set(one) == {"name", "ph", "pid", "tid", "args"}
-            case "X":
-                assert one["dur"] >= 0 and one["cat"] == "state" and one["name"]
-            case "i":
-                assert one["s"] == "t" and one["cat"] and one["name"]
-            case other:
-                raise AssertionError(f"no such phase: {other}")
-        if one["ph"] != "M":
-            assert one["ts"] >= last, "events are in order of time"
-            last = one["ts"]
-    slices: dict[tuple[int, int], float] = {}
-    for one in whole["traceEvents"]:
-        if one["ph"] == "X":
-            place = one["pid"], one["tid"]
-            assert one["ts"] >= slices.get(place, 0.0) - 1e-6, "slices of a track overlap"
-            slices[place] = one["ts"] + one["dur"]
 
 
 def test_a_run_is_slices_of_states_and_marks(trace: Path, tmp_path: Path, capsys: PRINTED) -> None:
