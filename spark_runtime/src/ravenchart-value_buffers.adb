@@ -10,7 +10,7 @@ is
       Ceiling      => Ceiling,
       Policy       => Queueing.Reject_Newest);
 
-   procedure Note (Element : Element_Id; Value : Number)
+   procedure Note (Value : Number; Element : Element_Id)
    with
      Refined_Global =>
        (Input  => (Epochs.Start, Ada.Real_Time.Clock_Time),

@@ -25,7 +25,7 @@ package Ravenchart.Value_Buffers
       (State with Synchronous, External => (Async_Readers, Async_Writers)),
     Initializes    => State
 is
-   procedure Note (Element : Element_Id; Value : Number)
+   procedure Note (Value : Number; Element : Element_Id)
    with
      Global =>
        (Input  => (Epochs.Start, Ada.Real_Time.Clock_Time),

@@ -123,7 +123,7 @@ procedure Test_Records is
       Ordered : Boolean := True;
    begin
       for Value of Given loop
-         Objects.Values.Note (200, Value);
+         Objects.Values.Note (Value, 200);
       end loop;
       for I in 1 .. 4 loop
          Objects.Values.Take (Item, Status);

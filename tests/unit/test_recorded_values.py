@@ -15,6 +15,7 @@ from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.observed import TraceError, TraceMap, read_map, read_trace, together
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.command_line import main
+from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.statechart import Region
@@ -74,7 +75,7 @@ def test_without_record_no_unit_and_no_line_is_for_values(files: dict[str, str])
 
 def test_each_value_has_one_call_where_it_is_set_sent_or_taken(files: dict[str, str]) -> None:
     def calls(name: str) -> list[str]:
-        return re.findall(r"Recording\.Values\.Note \(Elements\.(\w+)_Value", files[name])
+        return re.findall(r"Recording\.Values\.Note\s+\([^;]*?Recording\.(\w+)\);", files[name])
 
     assert calls("recorded_feature-giver.adb") == [
         "Giver_Reading_Height", "Giver_Reading_Hue", "Giver_Reading_Warm",
@@ -83,6 +84,26 @@ def test_each_value_has_one_call_where_it_is_set_sent_or_taken(files: dict[str, 
     assert calls("recorded_feature-taker.adb") == [
         "Taker_Reading_Height", "Taker_Heat", "Taker_Count", "Taker_Warm",
     ]  # fmt: skip
+
+
+def test_names_that_always_fit_still_do_and_fields_that_do_not_are_refused() -> None:
+    long = {"giver": "a" * 24, "taker": "b" * 24, "reading": "c" * 24, "count": "d" * 24,
+            "height": "e" * 24}  # fmt: skip
+    text = TEXT
+    for name, longer in long.items():
+        text = re.sub(rf"\b{name}\b", longer, text)
+    items_alone = re.sub(r"  - \w+\.c{24}.*\n", "", text)
+    assert list(clashes(system_of(items_alone))) == []
+    told = [one.message for one in clashes(system_of(text))]
+    field = f"{'a' * 24}.{'c' * 24}.{'e' * 24}"
+    assert f"the recorded value `{field}` makes a line of " in told[0]
+    assert all("the recorded value `" in one for one in told)
+
+
+def test_a_name_of_its_package_is_refused_to_others() -> None:
+    (found,) = clashes(system_of(TEXT.replace("giver", "recording")))
+    assert found.message.startswith("the instance `recording` clashes with another `Recording`")
+    assert list(clashes(system_of(WITHOUT.replace("giver", "recording")))) == []
 
 
 def test_numbers_of_other_elements_stay_and_the_map_says_what_values_mean(

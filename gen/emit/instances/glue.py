@@ -111,7 +111,7 @@ class Glue(Site):
         if any(n.trace_depth for n in self.system.nodes):
             names |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
         if recording(self.system):
-            names |= {f"{root}.{UNIT}", f"{root}.Elements"}
+            names.add(f"{root}.{UNIT}")
         if any(releases(self, port) for port in component.inputs()):
             names.add("Ravenchart.Releasing_Queues")  # and no other queue: see `releases`
         elif queued or self._served():

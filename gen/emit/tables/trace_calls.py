@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case, constant_name
+from ravenchart.gen.emit.ada.naming import constant_name
 from ravenchart.gen.emit.ada.syntax import (
     Do,
     Expr,
@@ -37,8 +37,8 @@ def note(
 
 def element_constant(element: str, kind: str) -> str:
     """The constant that holds an element's number."""
-    kinds = ("row", "processor", "message", "bus", "value")
-    return constant_name(element) + (f"_{ada_case(kind)}" if kind in kinds else "")
+    kinds = {"row": "_Row", "processor": "_Processor", "message": "_Message", "bus": "_Bus"}
+    return constant_name(element) + kinds.get(kind, "")
 
 
 def row_number(processor: Processor, row_type: str, row: str) -> Expr:

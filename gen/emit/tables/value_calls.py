@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case, type_name
-from ravenchart.gen.emit.ada.syntax import Do, Expr, Ref, Stmt, arguments, call, do
+from ravenchart.gen.emit.ada.naming import ada_case, constant_name, type_name
+from ravenchart.gen.emit.ada.syntax import Expr, Ref, Stmt, call, do
 from ravenchart.gen.language.terms import IntegerType
 from ravenchart.gen.model.recording import RecordedValue
 from ravenchart.gen.model.system import System
 
-from .trace_calls import element_constant
-from .trace_map import VALUE
-
 UNIT = "Recording"
-"""The package of the buffer of values, below the system's."""
+"""The package of the buffer of values and of their numbers, below the system's."""
 
 
 def recording(system: System) -> bool:
@@ -30,8 +27,8 @@ def record(
         if simulated:
             found.append(do("Ravenchart.Steps.Put_Value", Ref(f'"{one.element}"'), given))
         else:
-            own = Ref(f"Elements.{element_constant(one.element, VALUE)}")
-            found.append(Do(f"{UNIT}.Values.Note", arguments(own, given)))
+            own = Ref(f"{UNIT}.{constant_name(one.element)}")
+            found.append(do(f"{UNIT}.Values.Note", given, own))
     return tuple(found)
 
 
