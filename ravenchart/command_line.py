@@ -40,7 +40,7 @@ COMMANDS = {
     "run": ("run", "build and run the controller on this machine"),
     "shell": ("shell", "send commands to the running controller, and see what it says"),
     "monitor": ("monitor", "watch the running controller: responses, states, losses"),
-    "trace": ("trace", "write the trace of a run or simulation as CSV or for Perfetto"),
+    "trace": ("trace", "write the trace of a run or simulation as CSV, for Perfetto or as MDF 4"),
     "measure": ("measure", "run the controller, and measure the execution time of each row"),
     "requirements": (
         "requirements",

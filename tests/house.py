@@ -65,6 +65,8 @@ BUS = "bus"
 KERNEL = "analysis-kernel"
 FLOATS = "runtime-floats"
 """A part of the runtime that no controller needs: bodies of users call it."""
+VALUES = "runtime-values"
+"""The part of the runtime that controllers need which record values."""
 
 
 class UnknownTargetError(ValueError):
@@ -94,6 +96,7 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
     runtime: dict[str, Callable[[], Target]] = {
         **{f"runtime-{driver}": partial(_runtime, driver) for driver in DRIVERS},
         FLOATS: _floats,
+        VALUES: _values,
         BUS: _bus,
         KERNEL: _kernel,
     }
@@ -164,6 +167,23 @@ def _floats() -> Target:
         units=("ravenchart-ieee_floats.adb",),
     )
     return Target(FLOATS, task)
+
+
+def _values() -> Target:
+    obj = ROOT / "obj"
+    project = ROOT / "proofs" / "proofs.gpr"
+    driver = DRIVERS[0]
+    results = (f"proofs-checks-{driver}", f"checks-{driver}")
+    task = proving.ProofTask(
+        project,
+        {"MODE": "checks", "CAN_DRIVER": driver},
+        tuple(obj / folder / "gnatprove" for folder in results),
+        (project.parent, project.parent / "instances", *programs.runtime_folders(driver)),
+        warnings="error",
+        whole=True,
+        units=("instance_values.ads", "ravenchart-hosts-value_lines.adb"),
+    )
+    return Target(VALUES, task)
 
 
 def _bus() -> Target:

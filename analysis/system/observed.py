@@ -2,8 +2,8 @@
 
 The file holds one record a line, times in nanoseconds from the controller's start:
 ``E clock``, the machine's clock at that start, ``M digest`` of the model that the program was
-generated from, ``T time kind element value``, then the
-counts ``P processor releases misses worst_response``, ``A row worst_execution``,
+generated from, ``T time kind element value``, ``V time element value`` of recorded values, then
+the counts ``P processor releases misses worst_response``, ``A row worst_execution``,
 ``H fault count``, ``L what count``, ``W host_latency``, ``N now`` before the counts that
 were read then, ``F feeds``, and ``END``. Without ``END`` the run was cut off. The map tells
 what each element number stands for.
@@ -23,6 +23,14 @@ KINDS = frozenset(
 )
 """What a T line may tell, in lower case."""
 
+TRACE = "trace"
+"""What an L line calls the records that found the trace full."""
+
+VALUE = "value"
+"""The kind of a V line, and of the elements that have such."""
+
+VALUES = "values"
+"""What an L line calls the recorded values that found the buffer full."""
 
 _GOOD = ("sent", "received")
 """Last words of the L lines that count no losses."""
@@ -34,7 +42,10 @@ class TraceError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class NumberedElement:
-    """One numbered element; ``leaves`` are a region's or bus's, ``transitions`` a region's."""
+    """One numbered element; ``leaves`` are a region's or bus's, ``transitions`` a region's.
+
+    A recorded value has the ``literals`` of its enumeration, or the ``unit`` of its integers.
+    """
 
     number: int
     name: str
@@ -42,6 +53,8 @@ class NumberedElement:
     origin: str
     leaves: tuple[str, ...] = ()
     transitions: tuple[str, ...] = ()
+    literals: tuple[str, ...] = ()
+    unit: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +79,7 @@ class TraceMap:
 
 @dataclass(frozen=True, slots=True)
 class TraceRecord:
-    """One T line; ``kind`` in lower case, ``text`` the state or transition it tells of."""
+    """One T or V line; ``kind`` in lower case, ``text`` the state or transition it tells of."""
 
     time: Ns
     kind: str
@@ -75,9 +88,8 @@ class TraceRecord:
 
     @property
     def text(self) -> str:
-        """The leaf or transition that ``value`` stands for, else the number itself."""
-        names = {"state": self.element.leaves, "transition": self.element.transitions}
-        choices = names.get(self.kind, ())
+        """The leaf, transition or literal that ``value`` stands for, else the number itself."""
+        choices = _choices(self.kind, self.element)
         return choices[self.value] if choices else str(self.value)
 
 
@@ -109,6 +121,8 @@ class Observation:
 
     map: TraceMap
     records: list[TraceRecord] = field(default_factory=list)
+    values: list[TraceRecord] = field(default_factory=list)
+    """The recorded values, in the order in which they were recorded."""
     processors: dict[str, Releases] = field(default_factory=dict)
     executions: dict[str, Ns] = field(default_factory=dict)
     faults: dict[str, int] = field(default_factory=dict)
@@ -143,12 +157,18 @@ class Observation:
     @property
     def trace_lost(self) -> int:
         """Records that did not fit into the controller's trace buffer."""
-        return sum(n for what, n in self.losses.items() if what.lower().endswith("trace"))
+        return sum(n for what, n in self.losses.items() if _is_of(what, TRACE))
+
+    @property
+    def values_lost(self) -> int:
+        """Recorded values that did not fit into the controller's buffer."""
+        return sum(n for what, n in self.losses.items() if _is_of(what, VALUES))
 
     @property
     def end(self) -> Ns:
         """Time of the last record."""
-        return self.records[-1].time if self.records else Ns(0)
+        last = [records[-1].time for records in (self.records, self.values) if records]
+        return max(last, default=Ns(0))
 
     def of(self, kind: str, element: str) -> tuple[TraceRecord, ...]:
         """The records of one kind about one element, in order."""
@@ -227,9 +247,8 @@ def together(parts: Mapping[str, Observation]) -> Observation:
     for node, part in parts.items():
         own = {e: replace(e, number=e.number + len(elements)) for e in part.map.elements.values()}
         late = part.start - first
-        whole.records += [
-            replace(r, time=Ns(r.time + late), element=own[r.element]) for r in part.records
-        ]
+        for mine, theirs in ((whole.records, part.records), (whole.values, part.values)):
+            mine += [replace(r, time=Ns(r.time + late), element=own[r.element]) for r in theirs]
         elements |= {e.number: e for e in own.values()}
         whole.processors |= part.processors
         whole.executions |= part.executions
@@ -243,6 +262,7 @@ def together(parts: Mapping[str, Observation]) -> Observation:
         whole.digest = part.digest
         whole.map = replace(part.map, elements=elements)
     whole.records.sort(key=lambda record: record.time)
+    whole.values.sort(key=lambda record: record.time)
     return whole
 
 
@@ -250,7 +270,11 @@ def _take(words: list[str], seen: Observation) -> None:
     """Add one line to what was seen; ValueError says what is wrong with it."""
     match words:
         case ["T", time, kind, element, value]:
+            if kind.lower() == VALUE:
+                raise ValueError(f"unknown kind {kind!r}")
             seen.records.append(trace_record(time, kind, element, value, seen.map))
+        case ["V", time, element, value]:
+            seen.values.append(trace_record(time, VALUE, element, value, seen.map))
         case ["M", digest]:
             seen.digest = digest
         case ["E", clock]:
@@ -278,16 +302,28 @@ def _take(words: list[str], seen: Observation) -> None:
 
 def trace_record(time: str, kind: str, number: str, value: str, trace_map: TraceMap) -> TraceRecord:
     """The record in the words of a T line; ValueError says what is wrong with it."""
-    if kind.lower() not in KINDS:
-        raise ValueError(f"unknown kind {kind!r}")
     name = kind.lower()
-    regions = {"state": ("region", "bus"), "transition": ("region",)}.get(name, ())
-    element = _known(number, trace_map, *regions)
+    if name not in KINDS and name != VALUE:
+        raise ValueError(f"unknown kind {kind!r}")
+    kinds = {"state": ("region", "bus"), "transition": ("region",), VALUE: (VALUE,)}.get(name, ())
+    element = _known(number, trace_map, *kinds)
     record = TraceRecord(Ns(_number(time)), name, element, _number(value))
-    choices = {"state": element.leaves, "transition": element.transitions}.get(name)
+    choices = _choices(name, element)
     if choices is not None and not 0 <= record.value < len(choices):
         raise ValueError(f"{element.name} has no {name} number {value}")
     return record
+
+
+def _choices(kind: str, element: NumberedElement) -> tuple[str, ...] | None:
+    """The names that the values of such records stand for; None where they are numbers."""
+    if kind == VALUE:
+        return element.literals or None
+    return {"state": element.leaves, "transition": element.transitions}.get(kind)
+
+
+def _is_of(what: str, label: str) -> bool:
+    """Whether an L line counts this; of several controllers the node stands in front."""
+    return what.lower().rpartition(".")[2] == label
 
 
 def _known(number: str, trace_map: TraceMap, *kinds: str) -> NumberedElement:
@@ -310,6 +346,8 @@ def _element(item: Any) -> NumberedElement:
         origin=str(item.get("origin", "")),
         leaves=tuple(map(str, item.get("leaves", ()))),
         transitions=tuple(map(str, item.get("transitions", ()))),
+        literals=tuple(map(str, item.get("literals", ()))),
+        unit=item.get("unit"),
     )
 
 

@@ -22,7 +22,7 @@ from ravenchart.gen.model.system import Processor, Slot, System, Work
 from .expressions import Outbox, PortReading, View, default, perform
 from .region import RegionRun
 from .stimuli import Arrived, Raised, Stimuli
-from .traces import StepRecord
+from .traces import StepRecord, ValueRecord
 
 
 class Mailbox:
@@ -94,8 +94,9 @@ class InstanceRun:
 
     # --- rows
 
-    def run_ports(self) -> None:
-        """The port region: one arrival of each port at most."""
+    def run_ports(self) -> list[tuple[str, Value]]:
+        """The port region: one arrival of each port at most; the values that it took."""
+        taken: list[tuple[str, Value]] = []
         timing = self.component.port_region
         assert timing is not None
         for port in self.component.inputs():
@@ -108,6 +109,7 @@ class InstanceRun:
                 value = mailbox.waiting.popleft()
                 self.ports[port.name] = PortReading(value, "fresh")
                 happened.append((port.on_arrival, value))
+                taken.append((port.name, value))
             elif before.state != "never_received":
                 age = before.age + 1
                 old = port.max_age is not None and age > port.max_age // timing.period
@@ -119,6 +121,7 @@ class InstanceRun:
             for event, value_of_event in happened:
                 if event is not None:
                     self.offer(event, value_of_event if self._is_typed(event) else None)
+        return taken
 
     def _is_typed(self, event: str) -> bool:
         return any(e.name == event and e.type is not None for e in self.component.events)
@@ -146,6 +149,8 @@ class Machine:
         self._woken = sorted(woken, key=lambda one: -one.priority)
         self.earliest = {one.name: 0 for one in self._woken}
         """When each processor that a port releases may be released again."""
+        self.values: list[ValueRecord] = []
+        """What the model records, so far."""
 
     def run(self, stimuli: Stimuli) -> Iterator[StepRecord]:
         """Everything up to the last instant: the steps that executed a behaviour."""
@@ -220,13 +225,14 @@ class Machine:
         """One execution of a row."""
         match slot.work:
             case Work.PORT_REGION:
-                self.instances[slot.owner].run_ports()
+                for name, value in self.instances[slot.owner].run_ports():
+                    self._record(now, slot.owner, name, value)
             case Work.REGION:
                 yield from self._run_region(now, self.instances[slot.owner], slot.name)
             case Work.ACTIVITY:
                 own = self.instances[slot.owner]
                 activity = next(a for a in own.component.activities if a.name == slot.name)
-                self._run_activity(own, activity)
+                self._run_activity(now, own, activity)
             case Work.BUS_RECEIVE | Work.BUS_WATCH:
                 pass
 
@@ -236,15 +242,18 @@ class Machine:
         run.begin()
         for _ in range(run.region.steps_per_execution):
             step = run.step(view)
-            self._deliver(own, step.out)
+            self._deliver(now, own, step.out)
             if step.lost and run.region.on_overflow is not None:
                 own.offer(run.region.on_overflow, None)
             if step.behaviours:
                 yield StepRecord(now, own.instance.name, name, tuple(step.behaviours))
         run.publish()
         own.publish(view, run.region.writes)
+        for data in own.component.data:
+            if data.name in run.region.writes:
+                self._record(now, own.instance.name, data.name, own.data[data.name])
 
-    def _run_activity(self, own: InstanceRun, activity: Activity) -> None:
+    def _run_activity(self, now: Ns, own: InstanceRun, activity: Activity) -> None:
         place = activity.while_in
         if activity.flow is None:
             return
@@ -253,17 +262,26 @@ class Machine:
         view, out = own.view(), Outbox()
         perform(activity.flow, view, out)
         own.publish(view, activity.writes)
+        for name in activity.writes:
+            self._record(now, own.instance.name, name, own.data[name])
         raised = dict(out.raised)
         if place is not None and DONE in raised:
             own.regions[place.region].finish(place.state)
         in_order = [(event, raised[event]) for event in activity.raises if event in raised]
         out.raised = [one for one in in_order if one[0] != DONE]
-        self._deliver(own, out)
+        self._deliver(now, own, out)
 
-    def _deliver(self, own: InstanceRun, out: Outbox) -> None:
+    def _record(self, now: Ns, instance: str, item: str, value: Value) -> None:
+        """Record what was set, sent or taken, where the model asks for it."""
+        for one in self.system.values_of(instance, item):
+            scalar = dict(value)[one.field or ""] if isinstance(value, tuple) else value
+            self.values.append(ValueRecord(now, one.element, scalar))
+
+    def _deliver(self, now: Ns, own: InstanceRun, out: Outbox) -> None:
         """Send, ports in model order, then raise, in the order raised."""
         for port in own.component.outputs():
             if port.name in out.sent:
+                self._record(now, own.instance.name, port.name, out.sent[port.name])
                 for connection in self.system.connections:
                     if connection.source == End(own.instance.name, port.name):
                         self._put(connection.target, out.sent[port.name])

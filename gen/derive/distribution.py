@@ -214,6 +214,7 @@ def part_of(system: System, node: Node) -> System:
         traffic=(),
         processors=tuple(p for p in system.processors if p.node == node.name),
         shutdown=Shutdown(raises, system.shutdown.grace),
+        recorded=tuple(one for one in system.recorded if one.instance in here),
         chains=(),
         devices=tuple(device for device in system.devices if called(part, device)),
         polls=tuple(poll for poll in system.polls if poll.instance in here),

@@ -11,6 +11,7 @@ from ravenchart.gen.model.commands import Remote, RemoteRead
 from ravenchart.gen.model.component import Activity
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.nodes import PROBE, SUPERVISOR
+from ravenchart.gen.model.recording import OBJECT
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Processor, SharedObject, System, Task, Work
 
@@ -284,6 +285,7 @@ def objects_on_node(system: System) -> tuple[SharedObject, ...]:
         objects.append(sharing.made(f"{processor.name}.monitor", users))
     supervisors = {f"{node.name}.{SUPERVISOR}" for node in system.nodes}
     kept = ["health", *(["trace"] if any(node.trace_depth for node in system.nodes) else [])]
+    kept += [OBJECT] if system.recorded_values else []
     for core in sorted({1, *(processor.core for processor in system.processors)}):
         here = [processor.name for processor in system.processors if processor.core == core]
         if core == 1:

@@ -94,6 +94,8 @@ def _elements(system: System) -> Iterator[_Element]:
         yield _Element("device type", device_type.name, device_type.origin)
     yield from (_Element("device", d.name, d.origin) for d in system.devices)
     yield from (_Element("instance", i.name, i.origin) for i in system.instances)
+    for value in system.recorded_values:
+        yield _Element("recorded value", value.element, value.of.origin)
     yield from (_Element("processor", p.name, p.origin) for p in system.processors)
     yield from (_Element("bus", b.name, b.origin) for b in system.buses)
     yield from (_Element("component", c.name, c.origin) for c in system.components)

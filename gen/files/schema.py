@@ -474,3 +474,8 @@ class ModelFile(Element):
     processors: dict[Name, ProcessorForm] | None = optional("Processors: the tasks.")
     chains: dict[Name, ChainForm] | None = optional("Limits of latencies from end to end.")
     shutdown: ShutdownForm | None = optional("Reaction to a request to stop; none unless given.")
+    record: list[OwnedReference] | None = optional(
+        "Ports, data items and regions whose values enter the trace: `instance.port`, "
+        "`instance.data_item` or `instance.Region`; `instance.item.field` is one field of a "
+        "record. Their node needs `trace`."
+    )

@@ -22,6 +22,7 @@ from .commands import Binding, Device, Poll
 from .component import Component
 from .instances import Connection, End, Instance
 from .nodes import Node
+from .recording import RecordedItem, RecordedValue
 from .safety import SafeRegion
 from .statechart import Timing
 
@@ -261,6 +262,8 @@ class System:
     objects: tuple[SharedObject, ...] = ()
     safe_regions: tuple[SafeRegion, ...] = ()
     """The invariants that are contracts of the code, filled in when behaviour was checked."""
+    recorded: tuple[RecordedItem, ...] = ()
+    """What `record` names."""
     deployment: str | None = None
     """The deployment that was chosen, in lower case, where the model has several."""
 
@@ -282,6 +285,22 @@ class System:
         """The units that its types count in, in the order of the types."""
         counted = (t.unit for t in self.types if isinstance(t, IntegerType) and t.unit is not None)
         return tuple(dict.fromkeys(counted))
+
+    def values_of(self, instance: str, item: str) -> tuple[RecordedValue, ...]:
+        """The recorded values of a port or data item of an instance."""
+        return self._recorded.get((instance, item), ())
+
+    @cached_property
+    def _recorded(self) -> dict[tuple[str, str], tuple[RecordedValue, ...]]:
+        found: defaultdict[tuple[str, str], list[RecordedValue]] = defaultdict(list)
+        for one in self.recorded:
+            found[one.instance, one.item.name] += one.values
+        return {key: tuple(values) for key, values in found.items()}
+
+    @cached_property
+    def recorded_values(self) -> tuple[RecordedValue, ...]:
+        """All of them, in the order of `record`."""
+        return tuple(value for one in self.recorded for value in one.values)
 
     def instances_of(self, component: str) -> frozenset[str]:
         """The names of the instances of a component."""

@@ -49,6 +49,7 @@ from .interfaces import command_of, declare_vectors
 from .messages import message_of
 from .paths import DeploymentNames, Owners
 from .placing import connection_of, inner_connections, place
+from .recording import recorded_of
 from .values import types_of
 
 
@@ -436,6 +437,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         processors=processors.sound(),
         shutdown=stop,
         chains=chains.sound(),
+        recorded=recorded_of(model.files, site),
     )
     system = with_flows(calling(with_bindings(system, bindings, polls)))
     frames = identified(system.frames)

@@ -475,6 +475,7 @@ def _owners(system: System) -> dict[str, str]:
     found |= {f"{root}__{one.name.lower()}__": f"{one.name}: queues, driver, reception"
               for one in system.buses}  # fmt: skip
     found |= {f"{root}__codecs__": "codecs", f"{root}__trace__": "trace",
+              f"{root}__recording__": "recorded values",
               f"{root}__reports__": "reports", f"{root}__liveness_supervision__": "supervision",
               f"{root}__host_probe__": "probe"}  # fmt: skip
     return found

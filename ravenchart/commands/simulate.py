@@ -2,7 +2,8 @@
 
 The program is the generated one without tasks and buses: a main that holds the
 processors' tables, reads numbered stimuli from standard input, calls the rows in the
-order of `behaviour.interpreter.machine` and prints the lines of `StepRecord.text`.
+order of `behaviour.interpreter.machine` and prints the lines of `StepRecord.text`; those of
+recorded values have numbers in place of literals.
 """
 
 from __future__ import annotations
@@ -10,13 +11,20 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.region import Stuck
 from ravenchart.behaviour.interpreter.stimuli import Raised, Stimuli, read
-from ravenchart.behaviour.interpreter.traces import StepRecord, parsed
+from ravenchart.behaviour.interpreter.traces import (
+    Played,
+    StepRecord,
+    ValueRecord,
+    parsed,
+    parsed_value,
+)
 from ravenchart.behaviour.rules.outside import external_events
 from ravenchart.building.checking import Checked
 from ravenchart.building.generation import replace_file, without_clashes, write_first_versions
@@ -30,6 +38,7 @@ from ravenchart.gen.emit.nodes.simulation import stimuli as stimuli_of_system
 from ravenchart.gen.emit.program import simulation, simulation_folders, source_folders
 from ravenchart.gen.files.load import LARGEST, read_file
 from ravenchart.gen.files.located import lines_of
+from ravenchart.gen.language.terms import IntegerType
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import ROOT
@@ -71,9 +80,15 @@ def _refused(found: Sequence[Diagnostic], path: Path, text: str) -> Refused:
 
 def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[StepRecord]:
     """What the interpreter executes; Refused when the chart gets stuck."""
+    return interpreted(system, stimuli).steps
+
+
+def interpreted(system: System, stimuli: Stimuli) -> Played:
+    """What the interpreter executes, and records; Refused when the chart gets stuck."""
+    machine = Machine(as_one(system))
     try:
         with progress("simulate"):
-            return list(Machine(as_one(system)).run(stimuli))
+            return Played(list(machine.run(stimuli)), machine.values)
     except Stuck as stuck:
         raise refused_as(stuck) from stuck
 
@@ -85,17 +100,20 @@ def refused_as(stuck: Stuck) -> Refused:
     return Refused(render(found, {}), [found])
 
 
-def simulated_by_program(checked: Checked, stimuli: Stimuli) -> list[StepRecord]:
-    """What the generated program executes."""
-    return played_by_program(checked)(stimuli)
+def simulated_by_program(checked: Checked, stimuli: Stimuli) -> Played:
+    """What the generated program executes, and records."""
+    return executed(checked.system, _built(checked), stimuli)
 
 
 def played_by_program(checked: Checked) -> Callable[[Stimuli], list[StepRecord]]:
     """The generated program, built: what it executes under stimuli."""
+    return partial(run_simulation, checked.system, _built(checked))
+
+
+def _built(checked: Checked) -> Path:
     without_clashes(checked)
     write_first_versions(checked)
-    program = build_simulation(checked.system, checked.folder, _home(checked))
-    return partial(run_simulation, checked.system, program)
+    return build_simulation(checked.system, checked.folder, _home(checked))
 
 
 def _home(checked: Checked) -> Path:
@@ -142,6 +160,11 @@ def places_of_user(system: System, folder: Path) -> list[Path]:
 
 def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[StepRecord]:
     """The steps that the compiled program executes under the stimuli."""
+    return executed(system, program, stimuli).steps
+
+
+def executed(system: System, program: Path, stimuli: Stimuli) -> Played:
+    """What the compiled program executes under the stimuli, and records."""
     known = {
         (instance.lower(), what.lower()): (number, of_type)
         for number, (instance, what, of_type) in enumerate(stimuli_of_system(system), 1)
@@ -157,7 +180,18 @@ def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[Step
         done = children.run([program], text)
     if done.returncode:
         raise ToolFailed(f"{program.name}: {done.stderr.strip()}")
-    return [parsed(line) for line in done.stdout.splitlines()]
+    steps: list[StepRecord] = []
+    recorded: list[ValueRecord] = []
+    types = {one.element: one.type for one in system.recorded_values}
+    for line in done.stdout.splitlines():
+        if ": " in line:
+            steps.append(parsed(line))
+        else:
+            found = parsed_value(line)
+            number, of_type = int(found.value), types[found.element]
+            value = number if isinstance(of_type, IntegerType) else of_type.literals[number]
+            recorded.append(replace(found, value=value))
+    return Played(steps, recorded)
 
 
 def left_out(system: System) -> Diagnostic | None:
@@ -211,10 +245,10 @@ def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: boo
     for one in unexpected(checked.system, stimuli):
         print(render(one, {}), file=sys.stderr)
     if interpreter:
-        records = simulated_by_interpreter(checked.system, stimuli)
+        played = interpreted(checked.system, stimuli)
     else:
-        records = simulated_by_program(checked, stimuli)
-    return "".join(f"{one.json() if as_json else one.text()}\n" for one in records)
+        played = simulated_by_program(checked, stimuli)
+    return "".join(f"{one.json() if as_json else one.text()}\n" for one in played.lines())
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:

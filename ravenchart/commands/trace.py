@@ -1,4 +1,4 @@
-"""`ravenchart trace`: the trace of a run or a simulation, as CSV or for Perfetto."""
+"""`ravenchart trace`: the trace of a run or a simulation, as CSV, for Perfetto or as MDF 4."""
 
 from __future__ import annotations
 
@@ -37,7 +37,8 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     sub.add_argument(
         "--out", type=_out, metavar="FILE", required=True,
-        help="the file to write; its suffix chooses the format: .csv, or .json for Perfetto",
+        help="the file to write; its suffix chooses the format: .csv, .json for Perfetto, or .mf4 "
+        "for recorded values as MDF 4",
     )  # fmt: skip
 
 
@@ -54,12 +55,15 @@ def execute(options: argparse.Namespace) -> int:
         timeline = _timeline(checked, options.trace)
     except TraceError as fault:
         raise Refused(str(fault)) from None
-    options.out.write_text(FORMATS[options.out.suffix](timeline), encoding="utf-8")
+    options.out.write_bytes(FORMATS[options.out.suffix](timeline))
     if not timeline.complete:
         say(options.answer, "warning: the trace was cut off: the counts of its end are missing")
     if timeline.gaps:
         what = common.several(timeline.gaps, "trace record")
         say(options.answer, f"warning: {what} lost: the trace has gaps")
+    if timeline.values_lost:
+        what = common.several(timeline.values_lost, "recorded value")
+        say(options.answer, f"warning: {what} lost: the values have gaps")
     for what, number in timeline.lost.items():
         print(f"lost: {what}, {common.several(number, 'time')}")
     events = sum(row.at is not None for row in timeline.rows)

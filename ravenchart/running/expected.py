@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from ravenchart.analysis.present.report import Comparison, Execution
 from ravenchart.analysis.system.journeys import Journey
-from ravenchart.analysis.system.observed import Observation
+from ravenchart.analysis.system.observed import TRACE, VALUES, Observation
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.scenario import EXPECTED, Expected, Scenario
 
@@ -61,7 +61,7 @@ def counted(
     late, long = excused(compared, executed, ended)
     found: dict[Key, int] = {}
     for what, n in seen.losses.items():
-        if not what.lower().endswith("trace"):
+        if what.lower().rpartition(".")[2] not in (TRACE, VALUES):
             found["lost", what] = n
     for what, n in seen.faults.items():
         if what.upper() == OVERRUN and (long or not ended.real_time):

@@ -122,6 +122,8 @@ def failures(
             yield "the trace is cut off: its END line is missing"
         if seen.trace_lost:
             yield f"{seen.trace_lost} trace records were lost"
+        if seen.values_lost:
+            yield f"{seen.values_lost} recorded values were lost"
         if seen.complete and not seen.processors:
             yield "the trace holds no processor's counts"
     if ended.real_time:

@@ -31,6 +31,8 @@ def tables(
         parts.append(_events(last))
     if node.traffic or node.queues:
         parts.append(_traffic(node))
+    if node.values:
+        parts.append(_values(node))
     parts.append(Text(f"not seen: {'; '.join(node.not_seen)}", style="dim"))
     return Group(*parts)
 
@@ -65,6 +67,9 @@ def lines(node: WatchedNode, name: str, *, counts: bool) -> Iterator[str]:
     for queue in node.queues:
         waiting = "?" if queue.waiting is None else queue.waiting
         yield f"{where}{now} {queue.name} queue {waiting} of {queue.depth}"
+    for value in node.values:
+        unit = f" {value.unit}" if value.unit else ""
+        yield f"{where}{now} {value.name} value {value.value}{unit}"
     for what, number in node.lost.items():
         yield f"{where}{now} {what} lost {number}"
 
@@ -147,6 +152,14 @@ def _traffic(node: WatchedNode) -> Table:
         )  # fmt: skip
         ago = f"{max(0, node.now - last[name]) / 1e9:.1f}"
         table.add_row(name, *cells, ago, waiting.get(name, ""))
+    return table
+
+
+def _values(node: WatchedNode) -> Table:
+    table = columns("recorded value", "last>", "", "recorded>", "s ago>")
+    for one in node.values:
+        ago = f"{max(0, node.now - one.last) / 1e9:.1f}"
+        table.add_row(one.name, one.value, one.unit, str(one.count), ago)
     return table
 
 

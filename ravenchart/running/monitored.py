@@ -8,22 +8,25 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from ravenchart.analysis.present.report import compare
-from ravenchart.analysis.system.observed import TraceRecord
+from ravenchart.analysis.system.observed import VALUE, TraceRecord
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.described import Described
 from ravenchart.gen.model.component import PortKind
 
 from .snapshots import Snapshot, Tally
 from .traces.timeline import around
+from .traces.values import Quantity
 
 LISTED = ("transition", "fault")
 """The kinds of records that a snapshot lists one by one."""
 
 REAL_TIME = (os.SCHED_FIFO, os.SCHED_RR)
 
+VALUES_NOT_SEEN = "values of ports, data and events"
+OTHER_VALUES = "values of events, and of ports and data that `record` does not name"
 NEVER_SEEN = (
     "the last response of a processor: it keeps the longest",
-    "values of ports, data and events",
+    VALUES_NOT_SEEN,
     "how many events wait in the queues of charts",
 )
 """What no controller reports."""
@@ -123,6 +126,22 @@ class WatchedQueue(Described):
 
 
 @dataclass(slots=True)
+class WatchedValue(Described):
+    """What a port or data item was worth last, where the model records it."""
+
+    name: str
+    """Its name; of a record that of one field."""
+    value: str
+    """The name of the literal, or the number in the unit."""
+    unit: str
+    """The unit; empty where there is none."""
+    count: int
+    """How many values were recorded."""
+    last: int
+    """When the last one was recorded, in ns."""
+
+
+@dataclass(slots=True)
 class WatchedNode(Described):
     """A controller, by its last snapshot. Times count from its start."""
 
@@ -152,6 +171,8 @@ class WatchedNode(Described):
     """In the order of the model."""
     queues: list[WatchedQueue]
     """Those of queued ports."""
+    values: list[WatchedValue]
+    """What the model records, in its order."""
     faults: dict[str, int]
     """How many faults of each kind there were."""
     lost: dict[str, int]
@@ -207,6 +228,7 @@ class NodeMonitor:
                 or t.last.element.kind == "bus"
             ],
             queues=list(self._queues(snapshot, tallies)),
+            values=[_value(t) for t in snapshot.tallies if t.last.kind == VALUE],
             faults={kind: n for kind, n in seen.faults.items() if n},
             lost={what: n for what, n in seen.losses.items() if n},
             not_seen=list(self._not_seen(snapshot)),
@@ -269,7 +291,9 @@ class NodeMonitor:
                 yield WatchedQueue(name, waiting, port.depth, lost)
 
     def _not_seen(self, snapshot: Snapshot) -> Iterator[str]:
-        yield from NEVER_SEEN
+        records = bool(snapshot.seen.map.of_kind(VALUE))
+        for text in NEVER_SEEN:
+            yield OTHER_VALUES if records and text == VALUES_NOT_SEEN else text
         if not snapshot.tallies:
             yield "states, transitions, messages and faults by element: no record of a trace came"
         if snapshot.seen.losses.get("snapshot"):
@@ -280,6 +304,13 @@ class NodeMonitor:
 
 def _count(tally: Tally | None) -> int:
     return 0 if tally is None else tally.count
+
+
+def _value(tally: Tally) -> WatchedValue:
+    last = tally.last
+    quantity = Quantity.of(last.element.literals, last.element.unit)
+    text = quantity.text(last.value)
+    return WatchedValue(last.element.name, text, quantity.unit, tally.count, last.time)
 
 
 def _event(record: TraceRecord, faults: Sequence[str]) -> WatchedEvent:

@@ -35,7 +35,7 @@ from ravenchart.hw_can.bench.runner import Progress, ScenarioResult, run_scenari
 from ravenchart.hw_can.bench.scenario import Cut, Hold, Mend, Scenario, ScenarioError, load_scenario
 from ravenchart.stacks.report import Memory
 
-from . import bus_log, expected, judge, plots, result, server, summary
+from . import bus_log, expected, judge, plots, result, server, summary, value_plots
 from .process import ControllerProcess, Ended, StartError, separate_cores
 from .result import RunOutcome
 
@@ -229,6 +229,7 @@ def write_report(
         written.append(picture)
         caption = "Target and true position of each axis, its states in the band above."
         pictures.append((caption, svg(figure)))
+    pictures += value_plots.pictures(outcome.observation)
     run = RunReport(
         title=outcome.title,
         passed=outcome.passed,

@@ -65,6 +65,9 @@ is
 
    Summaries : array (Kept_Element, Traces.Trace_Kind) of Summary;
 
+   Values : array (Kept_Element) of Summary;
+   --  Of recorded values.
+
    Last_Element : Kept_Element := 0;
    --  The greatest that there was a record of.
 
@@ -124,7 +127,7 @@ is
    --  Add Text as a whole, where it leaves that much room.
 
    procedure Note_Record (Text : String);
-   --  Text is a T line.
+   --  Text is a T line, or a V line.
 
    procedure Add (To : in out Kept_Line; Text : String);
    --  Add Text, as far as it fits.
@@ -135,6 +138,10 @@ is
       Width  : Positive := 1)
    with Pre => Width <= 20;
    --  Add a blank and Number in decimal, with zeros in front for its Width.
+
+   procedure Append_Count
+     (Kind : String; Element : Kept_Element; Kept : Summary);
+   --  Add the C line of a kind of records of an element, if there were some.
 
    procedure Write_Snapshot;
 
@@ -237,6 +244,9 @@ is
       procedure Get (Number : out Long_Long_Integer);
       --  The number at Place, which is then behind it and its blank.
 
+      procedure Count (Kept : in out Summary);
+      --  One more, and this the last.
+
       procedure Get (Number : out Long_Long_Integer) is
          Negative : constant Boolean := Text (Place) = '-';
       begin
@@ -255,34 +265,43 @@ is
          Place := Place + 1;
       end Get;
 
+      Is_Value : constant Boolean := Text (Text'First) = 'V';
+
       First   : Positive;
-      Kind    : Traces.Trace_Kind;
+      Kind    : Traces.Trace_Kind := Traces.State;
       At_Time : Long_Long_Integer;
       Element : Long_Long_Integer;
       Value   : Long_Long_Integer;
+
+      procedure Count (Kept : in out Summary) is
+      begin
+         Kept := (Kept.Count + 1, At_Time, Value);
+      end Count;
+
    begin
       Get (At_Time);
-      First := Place;
-      while Text (Place) /= ' ' loop
+      if not Is_Value then
+         First := Place;
+         while Text (Place) /= ' ' loop
+            Place := Place + 1;
+         end loop;
+         Kind  := Traces.Trace_Kind'Value (Text (First .. Place - 1));
          Place := Place + 1;
-      end loop;
-      Kind  := Traces.Trace_Kind'Value (Text (First .. Place - 1));
-      Place := Place + 1;
+      end if;
       Get (Element);
       Get (Value);
-      if Element <= Long_Long_Integer (Kept_Element'Last) then
-         declare
-            Kept : Summary renames
-              Summaries (Kept_Element (Element), Kind);
-         begin
-            Kept := (Kept.Count + 1, At_Time, Value);
-         end;
+      if Element > Long_Long_Integer (Kept_Element'Last) then
+         Dropped := Dropped + 1;
+      else
          Last_Element :=
            Kept_Element'Max (Last_Element, Kept_Element (Element));
-      else
-         Dropped := Dropped + 1;
+         if Is_Value then
+            Count (Values (Kept_Element (Element)));
+         else
+            Count (Summaries (Kept_Element (Element), Kind));
+         end if;
       end if;
-      if Kind in Traces.Transition | Traces.Fault then
+      if Kind in Traces.Transition | Traces.Fault and then not Is_Value then
          Newest := Newest + 1;
          Recent (Newest).Length := Text'Length;
          Recent (Newest).Text (1 .. Text'Length) := Text;
@@ -299,7 +318,7 @@ is
          return;
       end if;
       case Text (Text'First) is
-         when 'T' =>
+         when 'T' | 'V' =>
             Note_Record (Text);
          when 'M' =>
             Head.Text (Head.Length + 1 .. Head.Length + Text'Length) := Text;
@@ -320,6 +339,27 @@ is
       end case;
    end Note;
 
+   ------------------
+   -- Append_Count --
+   ------------------
+
+   procedure Append_Count
+     (Kind : String; Element : Kept_Element; Kept : Summary)
+   is
+      Text : Kept_Line;
+   begin
+      if Kept.Count > 0 then
+         Add (Text, "C ");
+         Add (Text, Kind);
+         Add_Number (Text, Long_Long_Integer (Element));
+         Add_Number (Text, Long_Long_Integer (Kept.Count));
+         Add_Number (Text, Kept.At_Time);
+         Add_Number (Text, Kept.Value);
+         Add (Text, (1 => ASCII.LF));
+         Append (Snapshot, Text.Text (1 .. Text.Length));
+      end if;
+   end Append_Count;
+
    --------------------
    -- Write_Snapshot --
    --------------------
@@ -327,7 +367,6 @@ is
    procedure Write_Snapshot is
       First_Line : constant := 22;
       Text       : Kept_Line;
-      Kept       : Summary;
       Place      : Recent_Count := Newest;
    begin
       Sequence := Sequence + 1;
@@ -341,19 +380,9 @@ is
       Append (Snapshot, Counts.Text (1 .. Counts.Length));
       for Element in 1 .. Last_Element loop
          for Kind in Traces.Trace_Kind loop
-            Kept := Summaries (Element, Kind);
-            if Kept.Count > 0 then
-               Text.Length := 0;
-               Add (Text, "C ");
-               Add (Text, Kind'Image);
-               Add_Number (Text, Long_Long_Integer (Element));
-               Add_Number (Text, Long_Long_Integer (Kept.Count));
-               Add_Number (Text, Kept.At_Time);
-               Add_Number (Text, Kept.Value);
-               Add (Text, (1 => ASCII.LF));
-               Append (Snapshot, Text.Text (1 .. Text.Length));
-            end if;
+            Append_Count (Kind'Image, Element, Summaries (Element, Kind));
          end loop;
+         Append_Count ("VALUE", Element, Values (Element));
       end loop;
       Text.Length := 0;
       Add (Text, "L snapshot");

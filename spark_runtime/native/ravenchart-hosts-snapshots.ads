@@ -14,8 +14,9 @@
 --  length counts the bytes of all lines. Last line: S sequence. Between them,
 --  lines of the report (Ravenchart.Hosts): T lines are the last transitions
 --  and faults. A line "C kind element count time value" says how many records
---  of a kind there were of an element, and what the last one was. "L snapshot"
---  counts the lines and records that found no room.
+--  of a kind there were of an element, and what the last one was; those of
+--  recorded values are of the kind VALUE. "L snapshot" counts the lines and
+--  records that found no room.
 
 private package Ravenchart.Hosts.Snapshots
   with SPARK_Mode => Off

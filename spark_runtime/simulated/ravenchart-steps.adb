@@ -70,6 +70,20 @@ package body Ravenchart.Steps is
       end if;
    end Finish;
 
+   ---------------
+   -- Put_Value --
+   ---------------
+
+   procedure Put_Value (Element : String; Value : Number) is
+      Image : constant String := Value'Image;
+      First : constant Positive :=
+        (if Value < 0 then Image'First else Image'First + 1);
+   begin
+      Ada.Text_IO.Put_Line
+        (Seconds (Time) & " " & Element & " = "
+         & Image (First .. Image'Last));
+   end Put_Value;
+
    ---------
    -- Get --
    ---------

@@ -19,6 +19,9 @@ package Ravenchart.Steps is
    procedure Finish (Region : String);
    --  The step of Region is over: put its line, if it has one.
 
+   procedure Put_Value (Element : String; Value : Number);
+   --  A value is recorded: put its line, "0.020 motor.speed = 12".
+
    procedure Get (Value : out Long_Long_Integer);
    --  The next number on standard input.
 

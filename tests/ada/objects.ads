@@ -12,6 +12,7 @@ with Ravenchart.Queues;
 with Ravenchart.Remote_Calls;
 with Ravenchart.Remote_Reads;
 with Ravenchart.Trace_Buffers;
+with Ravenchart.Value_Buffers;
 
 package Objects is
 
@@ -75,6 +76,10 @@ package Objects is
 
    package Large_Trace is new Ravenchart.Trace_Buffers
      (Capacity => 65_536,
+      Ceiling  => Ceiling);
+
+   package Values is new Ravenchart.Value_Buffers
+     (Capacity => 4,
       Ceiling  => Ceiling);
 
    package Monitor is new Ravenchart.Monitors

@@ -4,13 +4,16 @@ with Facts;
 with Objects;
 with Ravenchart.Health;
 with Ravenchart.Queueing;
+with Ravenchart.Recorded_Values;
 with Ravenchart.Traces;
 
 procedure Test_Records is
    use type Ravenchart.Element_Id;
    use type Ravenchart.Event_Count;
    use type Ravenchart.Nanoseconds;
+   use type Ravenchart.Number;
    use type Ravenchart.Queueing.Take_Status;
+   use type Ravenchart.Recorded_Values.Value_Record;
    use type Ravenchart.Traces.Trace_Kind;
    use type Ravenchart.Traces.Trace_Record;
 
@@ -19,6 +22,8 @@ procedure Test_Records is
    procedure Check_Trace;
 
    procedure Check_Large_Trace;
+
+   procedure Check_Values;
 
    procedure Check_Monitor;
 
@@ -104,6 +109,42 @@ procedure Test_Records is
          Count = 65_536 and then Objects.Large_Trace.Lost = 4_464);
    end Check_Large_Trace;
 
+   ------------------
+   -- Check_Values --
+   ------------------
+
+   procedure Check_Values is
+      Given : constant array (1 .. 6) of Ravenchart.Number :=
+        (Ravenchart.Number'First, -1, 0, Ravenchart.Number'Last, 7, 8);
+
+      Item    : Ravenchart.Recorded_Values.Value_Record;
+      Status  : Ravenchart.Queueing.Take_Status;
+      Before  : Ravenchart.Nanoseconds := 0;
+      Ordered : Boolean := True;
+   begin
+      for Value of Given loop
+         Objects.Values.Note (Value, 200);
+      end loop;
+      for I in 1 .. 4 loop
+         Objects.Values.Take (Item, Status);
+         Ordered := Ordered
+           and then Status = Ravenchart.Queueing.Taken
+           and then Item.Element = 200
+           and then Item.Value = Given (I)
+           and then Item.At_Time >= Before;
+         Before := Item.At_Time;
+      end loop;
+      Facts.Check ("recorded values keep order, time and range", Ordered);
+      Facts.Check
+        ("a full buffer rejects and counts the newest value",
+         Objects.Values.Lost = 2);
+      Objects.Values.Take (Item, Status);
+      Facts.Check
+        ("an empty buffer says so",
+         Status = Ravenchart.Queueing.Empty
+         and then Item = Ravenchart.Recorded_Values.Null_Record);
+   end Check_Values;
+
    -------------------
    -- Check_Monitor --
    -------------------
@@ -129,6 +170,7 @@ begin
    Check_Counts;
    Check_Trace;
    Check_Large_Trace;
+   Check_Values;
    Check_Monitor;
    Facts.Finish;
 end Test_Records;

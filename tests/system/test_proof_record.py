@@ -17,6 +17,7 @@ PROGRAMS = {name: ROOT / "examples" / name for name in house.EXAMPLES}
 NAMES = (
     *(f"runtime-{driver}" for driver in house.DRIVERS),
     house.FLOATS,
+    house.VALUES,
     house.BUS,
     house.KERNEL,
     *(record for name, at in PROGRAMS.items() for record in house.record_names(name, at)),

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
+from ravenchart.analysis.system.observed import read_map
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.building import checking
 from ravenchart.command_line import main
@@ -18,9 +19,16 @@ from ravenchart.commands.monitor import Cropped
 from ravenchart.gen.derive.sharing import MAIN
 from ravenchart.paths import ROOT
 from ravenchart.running import monitor_text
-from ravenchart.running.monitored import NEVER_SEEN, NodeMonitor, WatchedNode
+from ravenchart.running.monitored import (
+    NEVER_SEEN,
+    OTHER_VALUES,
+    VALUES_NOT_SEEN,
+    NodeMonitor,
+    WatchedNode,
+)
 from ravenchart.running.snapshots import RECENT, parsed
 from tests.support.answers import answered
+from tests.support.recorded import MODEL
 from tests.support.snapshot_files import PUMP, held, number, processors, snapshot, trace_map
 
 PRINTED = pytest.CaptureFixture[str]
@@ -112,6 +120,30 @@ def test_a_queue_holds_what_has_arrived_and_was_neither_handled_nor_lost(
               (("ARRIVED", 9), ("HANDLED", 6), ("FAULT", 1))]  # fmt: skip
     (queue,) = seen(NodeMonitor(analysis, "board"), *counts, *lines).queues
     assert (queue.name, queue.waiting, queue.depth) == ("bed.panel", waiting, 4)
+
+
+def test_the_last_recorded_value_is_shown_in_its_unit(tmp_path: Path) -> None:
+    model = Path(shutil.copytree(MODEL.parent, tmp_path / "recorded")) / "model.yaml"
+    assert main(["generate", str(model)]) == 0
+    text = (model.parent / "generated" / "trace.json").read_text(encoding="utf-8")
+    own = read_map(text)
+    heat, hue = (own.named(name, "value").number for name in ("taker.heat", "giver.hue"))
+    lines = (f"C VALUE {heat} 7 5000 -397", f"C VALUE {hue} 9 6000 2", "N 1000006000")
+    whole = snapshot(1, *lines, digest=own.digest)
+    monitor = NodeMonitor(checking.check(model).analysis, "board")
+    node = monitor.shown(parsed(whole, own, "file"), None)
+    assert [(v.name, v.value, v.unit, v.count, v.last) for v in node.values] == [
+        ("taker.heat", "-39.7", "degC", 7, 5000), ("giver.hue", "Blue", "", 9, 6000),
+    ]  # fmt: skip
+    assert OTHER_VALUES in node.not_seen and VALUES_NOT_SEEN not in node.not_seen
+    assert node.traffic == []
+    found = list(monitor_text.lines(node, "", counts=True))
+    assert "1.000 taker.heat value -39.7 degC" in found and "1.000 giver.hue value Blue" in found
+    console = Console(width=80, file=io.StringIO())
+    console.print(monitor_text.tables("System", node, [], 0.0))
+    shown = console.file.getvalue()  # type: ignore[attr-defined]
+    (line,) = [line for line in shown.splitlines() if line.startswith("taker.heat")]
+    assert line.split() == ["taker.heat", "-39.7", "degC", "7", "1.0"]
 
 
 def test_what_is_not_seen_is_said(analysis: Analysis) -> None:

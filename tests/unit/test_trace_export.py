@@ -6,7 +6,6 @@ import csv
 import json
 import shutil
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,11 +13,11 @@ from ravenchart.analysis.system.observed import read_map
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
 from tests.support.answers import answered
+from tests.support.trace_events import events_of, well_formed
 
 PUMP = ROOT / "examples" / "pump"
 NODES = ROOT / "examples" / "two_nodes"
 PRINTED = pytest.CaptureFixture[str]
-Json = dict[str, Any]
 
 
 def lines_of(folder: Path, *told: str, end: bool = True) -> str:
@@ -66,49 +65,6 @@ def trace(tmp_path: Path) -> Path:
     path = tmp_path / "trace.txt"
     path.write_text(lines_of(PUMP / "generated", *told), encoding="ascii")
     return path
-
-
-def events_of(out: Path) -> tuple[Json, list[Json], dict[tuple[int, int], str]]:
-    """The JSON object, its events, and its tracks by process and thread."""
-    whole = json.loads(out.read_text(encoding="utf-8"))
-    events = whole["traceEvents"]
-    tracks = {
-        (one["pid"], one["tid"]): one["args"]["name"]
-        for one in events
-        if one["name"] == "thread_name"
-    }
-    return whole, events, tracks
-
-
-def well_formed(whole: Json) -> None:
-    """As the trace event format asks for, clause by clause."""
-    assert set(whole) == {"displayTimeUnit", "otherData", "traceEvents"}
-    assert whole["displayTimeUnit"] in ("ms", "ns")
-    last = 0.0
-    for one in whole["traceEvents"]:
-        assert isinstance(one["pid"], int) and isinstance(one["tid"], int), one
-        assert one["pid"] != one["tid"], "that thread would be called the main one"
-        match one["ph"]:
-            case "M":
-                known = {"process_name": "name", "thread_name": "name",
-                         "thread_sort_index": "sort_index"}  # fmt: skip
-                assert list(one["args"]) == [known[one["name"]]]
-                assert set(one) == {"name", "ph", "pid", "tid", "args"}
-            case "X":
-                assert one["dur"] >= 0 and one["cat"] == "state" and one["name"]
-            case "i":
-                assert one["s"] == "t" and one["cat"] and one["name"]
-            case other:
-                raise AssertionError(f"no such phase: {other}")
-        if one["ph"] != "M":
-            assert one["ts"] >= last, "events are in order of time"
-            last = one["ts"]
-    slices: dict[tuple[int, int], float] = {}
-    for one in whole["traceEvents"]:
-        if one["ph"] == "X":
-            place = one["pid"], one["tid"]
-            assert one["ts"] >= slices.get(place, 0.0) - 1e-6, "slices of a track overlap"
-            slices[place] = one["ts"] + one["dur"]
 
 
 def test_a_run_is_slices_of_states_and_marks(trace: Path, tmp_path: Path, capsys: PRINTED) -> None:
@@ -161,9 +117,9 @@ def test_the_rows_are_the_records_and_the_counts(
     assert "warning: 3 trace records lost: the trace has gaps" in printed.err
     with out.open(encoding="utf-8", newline="") as file:
         head, *rows = list(csv.reader(file))
-    assert head == ["time_ns", "node", "kind", "element", "detail"]
+    assert head == ["time_ns", "node", "kind", "element", "detail", "unit"]
     timed = [row for row in rows if row[0]]
-    assert timed[1][0] == "1500" and timed[1][2:] == ["state", "bed.Infusion", "Self_Test"]
+    assert timed[1][0] == "1500" and timed[1][2:] == ["state", "bed.Infusion", "Self_Test", ""]
     assert len(timed) == 9 and [int(row[0]) for row in timed] == sorted(int(r[0]) for r in timed)
     counts = {(row[2], row[3]): row[4] for row in rows if not row[0]}
     assert counts["lost", "trace"] == "3" and counts["faults", "Overrun"] == "1"
@@ -226,7 +182,7 @@ def test_a_simulation_has_a_track_for_each_place(
     rows = tmp_path / "simulated.csv"
     assert main(["trace", model, str(path), "--out", str(rows)]) == 0
     assert rows.read_text().splitlines()[1] == (
-        "0,Infusion_System,behaviour,bed.Keys,Listening.entry"
+        "0,Infusion_System,behaviour,bed.Keys,Listening.entry,"
     )
 
 
@@ -255,5 +211,5 @@ def test_another_suffix_and_a_missing_file_are_refused(tmp_path: Path, capsys: P
     model = str(PUMP / "model.yaml")
     with pytest.raises(SystemExit):
         main(["trace", model, "trace.txt", "--out", "out.txt"])
-    assert "'out.txt' has no suffix of .csv, .json" in capsys.readouterr().err
+    assert "'out.txt' has no suffix of .csv, .json, .mf4" in capsys.readouterr().err
     assert main(["trace", model, str(tmp_path / "none"), "--out", str(tmp_path / "o.csv")]) == 2

@@ -66,6 +66,7 @@ from ravenchart.gen.emit.language.events import event_value, name_of, null_event
 from ravenchart.gen.emit.language.own_names import event_literal
 from ravenchart.gen.emit.language.places import Places
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spec
+from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.commands import Need, Provided
 from ravenchart.gen.model.component import Activity, Event, Port, PortKind
@@ -109,6 +110,8 @@ class Glue(Site):
             names.add(f"{root}.{self.component}")
         if any(n.trace_depth for n in self.system.nodes):
             names |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
+        if recording(self.system):
+            names.add(f"{root}.{UNIT}")
         if any(releases(self, port) for port in component.inputs()):
             names.add("Ravenchart.Releasing_Queues")  # and no other queue: see `releases`
         elif queued or self._served():
@@ -459,7 +462,8 @@ class Glue(Site):
         if port.is_command:
             return call_body(self.system, self.instance, port, self._lost(port.name))
         ends, messages = self._targets(port.name)
-        body: list[Stmt] = [*self._note("Sent", port.name, "port")]
+        recorded = self._record(port.name, "Item")
+        body: list[Stmt] = [*self._note("Sent", port.name, "port"), *recorded]
         for end in ends:
             name = f"Put_{ada_case(end.port)}"
             target = (
@@ -474,7 +478,8 @@ class Glue(Site):
                         arguments(Ref("Item")),
                     )
                 )
-        unused = (Pragma("Unreferenced", (Ref("Item"),)),) if not ends and not messages else ()
+        taken = ends or messages or recorded
+        unused = () if taken else (Pragma("Unreferenced", (Ref("Item"),)),)
         param = Param("Item", "in", type_name(self.system, port.type))
         return Subprogram(
             f"Send_{ada_case(port.name)}", (param,), declarations=unused, body=tuple(body)

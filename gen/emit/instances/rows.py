@@ -128,6 +128,7 @@ class Rows(Site):
         name = ada_case(port.name)
         package = f"{self.component}.{name}_Port"
         arrived: list[Stmt] = [*self._note("Handled", port.name, "port")]
+        arrived += self._record(port.name, f"{name}_Port.Value")
         if port.on_arrival:
             arrived.append(self._raise(port.on_arrival, Ref(f"{name}_Port.Value")))
         stale: list[Stmt] = [self._fault("Stale_Input")]
@@ -174,9 +175,12 @@ class Rows(Site):
             body.append(do(f"{ada_case(activity.name)}_Visit_Board.Write", visits))
         body.append(Do(f"{name}_Board.Write", arguments(Ref(f"{name}_Region.{shape.place}"))))
         for data in self.instance.component.data:
-            if data.name in region.writes and self._has_object(data.name):
-                field = f"{name}_Region.Data.{ada_case(data.name)}"
+            if data.name not in region.writes:
+                continue
+            field = f"{name}_Region.Data.{ada_case(data.name)}"
+            if self._has_object(data.name):
                 body.append(Do(f"{ada_case(data.name)}_Board.Write", arguments(Ref(field))))
+            body += self._record(data.name, field)
         body += publishes(self.system, self.instance, region, declarations)
         body += transmits(self.system, self.instance, region)
         run = Subprogram(f"Run_{name}", declarations=tuple(declarations), body=tuple(body))
@@ -339,6 +343,7 @@ class Rows(Site):
             args.append(Arg(ada_case(name), Ref(own)))
             if self._has_object(name):
                 after.append(Do(f"{ada_case(name)}_Board.Write", arguments(Ref(own))))
+            after += self._record(name, own)
         for port in component.outputs():
             if port.name in activity.sends:
                 after += self._send_from(activity, port, declarations, args)

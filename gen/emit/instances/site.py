@@ -8,6 +8,7 @@ from ravenchart.gen.emit.ada.naming import component_name, priority
 from ravenchart.gen.emit.ada.syntax import Call, Do, Expr, Ref, Stmt, arguments
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.trace_calls import note
+from ravenchart.gen.emit.tables.value_calls import record
 from ravenchart.gen.model.component import Activity, Data, Port
 from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.statechart import Region
@@ -70,6 +71,10 @@ class Site:
         self, kind: str, name: str, element_kind: str, item: Expr | None = None
     ) -> tuple[Stmt, ...]:
         return note(self.system, kind, self._element(name), element_kind, item)
+
+    def _record(self, name: str, holder: str) -> tuple[Stmt, ...]:
+        """Record the values of a port or data item, which the Ada object ``holder`` has."""
+        return record(self.system, self.instance.name, name, holder, simulated=self.noted)
 
     def _fault(self, kind: str) -> Stmt:
         return Do(

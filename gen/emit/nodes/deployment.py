@@ -5,6 +5,7 @@ from __future__ import annotations
 from ravenchart.gen.derive.instants import has_offset
 from ravenchart.gen.emit.ada.naming import (
     ada_case,
+    constant_name,
     priority,
     processor_package,
     root_package,
@@ -50,12 +51,16 @@ from ravenchart.gen.emit.certificate.certified import (
 )
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID
 from ravenchart.gen.emit.tables.trace_calls import element_constant, note, row_number, traced
-from ravenchart.gen.emit.tables.trace_map import elements
+from ravenchart.gen.emit.tables.trace_map import VALUE, MappedElement, elements
+from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.recording import OBJECT
 from ravenchart.gen.model.system import Processor, Slot, System, Work
 
 from .reports import emit_main, emit_reports
 from .supervision import emit_supervision, offer
+
+BUFFERS = "Ravenchart.Value_Buffers"
 
 PROBE_STACK = 16_384
 """Bytes of stack for the host probe."""
@@ -66,6 +71,8 @@ def emit_deployment(system: System, header: str) -> tuple[Unit, ...]:
     units = [_health(system, header), _elements(system, header)]
     if traced(system):
         units.append(_trace(system, header))
+    if recording(system):
+        units.append(_recording(system, header))
     units += [_probe(system, n, header) for n in system.nodes if n.probe is not None]
     for bus in system.buses:
         units += emit_bus(system, bus, header)
@@ -108,6 +115,24 @@ def _trace(system: System, header: str) -> Unit:
     return _holding(system, "Trace", "Buffer", "Ravenchart.Trace_Buffers", args, header)
 
 
+def _recording(system: System, header: str) -> Unit:
+    """The buffer of values, as deep as the trace, and the number of each."""
+    depth = max(n.trace_depth for n in system.nodes)
+    args = arguments(Capacity=number(depth), Ceiling=priority(system.object(OBJECT).ceiling))
+    values = (item for item in elements(system) if item.kind == VALUE)
+    numbers = tuple(_numbered(constant_name(item.element), item) for item in values)
+    package = Package(
+        f"{root_package(system)}.{UNIT}",
+        (
+            Comment("Numbers of the recorded values; trace.json has their names and places."),
+            *numbers,
+            GenericInstance("Values", BUFFERS, args),
+        ),
+        (SPARK,),
+    )
+    return Unit(header, (BUFFERS, "System"), package)
+
+
 def _probe(system: System, node: Node, header: str) -> Unit:
     assert node.probe is not None
     element = f"{node.name}.probe"
@@ -130,10 +155,14 @@ def _elements(system: System, header: str) -> Unit:
         Comment("Numbers of the model's elements; trace.json has their names and places.")
     ]
     for item in elements(system):
-        name = element_constant(item.element, item.kind)
-        items.append(Object(name, "Ravenchart.Element_Id", number(item.number), constant=True))
+        if item.kind != VALUE:
+            items.append(_numbered(element_constant(item.element, item.kind), item))
     package = Package(f"{root_package(system)}.Elements", tuple(items), (SPARK, Aspect("Pure")))
     return Unit(header, (), package)
+
+
+def _numbered(name: str, item: MappedElement) -> Object:
+    return Object(name, "Ravenchart.Element_Id", number(item.number), constant=True)
 
 
 # --- Processors --------------------------------------------------------------

@@ -34,6 +34,7 @@ from ravenchart.gen.emit.commands.lifecycle import UNIT as LIFECYCLE
 from ravenchart.gen.emit.commands.lifecycle import has_lifecycle
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.trace_calls import element_constant, row_number, traced
+from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.system import Processor, System
 
 from .supervision import safe_state, supervised
@@ -50,7 +51,7 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     bodies: list[Decl] = []
     if traced(system):
         spec += [Subprogram("Drain_Trace"), Comment("Hand what was traced to the host.")]
-        bodies.append(_drain())
+        bodies.append(_drain(system))
     spec += [Subprogram("Put_All"), Comment("Hand the statistics of all processors to the host.")]
     bodies += [_report(system, p) for p in system.processors]
     steps: list[Stmt] = [Do("Ravenchart.Hosts.Put_Now")]
@@ -71,8 +72,10 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     declarations: list[Decl] = [Object("Faults", "Ravenchart.Health.Fault_Counts")]
     if traced(system):
         declarations.append(Object("Lost", "Ravenchart.Event_Count"))
-        steps.append(Assign("Lost", Ref("Trace.Buffer.Lost")))
-        steps.append(Do("Ravenchart.Hosts.Put_Lost", arguments(Ref('"trace"'), Ref("Lost"))))
+        for buffer, label in _buffers(system):
+            steps.append(Assign("Lost", Ref(f"{buffer}.Lost")))
+            word = Ref(f'"{label}"')
+            steps.append(Do("Ravenchart.Hosts.Put_Lost", arguments(word, Ref("Lost"))))
     for bus in system.buses:
         counters = f"{ada_case(bus.name)}_Counters"
         declarations.append(Object(counters, "Ravenchart.Can.Counters"))
@@ -104,30 +107,45 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         context.add(f"{root}.Liveness_Supervision")
     if traced(system):
         context |= {f"{root}.Trace", "Ravenchart.Queueing", "Ravenchart.Traces"}
+        context |= _of_values(root) if recording(system) else set()
     return [
         Unit(header, (), Package(name, tuple(spec), (SPARK,))),
         Unit(header, tuple(sorted(context)), Package(name, tuple(bodies), (SPARK,), is_body=True)),
     ]
 
 
-def _drain() -> Subprogram:
+def _buffers(system: System) -> tuple[tuple[str, str], ...]:
+    """What holds records until the host has them, and what the report calls it."""
+    values = ((f"{UNIT}.Values", "values"),) if recording(system) else ()
+    return (("Trace.Buffer", "trace"), *values)
+
+
+def _of_values(root: str) -> set[str]:
+    return {f"{root}.{UNIT}", "Ravenchart.Hosts.Value_Lines", "Ravenchart.Recorded_Values"}
+
+
+def _drain(system: System) -> Subprogram:
+    declarations: list[Decl] = [
+        UseType("Ravenchart.Queueing.Take_Status"),
+        Object("Item", "Ravenchart.Traces.Trace_Record"),
+        Object("Status", "Ravenchart.Queueing.Take_Status"),
+    ]
+    body = [_drained("Trace.Buffer", "Item", "Ravenchart.Hosts.Put_Trace")]
+    if recording(system):
+        declarations.insert(2, Object("Value", "Ravenchart.Recorded_Values.Value_Record"))
+        body.append(_drained(f"{UNIT}.Values", "Value", "Ravenchart.Hosts.Value_Lines.Put"))
+    return Subprogram("Drain_Trace", declarations=tuple(declarations), body=tuple(body))
+
+
+def _drained(buffer: str, item: str, put: str) -> Loop:
+    """Hand all that a buffer holds to the host."""
     empty = equal(Ref("Status"), Ref("Ravenchart.Queueing.Empty"))
-    return Subprogram(
-        "Drain_Trace",
-        declarations=(
-            UseType("Ravenchart.Queueing.Take_Status"),
-            Object("Item", "Ravenchart.Traces.Trace_Record"),
-            Object("Status", "Ravenchart.Queueing.Take_Status"),
-        ),
-        body=(
-            Loop(
-                "",
-                (
-                    Do("Trace.Buffer.Take", arguments(Ref("Item"), Ref("Status"))),
-                    IfStatement(((empty, (Say("exit"),)),)),
-                    Do("Ravenchart.Hosts.Put_Trace", arguments(Ref("Item"))),
-                ),
-            ),
+    return Loop(
+        "",
+        (
+            Do(f"{buffer}.Take", arguments(Ref(item), Ref("Status"))),
+            IfStatement(((empty, (Say("exit"),)),)),
+            Do(put, arguments(Ref(item))),
         ),
     )
 

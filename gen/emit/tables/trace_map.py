@@ -7,13 +7,18 @@ directly, so that row k of the table is the processor's number + 1 + k.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
 from ravenchart.gen.emit.language.places import Places
+from ravenchart.gen.language.terms import IntegerType
 from ravenchart.gen.model.commands import RemoteRead
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
+
+VALUE = "value"
+"""The kind of a recorded value."""
 
 CONTROLLER_STATES = ("Stopped", "Error_Active", "Error_Passive", "Bus_Off")
 """The states of a controller, in order of number (Ravenchart.Can.Controller_State)."""
@@ -24,7 +29,8 @@ class MappedElement:
     """One traced element.
 
     ``leaves`` are the states of a region or of a bus, and ``transitions`` those of a region, in
-    order of number.
+    order of number. A recorded value has the ``literals`` of its enumeration, or the ``unit`` that
+    one count of its integers stands for.
     """
 
     number: int
@@ -33,14 +39,23 @@ class MappedElement:
     origin: Origin
     leaves: tuple[str, ...] = ()
     transitions: tuple[str, ...] = ()
+    literals: tuple[str, ...] = ()
+    unit: str | None = None
 
 
 def elements(system: System) -> tuple[MappedElement, ...]:
     """Every traced element of the system, numbered from 1."""
     found: list[MappedElement] = []
 
-    def add(element: str, kind: str, origin: Origin, **more: tuple[str, ...]) -> None:
-        found.append(MappedElement(len(found) + 1, element, kind, origin, **more))
+    def add(
+        element: str,
+        kind: str,
+        origin: Origin,
+        leaves: tuple[str, ...] = (),
+        transitions: tuple[str, ...] = (),
+    ) -> None:
+        number = len(found) + 1
+        found.append(MappedElement(number, element, kind, origin, leaves, transitions))
 
     for processor in system.processors:
         add(processor.name, "processor", processor.origin)
@@ -72,7 +87,8 @@ def elements(system: System) -> tuple[MappedElement, ...]:
                 )
     for message in system.messages:
         add(message.name, "message", message.origin)
-    return (*found, *_controllers(system, len(found)))
+    found += _controllers(system, len(found))
+    return (*found, *_values(system, len(found)))
 
 
 def _controllers(system: System, last: int) -> tuple[MappedElement, ...]:
@@ -84,6 +100,19 @@ def _controllers(system: System, last: int) -> tuple[MappedElement, ...]:
         )
         for number, (bus, node) in enumerate(product(watched, system.nodes), last + 1)
     )
+
+
+def _values(system: System, last: int) -> Iterator[MappedElement]:
+    """The recorded values, numbered behind ``last``."""
+    for number, one in enumerate(system.recorded_values, last + 1):
+        yield MappedElement(
+            number,
+            one.element,
+            VALUE,
+            one.of.item.origin,
+            literals=() if isinstance(one.type, IntegerType) else one.type.literals,
+            unit=one.type.unit if isinstance(one.type, IntegerType) else None,
+        )
 
 
 def trace_json(system: System) -> str:
@@ -100,6 +129,10 @@ def trace_json(system: System) -> str:
             row |= {"leaves": item.leaves, "transitions": item.transitions}
         if item.kind == "bus":
             row["leaves"] = item.leaves
+        if item.literals:
+            row["literals"] = item.literals
+        if item.unit is not None:
+            row["unit"] = item.unit
         rows.append(row)
     document = {"system": system.name, "digest": system.digest, "elements": rows}
     return json.dumps(document, indent=1, ensure_ascii=True) + "\n"

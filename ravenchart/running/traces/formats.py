@@ -1,7 +1,8 @@
-"""A timeline as CSV, and as JSON in the trace event format that Perfetto and Chrome open.
+"""A timeline as CSV, as MDF 4, and as JSON in the trace event format that Perfetto and Chrome open.
 
 The format: "Trace Event Format" (Google). Times (``ts``, ``dur``) are in microseconds. A slice is a
-complete event (``X``), a mark an instant event (``i``), and names are metadata events (``M``).
+complete event (``X``), a mark an instant event (``i``), a value a counter event (``C``), and names
+are metadata events (``M``).
 """
 
 from __future__ import annotations
@@ -12,14 +13,17 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from ravenchart.failures import Unusable
 from ravenchart.gen.language.terms import Ns
 
+from . import mdf
 from .timeline import Timeline, Track
+from .values import Series
 
 FIRST_TID = 100
 """Before the numbers of threads: one that is equal to its process's is called the main thread."""
 
-COLUMNS = ("time_ns", "node", "kind", "element", "detail")
+COLUMNS = ("time_ns", "node", "kind", "element", "detail", "unit")
 
 
 def as_csv(timeline: Timeline) -> str:
@@ -29,7 +33,7 @@ def as_csv(timeline: Timeline) -> str:
     writer.writerow(COLUMNS)
     for row in timeline.rows:
         at = "" if row.at is None else row.at
-        writer.writerow((at, row.process, row.kind, row.element, row.detail))
+        writer.writerow((at, row.process, row.kind, row.element, row.detail, row.unit))
     return text.getvalue()
 
 
@@ -40,7 +44,18 @@ def as_events(timeline: Timeline) -> str:
     return f'{json.dumps(head)[:-1]}, "traceEvents": [\n{lines}\n]}}\n'
 
 
-FORMATS: Mapping[str, Callable[[Timeline], str]] = {".csv": as_csv, ".json": as_events}
+def as_mdf(timeline: Timeline) -> bytes:
+    """The recorded values, and the states of the charts that `record` names, as MDF 4."""
+    if not timeline.series and not timeline.states:
+        raise Unusable("the model records no values: name ports and data items under `record:`")
+    return mdf.written([*timeline.series, *timeline.states], _about(timeline))
+
+
+FORMATS: Mapping[str, Callable[[Timeline], bytes]] = {
+    ".csv": lambda timeline: as_csv(timeline).encode(),
+    ".json": lambda timeline: as_events(timeline).encode(),
+    ".mf4": as_mdf,
+}
 """By the suffix of the file."""
 
 
@@ -67,11 +82,11 @@ def _events(timeline: Timeline) -> Iterator[dict[str, Any]]:
     timed: list[tuple[Ns, dict[str, Any]]] = []
     for one in timeline.slices:
         event: dict[str, Any] = {
-            "name": one.name, "cat": "state", "ph": "X", "ts": _us(one.start),
+            "name": one.name, "cat": one.kind, "ph": "X", "ts": _us(one.start),
             "dur": _us(Ns(one.end - one.start)), **places[one.track],
         }  # fmt: skip
         if one.open:
-            event["args"] = {"open": "it was active at the end of the trace"}
+            event["args"] = {"open": "it was so at the end of the trace"}
         timed.append((one.start, event))
     for mark in timeline.marks:
         event = {
@@ -81,7 +96,18 @@ def _events(timeline: Timeline) -> Iterator[dict[str, Any]]:
         if mark.more:
             event["args"] = mark.more
         timed.append((mark.at, event))
+    for series in timeline.series:
+        timed += _counter(series, processes.setdefault(series.process, len(processes) + 1))
     yield from (event for _, event in sorted(timed, key=lambda found: found[0]))
+
+
+def _counter(series: Series, pid: int) -> Iterator[tuple[Ns, dict[str, Any]]]:
+    """The samples of a counter; an enumeration has slices, and none."""
+    quantity = series.quantity
+    name = f"{series.name} in {quantity.unit}" if quantity.unit else series.name
+    for at, number in () if quantity.literals else series.points:
+        sample = {"ph": "C", "ts": _us(at), "pid": pid, "args": {"value": quantity.value(number)}}
+        yield at, {"name": name, "cat": "value", **sample}
 
 
 def _named(what: str, pid: int, tid: int, name: str) -> dict[str, Any]:

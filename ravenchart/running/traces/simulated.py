@@ -7,26 +7,38 @@ import re
 from collections.abc import Iterable, Iterator
 
 from ravenchart.analysis.system.observed import TraceError
-from ravenchart.behaviour.interpreter.traces import StepRecord, parsed
+from ravenchart.behaviour.interpreter.traces import (
+    StepRecord,
+    ValueRecord,
+    parsed,
+    parsed_value,
+)
 from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
-from ravenchart.gen.language.terms import NO_TIME, Ns
+from ravenchart.gen.language.terms import NO_TIME, IntegerType, Ns
 from ravenchart.gen.model.system import System
 
 from .timeline import Mark, Slice, Timeline, TraceRow, Track
+from .values import Point, Quantity, Series
+
+NUMBER = re.compile(r"-?\d{1,19}")
 
 Charts = dict[tuple[str, str], ChartTree]
 """By instance and region."""
 
-STEP = re.compile(r"\d{1,12}\.\d{3,9} \w+\.\w+: \S.*")
+STEP = re.compile(r"\d{1,12}\.\d{3,9} [\w.]+\.\w+: \S.*")
+VALUE_LINE = re.compile(r"\d{1,12}\.\d{3,9} [\w.]+ = -?\w+")
 
 
 def is_simulated(first: str) -> bool:
     """Whether a trace that begins with this line is of a simulation."""
-    return first.startswith("{") or STEP.fullmatch(first) is not None
+    return first.startswith("{") or any(line.fullmatch(first) for line in (STEP, VALUE_LINE))
 
 
 def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
-    """The steps as states and transitions; TraceError for a line that does not fit the model."""
+    """The steps as states and transitions, and the values.
+
+    TraceError for a line that does not fit the model.
+    """
     found = Timeline(system.name)
     charts: Charts = {
         (instance.name, region.name): ChartTree(region)
@@ -34,15 +46,19 @@ def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
         for region in instance.component.regions
     }
     active: dict[tuple[str, str, RegionKey], tuple[str, Ns]] = {}
+    recorded = _Recorded(system)
     now = NO_TIME
     for number, record in _records(lines, file):
+        if record.at < now:
+            raise TraceError(f"{file}:{number}: error: the time is before that of the line above")
+        now = record.at
+        if isinstance(record, ValueRecord):
+            recorded.take(record, f"{file}:{number}: error:")
+            continue
         tree = charts.get((record.instance, record.region))
         chart = f"{record.instance}.{record.region}"
         if tree is None:
             raise TraceError(f"{file}:{number}: error: the model has no chart {chart}")
-        if record.at < now:
-            raise TraceError(f"{file}:{number}: error: the time is before that of the line above")
-        now = record.at
         for behaviour in record.behaviours:
             found.rows.append(TraceRow(now, system.name, "behaviour", chart, behaviour))
             name, _, what = behaviour.rpartition(".")
@@ -64,7 +80,42 @@ def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
         found.slices.append(Slice(track, name, start, now, open=True))
     in_order = {track: index for index, track in enumerate(_places(system.name, charts))}
     found.tracks.sort(key=in_order.__getitem__)
+    for series in recorded.series():
+        found.take(series, now)
+    found.rows.sort(key=lambda row: row.at or NO_TIME)
+    found.take_states(system)
     return found
+
+
+class _Recorded:
+    """The values that a simulation has recorded, by element."""
+
+    def __init__(self, system: System) -> None:
+        self._process = system.name
+        self._types = {one.element: one.type for one in system.recorded_values}
+        self._points: dict[str, list[Point]] = {element: [] for element in self._types}
+
+    def take(self, record: ValueRecord, place: str) -> None:
+        """Add a value; TraceError where the model cannot have it."""
+        of_type = self._types.get(record.element)
+        if of_type is None:
+            raise TraceError(f"{place} the model does not record {record.element}")
+        text = str(record.value)
+        if isinstance(of_type, IntegerType):
+            number = int(text) if NUMBER.fullmatch(text) else None
+        else:
+            number = of_type.literals.index(text) if text in of_type.literals else None
+        if number is None:
+            raise TraceError(f"{place} {record.element} has no value {text}")
+        self._points[record.element].append((record.at, number))
+
+    def series(self) -> Iterator[Series]:
+        """All of them, in the order of the model."""
+        for element, of_type in self._types.items():
+            literals = () if isinstance(of_type, IntegerType) else of_type.literals
+            unit = of_type.unit if isinstance(of_type, IntegerType) else None
+            points = tuple(self._points[element])
+            yield Series(self._process, element, Quantity.of(literals, unit), points)
 
 
 def _places(system: str, charts: Charts) -> Iterator[Track]:
@@ -76,8 +127,8 @@ def _places(system: str, charts: Charts) -> Iterator[Track]:
             yield from (_named(system, chart, place) for place in tree.nested(state))
 
 
-def _records(lines: Iterable[str], file: str) -> Iterator[tuple[int, StepRecord]]:
-    """Each step with the number of its line."""
+def _records(lines: Iterable[str], file: str) -> Iterator[tuple[int, StepRecord | ValueRecord]]:
+    """Each step and value with the number of its line."""
     for number, line in enumerate(lines, 1):
         text = line.strip()
         if not text:
@@ -89,16 +140,23 @@ def _records(lines: Iterable[str], file: str) -> Iterator[tuple[int, StepRecord]
             raise TraceError(f"{file}:{number}: error: {problem}") from None
 
 
-def _text(line: str) -> StepRecord:
+def _text(line: str) -> StepRecord | ValueRecord:
+    if VALUE_LINE.fullmatch(line) is not None:
+        return parsed_value(line)
     if STEP.fullmatch(line) is None:
         raise ValueError(line)
     return parsed(line)
 
 
-def _json(line: str) -> StepRecord:
+def _json(line: str) -> StepRecord | ValueRecord:
     raw = json.loads(line)
-    at, behaviours = raw["at_ns"], raw["behaviours"]
-    if not isinstance(at, int) or not isinstance(behaviours, list) or at < 0:
+    at = raw["at_ns"]
+    if not isinstance(at, int) or at < 0:
+        raise ValueError(line)
+    if "value" in raw:
+        return ValueRecord(Ns(at), str(raw["element"]), str(raw["value"]))
+    behaviours = raw["behaviours"]
+    if not isinstance(behaviours, list):
         raise ValueError(line)
     names = tuple(str(one) for one in behaviours)
     return StepRecord(Ns(at), str(raw["instance"]), str(raw["region"]), names)

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 
-from ravenchart.analysis.system.observed import NumberedElement, Observation, Visit
+from ravenchart.analysis.system.observed import VALUE, NumberedElement, Observation, Visit
 from ravenchart.gen.language.terms import NO_TIME, Ns
 from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Processor, System
+
+from .values import Point, Quantity, Series, series_of, spans
+
+INACTIVE = "-"
+"""Stands for a state where none is active."""
 
 Arguments = dict[str, int | float | str | bool]
 
@@ -30,6 +37,7 @@ class Slice:
     start: Ns
     end: Ns
     open: bool = False
+    kind: str = "state"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +53,17 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class TraceRow:
-    """A record as a row; of a count at the end of a run, ``detail`` is the number."""
+    """A record as a row; of a count at the end of a run, ``detail`` is the number.
+
+    A recorded value counts in the ``unit``.
+    """
 
     at: Ns | None
     process: str
     kind: str
     element: str
     detail: str
+    unit: str = ""
 
 
 @dataclass(slots=True)
@@ -63,10 +75,53 @@ class Timeline:
     tracks: list[Track] = field(default_factory=list)
     slices: list[Slice] = field(default_factory=list)
     marks: list[Mark] = field(default_factory=list)
+    series: list[Series] = field(default_factory=list)
+    """The recorded values, by element."""
+    states: list[Series] = field(default_factory=list)
+    """The states of the regions that are recorded."""
     lost: dict[str, int] = field(default_factory=dict)
     gaps: int = 0
+    values_lost: int = 0
     complete: bool = True
     """Of a run: it ended by itself, and the counts of its end are there."""
+
+    def take(self, series: Series, end: Ns) -> None:
+        """Add recorded values, until the end of the trace."""
+        quantity = series.quantity
+        self.series.append(series)
+        for at, number in series.points:
+            text = quantity.text(number)
+            self.rows.append(TraceRow(at, series.process, VALUE, series.name, text, quantity.unit))
+        if quantity.literals:
+            track = Track(series.process, series.name)
+            self.tracks.append(track)
+            for number, start, stop, still in spans(series.points, end):
+                self.slices.append(Slice(track, quantity.text(number), start, stop, still, VALUE))
+
+    def take_states(self, system: System) -> None:
+        """Add what the recorded regions show as slices, each track by itself."""
+        regions = [one.element for one in system.recorded if isinstance(one.item, Region)]
+        for track in self.tracks:
+            slices = [one for one in self.slices if one.track == track and one.kind == "state"]
+            if slices and any(_is_in(track.name, region) for region in regions):
+                self.states.append(_states(track, slices))
+
+
+def _is_in(track: str, region: str) -> bool:
+    """Whether a track is that of a region, or of one inside its states."""
+    return track == region or track.startswith((f"{region}.", f"{region} in "))
+
+
+def _states(track: Track, slices: Sequence[Slice]) -> Series:
+    """States as a value over time; `-` where none of the track is active."""
+    literals = dict.fromkeys(one.name for one in slices)
+    numbers = {name: number for number, name in enumerate((*literals, INACTIVE))}
+    points: list[Point] = []
+    for one, later in zip_longest(slices, slices[1:]):
+        points.append((one.start, numbers[one.name]))
+        if not one.open and (later is None or later.start > one.end):
+            points.append((one.end, numbers[INACTIVE]))
+    return Series(track.process, track.name, Quantity.of(tuple(numbers), None), tuple(points))
 
 
 def of_run(system: System, parts: dict[str, Observation]) -> Timeline:
@@ -80,8 +135,10 @@ def of_run(system: System, parts: dict[str, Observation]) -> Timeline:
         lost = {f"{node}.{what}" if several else what: n for what, n in part.losses.items()}
         found.lost |= {what: n for what, n in lost.items() if n}
         found.gaps += part.trace_lost
+        found.values_lost += part.values_lost
         found.complete = found.complete and part.complete
     found.rows.sort(key=lambda row: (row.at is None, row.at or NO_TIME))
+    found.take_states(system)
     return found
 
 
@@ -122,7 +179,13 @@ class _Run:
                     owner = name.rpartition(".")[0]
                     where = owner if record.element.kind in ("port", "event") else name
                     self._mark(where, f"{kind} {name}", kind, at, value=record.value)
+        self._values()
         self._counts()
+
+    def _values(self) -> None:
+        """The recorded values: those of an enumeration are slices as well."""
+        for series in series_of(self.seen, self.node, self.late):
+            self.found.take(series, self._time(self.seen.end))
 
     def _time(self, time: Ns) -> Ns:
         return Ns(time + self.late)

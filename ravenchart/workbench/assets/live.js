@@ -57,6 +57,8 @@ function Node({ of }) {
     <${Table} names=${["queue", "waiting>"]} rows=${of.queues.map((one) => [one.name, `${one.waiting ?? "?"} of ${one.depth}`])} />
     <${Table} names=${["port, event, message", "", "count>", "last>"]} rows=${of.traffic.map((one) => [
       one.name, one.state ?? one.what, one.count, `${((of.now - one.last) / 1e9).toFixed(1)} s ago`])} />
+    <${Table} names=${["recorded value", "last>", "", "recorded>", "at>"]} rows=${of.values.map((one) => [
+      one.name, one.value, one.unit, one.count, `${((of.now - one.last) / 1e9).toFixed(1)} s ago`])} />
     <p class="remark">Not seen: ${of.not_seen.join("; ")}.</p></section>`;
 }
 
