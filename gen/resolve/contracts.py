@@ -28,6 +28,11 @@ Lists = Mapping[str, tuple[str, ...]]
 """What an activity reads, writes, sends, calls and raises, by key."""
 
 
+def sent(lists: Lists) -> tuple[str, ...]:
+    """The ports that an activity sends on and the commands that it calls, in some executions."""
+    return (*lists["sends"], *lists["may_send"], *lists["calls"])
+
+
 @dataclass(frozen=True, slots=True)
 class Side:
     """One side of an activity's contract: what it may name."""
@@ -145,7 +150,7 @@ def contract_of(
     written = frozenset(lists["writes"])
     #  a flow finds what it writes as it was: it sets some of it, or sets it in some executions
     before = frozenset(lists["reads"]) | (written if is_flow else frozenset())
-    side = Side(name, is_flow, before, written, frozenset((*lists["sends"], *lists["calls"])))
+    side = Side(name, is_flow, before, written, frozenset(sent(lists)))
     words = replace(words, readable=_with_outputs(words, targets))
     requires = tuple(_clauses("requires", form, side, words, findings))
     ensures = tuple(_clauses("ensures", form, replace(side, at_end=True), words, findings))
