@@ -380,7 +380,7 @@ class ActivityForm(Element):
     )
     ensures: Conditions | None = optional(
         "Contract: conditions on what it reads, writes and sends, which hold when an execution "
-        "ends; `old(item)` is a data item before it."
+        "ends; `old(item)` is a data item before it, `sent(port)` whether it sends."
     )
     body: Annotated[
         Annotated[Literal["user"], Tag("<one>")] | Annotated[list[ActionForm], Tag("<list>")],

@@ -14,6 +14,7 @@ from ravenchart.analysis.system.journeys import journeys
 from ravenchart.analysis.system.observed import read_map, read_trace
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.gen.diagnostics import Diagnostic
+from ravenchart.gen.draw.words import expression
 from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.emit.tables.trace_map import trace_json
@@ -31,6 +32,11 @@ from tests.support.certificates import certificate, compiled
 
 FEATURE = ROOT / "tests" / "feature" / "may_send" / "model.yaml"
 TEXT = FEATURE.read_text(encoding="utf-8")
+SENT = (
+    ("          - if count = limit then sent(alarm) else true\n", ""),
+    ("          - if count > limit then not sent(report) else true\n", ""),
+)
+"""The contract without what needs the list."""
 LISTS = "sends: [level]\n        may_send: [alarm, report]"
 MS = 1_000_000
 
@@ -117,7 +123,7 @@ def test_what_is_wrong_in_the_list_is_reported(
     ["sends: [level]\n        may_send: [alarm, report]", "sends: [level, report, alarm]"],
 )
 def test_the_hint_of_a_port_in_both_lists_works(lists: str) -> None:
-    assert errors(text_of((LISTS, lists))) == []
+    assert errors(text_of((LISTS, lists), *SENT)) == []
 
 
 def test_actions_have_no_such_list() -> None:
@@ -199,19 +205,85 @@ def test_the_glue_sends_where_the_flag_is_true_only() -> None:
 
 def test_what_is_ensured_of_a_value_holds_where_it_is_sent() -> None:
     spec = " ".join(files()["may_send_feature-gauge_type-activities.ads"].split())
-    assert "Post => Level = Count and then (if Send_Alarm then Alarm.Level >= Limit)" in spec
+    assert "and then (if Send_Alarm then Alarm.Level >= Limit)" in spec
     assert "(if Send_Report and then Send_Alarm then Report <= Alarm.Level)" in spec
+
+
+def test_a_contract_says_when_a_value_is_sent() -> None:
+    spec = " ".join(files()["may_send_feature-gauge_type-activities.ads"].split())
+    assert "Post => Level = Count and then (if Count = Limit then Send_Alarm else True)" in spec
+    assert "(if Count > Limit then not Send_Report else True)" in spec
+    ensured = [expression(clause.condition) for clause in measure(system_of()).ensures]
+    assert ensured[1] == "if count = limit then sent(alarm) else true"
+
+
+def test_so_does_one_of_actions_and_of_calls() -> None:
+    text = (ROOT / "tests" / "feature" / "contracts" / "model.yaml").read_text()
+    old = "ensures: Set_Lamp = Draining"
+    system = system_of(text_of((old, "ensures: sent(Set_Lamp) = (cycles > 5)"), text=text))
+    made = generate(system, Claims())["contracts_feature-plant-flows.ads"]
+    assert "Post => Call_Set_Lamp = (Cycles > 5)" in " ".join(made.split())
+
+
+@pytest.mark.parametrize(
+    ("condition", "code", "message", "hint"),
+    [
+        (
+            "sent(level)",
+            "RV-0421",
+            "measure sends on `level` in every execution",
+            "leave it out, or name `level` in `may_send` instead of `sends`",
+        ),
+        *(
+            (
+                wrong,
+                "RV-0409",
+                "`sent` takes the name of an output port, or of a command to call",
+                None,
+            )
+            for wrong in ("sent(count)", "sent(alarm.level)", "sent()", "sent(alarm, report)")
+        ),
+    ],
+)
+def test_only_a_port_on_which_it_may_send_is_asked(
+    condition: str, code: str, message: str, hint: str | None
+) -> None:
+    (found,) = errors(text_of(("- level = count\n", f"- {condition}\n")))
+    assert (found.code, found.message, found.hint) == (code, message, hint)
+
+
+def test_what_is_asked_must_be_in_the_list() -> None:
+    (found,) = errors(
+        text_of((", report]", "]"), SENT[0], ("          - report <= alarm.level\n", ""))
+    )
+    assert (found.code, found.message) == ("RV-0420", "measure does not send on `report`")
+    assert found.hint == "add `report` to `may_send`, or to `calls` if it is a command"
+
+
+def test_the_hints_of_that_work() -> None:
+    asked = ("- level = count\n", "- sent(level)\n")
+    lists = (LISTS, "sends: []\n        may_send: [level, alarm, report]")
+    assert errors(text_of(asked, lists)) == []
+    assert errors(text_of(("          - level = count\n", ""))) == []
+
+
+def test_nothing_is_sent_before_an_execution() -> None:
+    (found,) = errors(
+        text_of(("        ensures:\n", "        requires: sent(alarm)\n        ensures:\n"))
+    )
+    assert (found.code, found.message) == ("RV-0421", "`sent` has a meaning only in `ensures`")
+    assert found.hint == "set a data item where you send, and read that"
 
 
 # --- the analysis
 
 
-ALWAYS = (LISTS, "sends: [level, alarm, report]")
+ALWAYS = ((LISTS, "sends: [level, alarm, report]"), *SENT)
 OLD = "shut: {path: [gauge.measure, valve.act], reaction: 40 ms}"
 
 
 def test_times_and_queues_count_as_if_each_execution_sent() -> None:
-    some, each = analyse(system_of()), analyse(system_of(text_of(ALWAYS)))
+    some, each = analyse(system_of()), analyse(system_of(text_of(*ALWAYS)))
     assert [(row.row.name, row.bound) for _, row in some.rows()] == [
         (row.row.name, row.bound) for _, row in each.rows()
     ]
@@ -232,7 +304,7 @@ def test_an_age_has_no_bound_and_the_reason_names_row_and_port() -> None:
     why = "gauge.measure gives gauge.alarm a new value in some of its jobs only"
     assert [text for _, text in told.notes] == [why]
     assert told.hint == "limit the reaction instead"
-    assert not list(findings(analyse(system_of(text_of(limited, ALWAYS)))))
+    assert not list(findings(analyse(system_of(text_of(limited, *ALWAYS)))))
     assert not list(findings(analyse(system_of())))
 
 
