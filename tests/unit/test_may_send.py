@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import cantools
 import pytest
 
 from ravenchart.analysis.findings.claims import claims_of
@@ -15,6 +16,7 @@ from ravenchart.analysis.system.observed import read_map, read_trace
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.draw.words import expression
+from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.emit.tables.trace_map import trace_json
@@ -381,6 +383,32 @@ def test_an_age_over_the_bus_has_no_bound(
 def test_a_message_that_is_repeated_bounds_an_age_from_there_on() -> None:
     mixed = ("from: s.o,", "from: s.o, send: {mode: mixed, period: 200 ms},")
     assert not list(findings(of_nodes(AGE, BEHIND, mixed)))
+
+
+def test_a_message_that_is_repeated_is_looked_at_in_every_execution() -> None:
+    """The value is given where the flag is true only; the mode counts executions of the row."""
+    mixed = ("from: s.o,", "from: s.o, send: {mode: mixed, period: 200 ms},")
+    system = system_of(text_of(mixed, text=NODES))
+    body = " ".join(generate(system, Claims())["cpu/sample-s.adb"].split())
+    given = "if Send_O_Asked then Send_O (O_Value); end if;"
+    assert f"{given} Can0.Transmit_Link;" in body
+
+
+@pytest.mark.parametrize(
+    ("change", "cycle"),
+    [
+        ((), None),
+        ((EACH,), 10),
+        ((("from: s.o,", "from: s.o, send: {mode: mixed, period: 200 ms},"),), 200),
+    ],
+)
+def test_the_database_has_a_cycle_time_where_frames_come_in_time(
+    change: tuple[tuple[str, str], ...], cycle: int | None
+) -> None:
+    system = system_of(text_of(*change, text=NODES))
+    database = cantools.database.load_string(emit_dbc(system, system.buses[0]), "dbc")
+    assert isinstance(database, cantools.database.Database)
+    assert database.get_message_by_name("link").cycle_time == cycle
 
 
 def test_a_message_of_its_own_is_the_same() -> None:
