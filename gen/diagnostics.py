@@ -94,6 +94,7 @@ CODES: Mapping[str, str] = {
     "RV-0418": "A value is set to itself.",
     "RV-0419": "`old` stands outside of `ensures`, or is not about a data item that is written.",
     "RV-0420": "A contract names what its activity does not read, write or send.",
+    "RV-0421": "`sent` stands outside of `ensures`, or every execution sends on its port.",
     "RV-0501": "An initial state is not inside the state or region that names it.",
     "RV-0502": "A transition has several triggers, or neither trigger, target nor effect.",
     "RV-0503": "An internal transition has a target other than its source.",

@@ -145,7 +145,7 @@ class Latencies:
         """The latency of a way, which lists messages, ports, rows and data."""
         steps: list[ChainStep] = []
         released = dict(self.network.released_by)
-        kept = ""  # why a job may leave what comes next as it was
+        kept = self._seldom(way[0])  # why a job may leave what comes next as it was
         following: Stop | None
         for place, following in zip(way, (*way[1:], None), strict=True):
             if isinstance(place, Carried):
@@ -182,6 +182,21 @@ class Latencies:
             if port.name == name:
                 return port
         return None
+
+    def _seldom(self, first: Stop) -> str:
+        """Why nothing bounds the time to the next frame of the message that a way begins with.
+
+        "" where something does, or where that follows from the message alone.
+        """
+        if not isinstance(first, Carried):
+            return ""
+        message = named(self.system.messages, first.message)
+        source = message.source
+        if source is None or message.call is not None or message.transmission is not None:
+            return ""
+        senders = self.system.instance(source.instance).component.senders(source.port)
+        kept = (self._kept(f"{source.instance}.{one.name}", str(source)) for one in senders)
+        return next(filter(None, kept), "")
 
     def _kept(self, row: str, following: Stop | None) -> str:
         """Why jobs of a row may leave what it leads to as it was; "" where none does."""

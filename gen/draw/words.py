@@ -60,7 +60,8 @@ def _bound(item: Expression) -> tuple[int, str]:
         case Name(kind, name, field):
             base = "event" if kind is Reading.EVENT else name
             text = f"{base}.{field}" if field else base
-            return _ATOM, f"old({text})" if kind is Reading.OLD else text
+            is_function = kind in (Reading.OLD, Reading.SENT)
+            return _ATOM, f"{kind.value}({text})" if is_function else text
         case PortTest(port, state):
             return _ATOM, f"{state}({port})"
         case InState(region, state):

@@ -117,7 +117,8 @@ the operands of `*` one has no unit, and so has the divisor of `/`. A comparison
 a value with itself, is an error: its outcome never changes.
 
 In a [contract](contracts.md) a name is something that the activity reads, writes or sends. In its
-`ensures`, `old(item)` or `old(item.field)` is a data item before the execution.
+`ensures`, `old(item)` or `old(item.field)` is a data item before the execution, and `sent(port)`
+says whether the execution sends on a port, or calls a command that has an argument.
 
 In guard and effect of a transition `on` an event with a type, `event` is the value that came with
 it, or `event.field` a field of it.

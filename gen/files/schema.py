@@ -365,7 +365,12 @@ class ActivityForm(Element):
         "Data, parameters, input ports, regions and read commands it reads."
     )
     writes: list[Reference] | None = optional("Data items it writes.")
-    sends: list[Reference] | None = optional("Output ports it sends on.")
+    sends: list[Reference] | None = optional(
+        "Output ports it sends on; a body of the user on each of them in every execution."
+    )
+    may_send: list[Reference] | None = optional(
+        "Of a body of the user: output ports it sends on where it sets `Send_<Port>` to true."
+    )
     calls: list[Reference] | None = optional("Required commands it calls.")
     raises: list[Reference] | None = optional(
         "Events it raises; with `while` also `done`, which completes the state."
@@ -375,14 +380,14 @@ class ActivityForm(Element):
     )
     ensures: Conditions | None = optional(
         "Contract: conditions on what it reads, writes and sends, which hold when an execution "
-        "ends; `old(item)` is a data item before it."
+        "ends; `old(item)` is a data item before it, `sent(port)` whether it sends."
     )
     body: Annotated[
         Annotated[Literal["user"], Tag("<one>")] | Annotated[list[ActionForm], Tag("<list>")],
         shaped("`user` or a list of actions"),
     ] = key(
-        "`user` for a procedure written by hand, or a list of actions; the five lists above may "
-        "then be left out."
+        "`user` for a procedure written by hand, or a list of actions; the lists above may then "
+        "be left out."
     )
 
 

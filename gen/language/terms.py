@@ -114,6 +114,8 @@ class Reading(Enum):
     """The value that an execution sends on an output port, or gives a command that it calls."""
     OLD = "old"
     """A data item as it was before the execution."""
+    SENT = "sent"
+    """Whether an execution sends on an output port, or calls a command."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -136,10 +136,10 @@ class Activity:
     """A named, bounded piece of work: the user's SPARK procedure, or a flow.
 
     ``reads`` names data, parameters, input ports and regions (their published
-    state), ``writes`` data, ``sends`` output ports (a user body sends each at
-    every execution, a flow where it says so), ``raises`` events. All in model
-    order. With ``while_in`` it is the do activity of that state, and may raise
-    `DONE`, which completes it.
+    state), ``writes`` data, ``sends`` output ports (a flow sends where it says so, a
+    user body at every execution, except on those that it ``may_send``), ``raises``
+    events. All in model order. With ``while_in`` it is the do activity of that state,
+    and may raise `DONE`, which completes it.
     """
 
     name: str
@@ -154,6 +154,8 @@ class Activity:
     """None: the body is the user's."""
     requires: tuple[Clause, ...] = ()
     ensures: tuple[Clause, ...] = ()
+    may_send: tuple[str, ...] = ()
+    """Those of ``sends`` of which a user's body decides in each execution."""
 
     @property
     def completes(self) -> StateRef | None:
@@ -204,13 +206,14 @@ class Component:
         """Whether every execution of a row gives a data item or output port a new value.
 
         A region does in some only, and a do activity while its state is active; a user's
-        body is taken to do so.
+        body is taken to do so, except on the ports that it may send on.
         """
         if isinstance(row, Region) or row.while_in is not None:
             return False
         if row.flow is None:
             called = any(port.name == name and port.is_command for port in self.ports)
-            return not called and self.served_by(row.name) is None
+            decided = called or name in row.may_send
+            return not decided and self.served_by(row.name) is None
         sure = always(row.flow)
         if name in sure:
             return True

@@ -24,7 +24,7 @@ from ravenchart.gen.origins import Origin
 from .chart_names import States, concurrent_states, names_of
 from .chart_structure import structure_errors
 from .charts import region_of
-from .contracts import contract_of
+from .contracts import contract_of, sent
 from .flows import Targets, Use, called, flow_of
 from .interfaces import heard_of, needs_of, provided_of, servers_serve_once, stand_ins_agree
 from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
@@ -219,12 +219,16 @@ def _activity(
     lists = _lists(form, words, targets, findings)
     flow: Flow | None = None
     if not isinstance(form.body, str):
+        if form.has("may_send"):
+            message = "only a body of the user has `may_send`: actions send where they say so"
+            hint = "remove it; `if` makes a `send` depend on a condition"
+            findings.error("RV-0210", form.at_key("may_send"), message, hint=hint)
         count = findings.count()
         flow = flow_of(form.body, words, targets, findings)
         use = Use()
         use.flow(flow)
         if findings.count() == count and not form.damaged:
-            lists = _agreed(name, form, lists, use, targets, findings)
+            lists |= _agreed(name, form, lists, use, targets, findings)
     requires: tuple[Clause, ...] = ()
     ensures: tuple[Clause, ...] = ()
     if findings.count() == before and not form.damaged:
@@ -235,12 +239,13 @@ def _activity(
         timing=timing,
         reads=lists["reads"],
         writes=lists["writes"],
-        sends=(*lists["sends"], *lists["calls"]),
+        sends=sent(lists),
         raises=lists["raises"],
         while_in=while_in,
         flow=flow,
         requires=requires,
         ensures=ensures,
+        may_send=lists["may_send"],
     )
 
 
@@ -270,6 +275,7 @@ def _lists(
         ),
         "writes": ("data item", (targets.data,)),  # type: ignore[dict-item]
         "sends": ("output port", (targets.outputs,)),  # type: ignore[dict-item]
+        "may_send": ("output port", (targets.outputs,)),  # type: ignore[dict-item]
         "calls": ("required command", ()),
         "raises": ("event", (targets.events,)),  # type: ignore[dict-item]
     }
@@ -278,6 +284,7 @@ def _lists(
         ("reads", form.reads),
         ("writes", form.writes),
         ("sends", form.sends),
+        ("may_send", form.may_send),
         ("calls", form.calls),
         ("raises", form.raises),
     ):
@@ -290,7 +297,7 @@ def _lists(
             elif key == "calls":
                 need = called(name, origin, words, targets, findings)
                 declared = None if need is None else need.name
-            elif key in ("reads", "sends") and targets.calls.find(name) is not None:
+            elif key in ("reads", "sends", "may_send") and targets.calls.find(name) is not None:
                 message = f"`{name}` is a command to call, so it cannot stand in `{key}`"
                 findings.error("RV-1206", origin, message, hint="name it under `calls`")
                 declared = None
@@ -299,6 +306,10 @@ def _lists(
             if declared is not None and not names.declare(declared, origin, declared):
                 message = f"`{declared}` appears twice in `{key}`"
                 findings.error("RV-0303", origin, message, hint="remove one of them")
+            elif key == "may_send" and declared in lists["sends"]:
+                message = f"`{declared}` appears in `sends` and in `may_send`"
+                hint = "remove it from `sends` if the body decides, else from `may_send`"
+                findings.error("RV-0303", origin, message, hint=hint)
         lists[key] = names.sound()
     return lists
 

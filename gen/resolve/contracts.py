@@ -11,6 +11,7 @@ from ravenchart.gen.files.schema import ActivityForm
 from ravenchart.gen.language.expressions import Term
 from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.terms import (
+    BOOLEAN,
     EnumerationType,
     IntegerType,
     Name,
@@ -21,11 +22,16 @@ from ravenchart.gen.language.terms import (
 from ravenchart.gen.model.component import Clause
 
 from .flows import Targets
-from .typed import OLD, PORT_TESTS, Checker, condition
+from .typed import OLD, PORT_TESTS, SENT, Checker, condition
 from .vocabulary import CheckedExpression, Vocabulary
 
 Lists = Mapping[str, tuple[str, ...]]
 """What an activity reads, writes, sends, calls and raises, by key."""
+
+
+def sent(lists: Lists) -> tuple[str, ...]:
+    """The ports that an activity sends on and the commands that it calls, in some executions."""
+    return (*lists["sends"], *lists["may_send"], *lists["calls"])
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +44,8 @@ class Side:
     """What has a value when an execution begins."""
     written: frozenset[str] = frozenset()
     sent: frozenset[str] = frozenset()
+    every_time: frozenset[str] = frozenset()
+    """Those of ``sent`` for which a user's body has no flag."""
     at_end: bool = False
     """It holds when an execution ends."""
 
@@ -48,6 +56,7 @@ class ContractChecker(Checker):
 
     side: Side = field(default_factory=Side)
     in_old: bool = False
+    in_sent: bool = False
 
     def name(self, term: Term, expected: EnumerationType | None) -> CheckedExpression | None:
         """A name, if the activity reads, writes or sends what it denotes."""
@@ -101,6 +110,29 @@ class ContractChecker(Checker):
             bounds = (found.type.first, found.type.last)
         return replace(checked, expression=before, bounds=bounds)
 
+    def sent(self, term: Term) -> CheckedExpression | None:
+        """Whether the execution sends on a port, or calls a command."""
+        if not self.side.at_end:
+            return Checker.sent(self, term)
+        is_name = len(term.operands) == 1 and term.operands[0].kind == "name"
+        self.in_sent = True
+        checked = self.check(term.operands[0]) if is_name else None
+        self.in_sent = False
+        if is_name and checked is None:
+            return None
+        found = None if checked is None else checked.expression
+        if not isinstance(found, Name) or found.kind is not Reading.OUTPUT:
+            message = f"`{SENT}` takes the name of an output port, or of a command to call"
+            self.refuse("RV-0409", term, message)
+            return None
+        if found.name in self.side.every_time:
+            message = f"{self.side.activity} sends on `{found.name}` in every execution"
+            hint = f"leave it out, or name `{found.name}` in `may_send` instead of `sends`"
+            self.refuse("RV-0421", term, message, hint)
+            return None
+        flag = Name(Reading.SENT, found.name, None, BOOLEAN)
+        return CheckedExpression(flag, BOOLEAN)
+
     def may_read(self, term: Term, name: str) -> bool:
         """Whether the activity has a value of that name; reported when not."""
         side = self.side
@@ -126,7 +158,8 @@ class ContractChecker(Checker):
             subject = f"the flow of {side.activity}" if side.is_flow else side.activity
             hint = f"leave `{port}` out of the contract"
             if not side.is_flow:
-                hint = f"add `{port}` to `sends`, or to `calls` if it is a command"
+                key = "may_send" if self.in_sent else "sends"
+                hint = f"add `{port}` to `{key}`, or to `calls` if it is a command"
             self.refuse("RV-0420", term, f"{subject} does not send on `{port}`", hint)
             return False
         return True
@@ -145,7 +178,8 @@ def contract_of(
     written = frozenset(lists["writes"])
     #  a flow finds what it writes as it was: it sets some of it, or sets it in some executions
     before = frozenset(lists["reads"]) | (written if is_flow else frozenset())
-    side = Side(name, is_flow, before, written, frozenset((*lists["sends"], *lists["calls"])))
+    every_time = frozenset(() if is_flow else lists["sends"])
+    side = Side(name, is_flow, before, written, frozenset(sent(lists)), every_time)
     words = replace(words, readable=_with_outputs(words, targets))
     requires = tuple(_clauses("requires", form, side, words, findings))
     ensures = tuple(_clauses("ensures", form, replace(side, at_end=True), words, findings))

@@ -40,6 +40,8 @@ FUNCTIONS: Mapping[str, int] = {
 """Functions with the number of their arguments."""
 OLD = "old"
 """The function that gives a data item before the execution."""
+SENT = "sent"
+"""The function that says whether the execution sends on a port, or calls a command."""
 PORT_TESTS = ("fresh", "stale", "never_received")
 
 
@@ -187,6 +189,8 @@ class Checker:
         function = term.word.lower()
         if function == OLD:
             return self.old(term)
+        if function == SENT:
+            return self.sent(term)
         if function not in FUNCTIONS:
             message = f"there is no function `{term.word}`"
             self.refuse("RV-0409", term, message, meant(function, (*FUNCTIONS, "in")))
@@ -209,6 +213,12 @@ class Checker:
         """``old(item)``, which only a checker of `ensures` knows."""
         message = f"`{OLD}` has a meaning only in `ensures`"
         self.refuse("RV-0419", term, message, "name the data item itself")
+        return None
+
+    def sent(self, term: Term) -> CheckedExpression | None:
+        """``sent(port)``, which only a checker of `ensures` knows."""
+        message = f"`{SENT}` has a meaning only in `ensures`"
+        self.refuse("RV-0421", term, message, "set a data item where you send, and read that")
         return None
 
     def operator(self, term: Term, expected: EnumerationType | None) -> CheckedExpression | None:

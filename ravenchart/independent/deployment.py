@@ -254,7 +254,7 @@ class Deployment:
             (f"{self.instance(owner)}.{name}", row)
             for name, row in rows
             if _sends(row, port.lower())
-            or port.lower() in (text.lower() for text in row.texts("sends"))
+            or port.lower() in (t.lower() for k in ("sends", "may_send") for t in row.texts(k))
         ]
 
     def _send_period(self, end: str) -> int:

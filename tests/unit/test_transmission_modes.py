@@ -108,6 +108,23 @@ def test_the_age_of_what_is_sent_on_change_is_refused(tmp_path: Path) -> None:
     assert findings(_analysed(tmp_path, CHANGE, (", age: 900 ms", ""))) == ()
 
 
+SOME = ("body: [{send: o, with: cmd}]", "body: [{if: cmd > 5, then: [{send: o, with: cmd}]}]")
+BEHIND = ("path: [cmd, s.one, link, d.act, valve]", "path: [link, d.act, valve]")
+
+
+def test_a_message_that_only_some_jobs_send_begins_no_chain_with_an_age(tmp_path: Path) -> None:
+    whole, age = _times(_analysed(tmp_path, "", BEHIND))
+    assert age is not None
+    found = _analysed(tmp_path, "", SOME, BEHIND)
+    assert _times(found) == (whole, None)
+    (one,) = findings(found)
+    why = "s.one gives s.o a new value in some of its jobs only"
+    assert [note for _, note in one.notes] == [why]
+    assert "chain cmd can have any age" in compiled(certificate(found), tmp_path)
+    repeated = _times(_analysed(tmp_path, MIXED, SOME, BEHIND))
+    assert repeated == _times(_analysed(tmp_path, MIXED, BEHIND))
+
+
 @pytest.mark.parametrize("mode", ["", CHANGE, EVENT, MIXED])
 def test_the_certificate_has_the_same_sums(mode: str, tmp_path: Path) -> None:
     edits = [(", age: 900 ms", "")] if mode in (CHANGE, EVENT) else []

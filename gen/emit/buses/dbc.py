@@ -140,12 +140,22 @@ def _message(system: System, message: Message) -> DbcMessage:
             *(_trailer(message, receivers)),
         ],
         senders=[OUTSIDE if message.source is None else _node(system, message.source)],
-        cycle_time=None if message.longest is None else message.longest // 1_000_000,
+        cycle_time=_cycle_time(system, message),
         is_extended_frame=message.extended,
         is_fd=message.fd,
         dbc_specifics=_with(_attributes(message)),
         sort_signals=None,
     )
+
+
+def _cycle_time(system: System, message: Message) -> int | None:
+    """In ms; None where nothing bounds the time to the next frame."""
+    longest, source = message.longest, message.source
+    if source is not None and message.transmission is None:
+        component = system.instance(source.instance).component
+        if any(source.port in activity.may_send for activity in component.activities):
+            return None
+    return None if longest is None else longest // 1_000_000
 
 
 def _node(system: System, end: End) -> str:

@@ -43,7 +43,8 @@ class ClaimedHop:
 def hops_of(system: System, chain: Chain) -> tuple[ClaimedHop, ...]:
     """The steps of a chain, from its way; none where that is broken."""
     hops: list[ClaimedHop] = []
-    sure = True  # whether the row before renews what stands between it and the next
+    #  whether the row before renews what stands between it and the next
+    sure = not any(_seldom(system, place) for place in chain.way[:1])
     for number, place in enumerate(chain.way):
         following = next(iter(chain.way[number + 1 :]), None)
         if isinstance(place, Carried):
@@ -78,6 +79,17 @@ def _irregular(system: System, chain: Chain, hops: list[ClaimedHop]) -> list[Cla
     if rare and any(hop.how != "released" for hop in hops[1:]):
         return [replace(hops[0], sure=False), *hops[1:]]
     return hops
+
+
+def _seldom(system: System, place: Stop) -> bool:
+    """Whether it is a message of which a row sends some in some of its jobs only."""
+    if not isinstance(place, Carried):
+        return False
+    message = named(system.messages, place.message)
+    if message.source is None or message.call is not None or message.transmission is not None:
+        return False
+    component, port = system.instance(message.source.instance).component, message.source.port
+    return not all(component.renews(row, port) for row in component.senders(port))
 
 
 def _message(system: System, name: str, following: Stop | None) -> Iterator[ClaimedHop]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
 from ravenchart.gen.derive.kept import kept_of
 from ravenchart.gen.emit.ada.naming import ada_case, component_name, type_name
@@ -41,7 +42,7 @@ def contract(
     system: System, component: Component, activity: Activity, flag: SentFlag
 ) -> Iterator[Aspect]:
     """`Pre` and `Post` of an activity."""
-    scope = _scope(system, component, ada_case)
+    scope = replace(_scope(system, component, ada_case), sent=lambda port: (port, flag(port) or ""))
     required = [emit_expression(scope, clause.condition) for clause in activity.requires]
     ensured = [_ensured(scope, clause.condition, flag) for clause in activity.ensures]
     if required:

@@ -145,7 +145,7 @@ def _raised(event: str, given: Expr | None) -> tuple[Stmt, ...]:
 
 
 def send_flag(port: Port) -> str:
-    """The parameter by which a flow says that it sends, or a body that it calls."""
+    """The parameter by which an activity says that it sends, or calls."""
     return f"{'Call' if port.is_command else 'Send'}_{ada_case(port.name)}"
 
 
@@ -156,8 +156,8 @@ def _sent_flag(component: Component, activity: Activity, port: str) -> str | Non
 
 
 def has_flag(activity: Activity, port: Port) -> bool:
-    """Whether an execution may go without sending: a user's body always sends on its ports."""
-    return activity.flow is not None or port.is_command
+    """Whether an execution may go without sending on a port."""
+    return activity.flow is not None or port.is_command or port.name in activity.may_send
 
 
 def activity_params(system: System, component: Component, activity: Activity) -> tuple[Param, ...]:

@@ -204,6 +204,8 @@ def emit_expression(scope: Scope, expression: m.Expression, unit: str | None = N
             return _literal(scope, value, of_type, unit)
         case m.Name(m.Reading.OLD, name, field):
             return Old(scope.variable(name), "" if field is None else f".{ada_case(field)}")
+        case m.Name(m.Reading.SENT, name):
+            return Ref(scope.sent(name)[1])
         case m.Name():
             return Ref(_name(scope, expression))
         case m.PortTest(port, state):
