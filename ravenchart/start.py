@@ -6,6 +6,7 @@ orderly end, and gives every kind of end its own exit status.
 
 from __future__ import annotations
 
+import datetime
 import gc
 import os
 import select
@@ -25,6 +26,9 @@ SIGNALLED = 128
 
 SOON = 0.002
 """Seconds until a request to stop that got lost is made again."""
+
+PRESENT = (datetime,)
+"""What a library in Rust imports while it is imported, and panics where a signal comes then."""
 
 _asked: list[int] = []
 """The signals that asked the process to end, oldest first."""

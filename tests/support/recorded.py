@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
-from asammdf import MDF
+import pytest
 
 from ravenchart.paths import ROOT
+from ravenchart.running.traces.mdf import INSTALL
 
 FOLDER = ROOT / "tests" / "feature" / "recorded"
 MODEL = FOLDER / "model.yaml"
@@ -51,9 +53,17 @@ def grouped(rows: Sequence[tuple[str, str]]) -> Values:
     return made
 
 
+def asammdf() -> Any:
+    """The package; without it the test is skipped, and says how to get it.
+
+    It is not installed for the tests: python-can would import it, and pandas, in each process.
+    """
+    return pytest.importorskip("asammdf", reason=f"asammdf is not installed: {INSTALL}")
+
+
 def read_back(path: Path, element: str) -> list[tuple[int, int]]:
     """The times in ns, and the numbers that a file of MDF has of an element, by asammdf."""
-    with MDF(path) as mdf:
+    with asammdf().MDF(path) as mdf:
         signal = mdf.get(element, raw=True)
         times = [round(float(at) * 1e9) for at in signal.timestamps]
         return list(zip(times, map(int, signal.samples), strict=True))

@@ -69,13 +69,24 @@ def test_a_run_has_each_value_once_in_order(tmp_path: Path) -> None:
     text = SnapshotFile(folder / LIVE).text()
     assert text is not None
     shown = {t.last.element: t for t in parsed(text, seen.map, LIVE).tallies}
+    for element in seen.map.of_kind("value"):
+        points = [(one.time, one.value) for one in seen.values if one.element == element]
+        last = shown[element].last
+        assert (shown[element].count, last.time, last.value) == (len(points), *points[-1])
+
+
+@pytest.mark.slow
+@pytest.mark.live
+def test_mdf_has_each_value_of_a_run(tmp_path: Path) -> None:
+    recorded.asammdf()
+    folder = tmp_path / "recorded"
+    shutil.copytree(FOLDER, folder)
+    seen, timeline = _run(folder, SECONDS)
     path = tmp_path / "run.mf4"
     path.write_bytes(FORMATS[".mf4"](timeline))
     for element in seen.map.of_kind("value"):
         points = [(one.time, one.value) for one in seen.values if one.element == element]
         assert read_back(path, element.name) == points
-        last = shown[element].last
-        assert (shown[element].count, last.time, last.value) == (len(points), *points[-1])
 
 
 @pytest.mark.slow

@@ -9,7 +9,6 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from asammdf import MDF
 
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.observed import TraceError, TraceMap, read_map, read_trace, together
@@ -29,7 +28,7 @@ from ravenchart.running.process import Ended
 from ravenchart.running.traces.timeline import Slice, Timeline, Track
 from ravenchart.running.traces.values import Quantity, spans
 from tests.support.pump import loaded
-from tests.support.recorded import MODEL, read_back
+from tests.support.recorded import MODEL, asammdf, read_back
 from tests.support.trace_events import events_of, well_formed
 
 PRINTED = pytest.CaptureFixture[str]
@@ -284,6 +283,7 @@ def test_perfetto_has_counters_of_numbers_and_slices_of_literals(
 def test_mdf_has_the_numbers_with_units_literals_and_states(
     trace: tuple[Path, Path], tmp_path: Path
 ) -> None:
+    reader = asammdf()
     model, path = trace
     own = read_map((model.parent / "generated" / "trace.json").read_text(encoding="utf-8"))
     chart = own.named("taker.Counting", "region").number
@@ -294,7 +294,7 @@ def test_mdf_has_the_numbers_with_units_literals_and_states(
     assert read_back(out, "giver.height") == [(100, -993), (20000100, -986)]
     assert read_back(out, "giver.far") == [(400, -(2**62))]
     assert read_back(out, "taker.heat") == [(300, -397)]
-    with MDF(out) as mdf:
+    with reader.MDF(out) as mdf:
         heat, hue, counting = (mdf.get(n) for n in ("taker.heat", "giver.hue", "taker.Counting"))
         assert (heat.unit, mdf.get("giver.height").unit) == ("degC", "mm")
         assert list(heat.samples) == pytest.approx([-39.7])
@@ -303,7 +303,7 @@ def test_mdf_has_the_numbers_with_units_literals_and_states(
         assert [round(at * 1e9) for at in counting.timestamps] == [50, 10000050]
         assert len(mdf.get("taker.count").samples) == 0
         assert "lost values" in mdf.header.comment
-        assert str(mdf.groups[0].channel_group.acq_name) == "board"  # type: ignore[union-attr]
+        assert str(mdf.groups[0].channel_group.acq_name) == "board"
 
 
 def test_mdf_without_asammdf_or_values_is_refused_with_what_to_do(
