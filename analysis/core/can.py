@@ -157,8 +157,7 @@ def _of_bus(
     for _, group in groupby(enumerate(order, 1), key=lambda placed: placed[1].rank):
         members = list(group)
         level = FrameLevel(order, members[-1][0], bus, known)
-        lost = any(frame.queue and delays[frame.name] is None for _, frame in members)
-        if lost and len(members) > 1:
+        if any(frame.queue and delays[frame.name] is None for _, frame in members):
             reason = reason or Reason.RIVAL
         for _, frame in members:
             used.add(_source(frame, known))
@@ -177,8 +176,6 @@ def _of_bus(
             else:
                 yield frame_response(frame, level, waiting.fork(), busy.fork(), allowed)
             effort.left += allowed.left
-        if lost:
-            reason = reason or Reason.RIVAL
         for number, frame in members:
             busy.add(number, _source(frame, known))
             waiting.add(number, _source(frame, known, bus.bit_time))

@@ -171,9 +171,7 @@ def _latest(response: Response | FrameResponse) -> int:
     return response.frame.jitter + response.level.delays.get(response.frame.name, 0)
 
 
-def _of_task(
-    response: Response, events: Mapping[str, str], best: Mapping[str, int]
-) -> _Level | None:
+def _of_task(response: Response, events: Mapping[str, str], best: Mapping[str, int]) -> _Level:
     """The level of a task, with the overheads of its core."""
     platform, order = response.level.platform, response.level.order
     steps = [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ravenchart.gen.language.terms import RecordType, ScalarType
+from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType
 from ravenchart.gen.origins import Origin
 
 from .component import Data, Port
@@ -57,3 +57,13 @@ class RecordedValue:
     of: RecordedItem
     field: str | None
     type: ScalarType
+
+    @property
+    def literals(self) -> tuple[str, ...]:
+        """The literals of an enumeration or Boolean, in order of number; () of an integer."""
+        return () if isinstance(self.type, IntegerType) else self.type.literals
+
+    @property
+    def unit(self) -> str | None:
+        """What one count of an integer stands for, where its type says so."""
+        return self.type.unit if isinstance(self.type, IntegerType) else None

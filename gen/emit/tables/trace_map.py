@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from itertools import product
 
 from ravenchart.gen.emit.language.places import Places
-from ravenchart.gen.language.terms import IntegerType
 from ravenchart.gen.model.commands import RemoteRead
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
@@ -110,8 +109,8 @@ def _values(system: System, last: int) -> Iterator[MappedElement]:
             one.element,
             VALUE,
             one.of.item.origin,
-            literals=() if isinstance(one.type, IntegerType) else one.type.literals,
-            unit=one.type.unit if isinstance(one.type, IntegerType) else None,
+            literals=one.literals,
+            unit=one.unit,
         )
 
 

@@ -14,7 +14,7 @@ from ravenchart.behaviour.interpreter.traces import (
     parsed_value,
 )
 from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
-from ravenchart.gen.language.terms import NO_TIME, IntegerType, Ns
+from ravenchart.gen.language.terms import NO_TIME, Ns
 from ravenchart.gen.model.system import System
 
 from .timeline import Mark, Slice, Timeline, TraceRow, Track
@@ -92,30 +92,28 @@ class _Recorded:
 
     def __init__(self, system: System) -> None:
         self._process = system.name
-        self._types = {one.element: one.type for one in system.recorded_values}
-        self._points: dict[str, list[Point]] = {element: [] for element in self._types}
+        self._values = {one.element: one for one in system.recorded_values}
+        self._points: dict[str, list[Point]] = {element: [] for element in self._values}
 
     def take(self, record: ValueRecord, place: str) -> None:
         """Add a value; TraceError where the model cannot have it."""
-        of_type = self._types.get(record.element)
-        if of_type is None:
+        known = self._values.get(record.element)
+        if known is None:
             raise TraceError(f"{place} the model does not record {record.element}")
         text = str(record.value)
-        if isinstance(of_type, IntegerType):
-            number = int(text) if NUMBER.fullmatch(text) else None
+        if known.literals:
+            number = known.literals.index(text) if text in known.literals else None
         else:
-            number = of_type.literals.index(text) if text in of_type.literals else None
+            number = int(text) if NUMBER.fullmatch(text) else None
         if number is None:
             raise TraceError(f"{place} {record.element} has no value {text}")
         self._points[record.element].append((record.at, number))
 
     def series(self) -> Iterator[Series]:
         """All of them, in the order of the model."""
-        for element, of_type in self._types.items():
-            literals = () if isinstance(of_type, IntegerType) else of_type.literals
-            unit = of_type.unit if isinstance(of_type, IntegerType) else None
+        for element, one in self._values.items():
             points = tuple(self._points[element])
-            yield Series(self._process, element, Quantity.of(literals, unit), points)
+            yield Series(self._process, element, Quantity.of(one.literals, one.unit), points)
 
 
 def _places(system: str, charts: Charts) -> Iterator[Track]:
