@@ -133,7 +133,7 @@ def _always_takes(tree: ChartTree, state: str, trigger: Trigger) -> bool:
     if not isinstance(trigger, OnEvent):
         return False
     return trigger.event in tree.states[state].defers or any(
-        one.trigger == trigger and one.guard is None for one in tree.leaving[state]
+        one.trigger == trigger and one.guard is None for one in tree.outgoing[state]
     )
 
 

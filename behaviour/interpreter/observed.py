@@ -230,9 +230,9 @@ class ObservedRegion(RegionRun):
 
     def _failures(self, vertex: str, seen: tuple[str, ...]) -> Iterator[FalseGuard]:
         """The guards behind a junction that do not hold."""
-        if self.tree.kind(vertex) is not PseudoKind.JUNCTION:
+        if self.tree.kinds.get(vertex) is not PseudoKind.JUNCTION:
             return
-        for segment in self.tree.leaving[vertex]:
+        for segment in self.tree.outgoing[vertex]:
             if segment.guard is not None and not self._lets_through(segment):
                 yield self._failed(segment.guard)
             elif segment.target not in seen:
@@ -240,8 +240,8 @@ class ObservedRegion(RegionRun):
 
     def _incomplete(self, vertex: str) -> Iterator[str]:
         """The sources of a join that have not completed."""
-        if self.tree.kind(vertex) is PseudoKind.JOIN:
-            for segment in self.tree.into(vertex):
+        if self.tree.kinds.get(vertex) is PseudoKind.JOIN:
+            for segment in self.tree.incoming[vertex]:
                 if not self._ready(segment):
                     yield segment.source
 

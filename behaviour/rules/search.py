@@ -16,6 +16,7 @@ from types import MappingProxyType
 
 import z3
 
+from ravenchart.behaviour.tree import CONDITIONS, START, Occurrence
 from ravenchart.gen.language.terms import BOOLEAN, Reading
 from ravenchart.gen.model.statechart import DONE, After, Every, Overflow, Transition
 from ravenchart.gen.model.system import System
@@ -29,7 +30,6 @@ from .schedule import Rows
 from .stepping import Configuration
 from .threads import Thread
 from .timing import TimedWay
-from .tree import CONDITIONS, START, Occurrence
 from .words import label, where
 
 MOST_SITUATIONS = 300

@@ -67,7 +67,7 @@ def _charts(play: Play) -> Iterator[Json]:
             "instance": chart[0],
             "drawing": f"{own.component.name}.{chart[1]}",
             "period": shown(run.region.timing.period),
-            "active": [one for one in (*run.tree.states, *run.tree.pseudo) if run.is_active(one)],
+            "active": [one for one in (*run.tree.states, *run.tree.kinds) if run.is_active(one)],
             "stopped": run.stopped,
             "queue": [with_value(one.event, one.value) for one in run.queue],
             "depth": run.region.queue_depth,
