@@ -15,7 +15,7 @@ BACKENDS.setdefault("ravenchart", ("ravenchart.hw_can.bench.bus_client", "Ravenc
 
 
 @dataclass(frozen=True, slots=True)
-class Interface:
+class BusEnd:
     """One end of a bus, by its names in python-can."""
 
     name: str
@@ -41,7 +41,7 @@ class Interface:
         return told
 
 
-def opened(interface: Interface, *, echo: bool = False) -> can.BusABC:
+def opened(interface: BusEnd, *, echo: bool = False) -> can.BusABC:
     """One bus object, which receives its own frames with ``echo``; BenchError when there is none.
 
     Drivers raise what they like.
@@ -66,7 +66,7 @@ def words(fault: BaseException) -> str:
     return "".join(c if c.isprintable() else "?" for c in said)
 
 
-def joined(interface: Interface, codec: Codec, record: OnFrame = unrecorded) -> Peer:
+def joined(interface: BusEnd, codec: Codec, record: OnFrame = unrecorded) -> Peer:
     """A peer at that end of a bus; BenchError when there is none."""
     bus = opened(interface)
     link = link_of(bus) if interface.name == "slcan" and "socket://" in interface.channel else None

@@ -13,6 +13,7 @@ from ravenchart.paths import PACKAGE
 
 CALLED_BY_OTHERS = {
     "_recv_internal": "python-can calls it",
+    "_fill_text": "argparse calls it",
     "capture_signals": "uvicorn calls it",
     "conjunct": "lark calls it",
     "handle": "socketserver calls it",

@@ -7,7 +7,7 @@ from itertools import islice
 from typing import Any
 
 from ravenchart.behaviour.interpreter.machine import InstanceRun
-from ravenchart.behaviour.interpreter.observed import ObservedStep, Reason
+from ravenchart.behaviour.interpreter.observed import FiringReason, ObservedStep
 from ravenchart.behaviour.interpreter.region import RegionRun
 from ravenchart.behaviour.interpreter.traces import seconds
 from ravenchart.behaviour.rules.outside import external_events
@@ -112,7 +112,7 @@ def _step(step: ObservedStep, run: RegionRun) -> Json:
                 "source": one.transition.source,
                 "target": one.transition.target,
                 "label": label(one.transition).text,
-                "fired": one.reason is Reason.FIRED,
+                "fired": one.reason is FiringReason.FIRED,
                 "reason": reason(one, run.region.timing.period),
             }
             for one in step.verdicts
