@@ -99,8 +99,8 @@ def transitions_fire(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
             continue
         reason = _reason(reach, thread, transition, shut_out)
         message = f"{transition.name} is never taken: {reason.text}"
-        joint = "; " if reason.removal.startswith("where") else ", or "
-        hint = f"{reason.change}{joint}{reason.removal}"
+        otherwise = f"; {reason.successor}" if reason.successor else f", or {reason.removal}"
+        hint = f"{reason.change}{otherwise}"
         yield error("RV-1102", transition.origin, message, notes=reason.notes, hint=hint)
 
 

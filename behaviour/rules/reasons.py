@@ -30,8 +30,10 @@ class Obstacle:
     change: str
     """What to do about it, as the beginning of a hint."""
     removal: str
-    """What removal of the transition would do, as its end."""
+    """How the transition is removed instead, as its end: ``remove NAME``."""
     notes: tuple[tuple[Origin, str], ...] = ()
+    successor: str = ""
+    """What would happen if it were removed, where that is not the end of it."""
     is_guard: bool = False
     """Whether nothing comes before it: its guard, or what makes it due, is in its way."""
 
@@ -58,11 +60,12 @@ def beaten(tree: ChartTree, transition: Transition, found: Sequence[Beaten]) -> 
     if all(b.why is Defeat.END for b in found):
         text = f"{' or '.join(w.name for w in winners)} is taken before it and ends the region"
         return Obstacle(text, change, f"remove {name}", notes)
-    removal = (
+    successor = (
         f"where {name} is removed, the next transition of {source}, or of a state around it, "
         "takes its place and may be taken"
     )
-    return Obstacle(f"it conflicts with {_and(w.name for w in winners)}", change, removal, notes)
+    text = f"it conflicts with {_and(w.name for w in winners)}"
+    return Obstacle(text, change, f"remove {name}", notes, successor)
 
 
 def taken_inside(
