@@ -27,7 +27,6 @@ CALLED_BY_OTHERS = {
     "audsley_tasks": "theory beside the one for frames, compared with references",
     "with_priorities": "theory beside the one for frames, compared with references",
     "with_ranks": "theory beside the one for frames, compared with references",
-    "Echo": "a peer of tests on a bus",
     "stale_sources": "the tests of the proof records are built on it",
 }
 """Names that nothing of the package uses, and who uses them."""
