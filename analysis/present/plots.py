@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from ravenchart.analysis.core.chains import Latency
 from ravenchart.analysis.system.critical import GIVEN, RunningSlice
 
-from .words import families
+from .sentences import families
 
 INK = "#1c2128"
 """Of text and axes; a page replaces it by its own."""

@@ -12,12 +12,12 @@ from ravenchart.gen.model.statechart import OnEvent, Region, State, Transition
 from ravenchart.gen.origins import Origin
 
 from . import logic
+from .labels import label, reached, trace, valuation, where
 from .logic import Term
 from .reach import Reachable
 from .reasons import Obstacle, beaten, in_front, taken_inside
 from .stepping import Beaten
 from .threads import Edge, Thread
-from .words import label, reached, trace, valuation, where
 
 Rule = Callable[[Reachable, Thread], Iterator[Diagnostic]]
 

@@ -22,6 +22,7 @@ from ravenchart.gen.model.statechart import DONE, After, Every, Overflow, Transi
 from ravenchart.gen.model.system import System
 
 from . import logic
+from .labels import label, where
 from .logic import Term, Variable
 from .outcomes import Outcome
 from .outside import external_events
@@ -30,7 +31,6 @@ from .schedule import Rows
 from .stepping import Configuration
 from .threads import Thread
 from .timing import TimedWay
-from .words import label, where
 
 MOST_SITUATIONS = 300
 """Situations that one search looks at."""

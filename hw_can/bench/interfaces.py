@@ -55,10 +55,10 @@ def opened(interface: BusEnd, *, echo: bool = False) -> can.BusABC:
     except PermissionError as fault:
         raise BenchError(f"no permission for {interface}: {fault}") from None
     except Exception as fault:
-        raise BenchError(f"{interface} cannot be opened: {words(fault)}") from None
+        raise BenchError(f"{interface} cannot be opened: {fault_text(fault)}") from None
 
 
-def words(fault: BaseException) -> str:
+def fault_text(fault: BaseException) -> str:
     """What a driver's exception says, on one printable line."""
     said = " ".join(str(fault).split()) or type(fault).__name__
     if not isinstance(fault, can.CanError | OSError | BenchError):

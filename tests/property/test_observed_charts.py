@@ -14,7 +14,7 @@ from ravenchart.behaviour.interpreter.region import RegionRun, Step, Stuck
 from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
-from ravenchart.workbench.play.words import occurrence, reason
+from ravenchart.workbench.play.explained import occurrence, reason
 from tests.support.interpreted import stimuli_of, system_of
 from tests.support.random_charts import events_of, model_of
 

@@ -18,8 +18,8 @@ from ravenchart.gen.language.terms import IntegerType, Ns, RecordType, Type, Val
 from ravenchart.gen.model.instances import End
 
 from ..pictures import arrow
+from .explained import occurrence, reason, value_text, with_value
 from .session import Executed, Play
-from .words import occurrence, reason, value_text, with_value
 
 Json = dict[str, Any]
 
