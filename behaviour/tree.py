@@ -1,111 +1,266 @@
-"""A chart's tree: where vertices stand, and what two of them have in common.
+"""The geometry of a chart, for interpreter and rules alike; its look-ups are made once.
 
-A *place* is a region of the chart: the state around it and its name, (None, "")
-for the top-level region. Every state and pseudostate stands in one place.
+The emitter has its own (`gen/model/chart`): the two are compared by the tests, and share no code.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
 
 from ravenchart.gen.model.statechart import (
+    After,
     Completion,
+    Every,
+    Lane,
+    NestedRegion,
+    OnEvent,
     PseudoKind,
     Pseudostate,
     Region,
+    Segment,
     State,
     Transition,
+    TransitionKind,
+    When,
 )
 
 RegionKey = tuple[str | None, str]
+"""A region inside the chart: the state that has it, and its name; (None, "") is all of it."""
+
 TOP: RegionKey = (None, "")
 
 
+@dataclass(frozen=True, slots=True)
+class Occurrence:
+    """What a step is made for: ``kind`` and the state, transition or event."""
+
+    kind: str
+    """``start``, ``completion``, ``time``, ``event``, ``conditions`` or ``done``."""
+    subject: str = ""
+
+
+START = Occurrence("start")
+CONDITIONS = Occurrence("conditions")
+
+
+@dataclass(frozen=True)
 class ChartTree:
-    """A top-level region, indexed."""
+    """A region; ``working`` are the states with a do activity."""
 
-    def __init__(self, region: Region) -> None:
-        """The tree of ``region``."""
-        self.region = region
-        self.states: dict[str, State] = {s.name: s for s in region.states}
-        self.pseudo: dict[str, Pseudostate] = {p.name: p for p in region.pseudostates}
-        self.leaving: dict[str, tuple[Transition, ...]] = {
-            name: self._leaving(name) for name in (*self.states, *self.pseudo)
-        }
+    region: Region
+    working: frozenset[str] = field(default_factory=frozenset)
 
-    def _leaving(self, vertex: str) -> tuple[Transition, ...]:
-        """In the order they are tried: model order, ``else`` last."""
-        mine = [t for t in self.region.transitions if t.source == vertex]
-        return (*(t for t in mine if not t.otherwise), *(t for t in mine if t.otherwise))
+    @cached_property
+    def states(self) -> dict[str, State]:
+        """The states by name, in tree order."""
+        return {state.name: state for state in self.region.states}
 
-    def kind(self, vertex: str) -> PseudoKind | None:
-        """What kind of pseudostate; None for a state."""
-        return self.pseudo[vertex].kind if vertex in self.pseudo else None
+    @cached_property
+    def pseudostates(self) -> dict[str, Pseudostate]:
+        """The pseudostates by name."""
+        return {pseudo.name: pseudo for pseudo in self.region.pseudostates}
 
-    def place(self, vertex: str) -> RegionKey:
-        """Where a vertex stands."""
-        at = self.pseudo[vertex] if vertex in self.pseudo else self.states[vertex]
-        return at.parent, at.region
+    @cached_property
+    def kinds(self) -> dict[str, PseudoKind]:
+        """The kind of each pseudostate."""
+        return {name: pseudo.kind for name, pseudo in self.pseudostates.items()}
 
-    def places(self, vertex: str) -> list[RegionKey]:
-        """All places that a vertex is in, innermost first."""
-        found = [self.place(vertex)]
-        while (owner := found[-1][0]) is not None:
-            found.append(self.place(owner))
+    @cached_property
+    def slots(self) -> dict[str, RegionKey]:
+        """Where each vertex stands."""
+        vertices: tuple[State | Pseudostate, ...] = (*self.region.states, *self.region.pseudostates)
+        return {v.name: (v.parent, v.region if v.parent is not None else "") for v in vertices}
+
+    @cached_property
+    def chains(self) -> dict[str, tuple[str, ...]]:
+        """Each vertex and its enclosing states, innermost first."""
+        found: dict[str, tuple[str, ...]] = {}
+        for name in self.slots:
+            chain, at = [], self.slots[name][0]
+            while at is not None:
+                chain.append(at)
+                at = self.slots[at][0]
+            found[name] = (name, *chain)
         return found
 
-    def around(self, vertex: str) -> list[str]:
-        """The states around a vertex, innermost first."""
-        return [owner for owner, _ in self.places(vertex) if owner is not None]
+    @cached_property
+    def order(self) -> dict[str, int]:
+        """The position of each state in tree order."""
+        return {name: index for index, name in enumerate(self.states)}
 
-    def nested(self, state: str) -> list[RegionKey]:
-        """The places directly inside a state, in model order."""
-        return [(state, region.name) for region in self.states[state].regions]
+    def ordered(self, names: Iterable[str]) -> tuple[str, ...]:
+        """Some states, in tree order."""
+        return tuple(sorted(names, key=self.order.__getitem__))
 
-    def common(self, vertices: Sequence[str]) -> RegionKey:
-        """The innermost place that all the vertices are in."""
-        others = [self.places(vertex) for vertex in vertices[1:]]
-        return next(p for p in self.places(vertices[0]) if all(p in other for other in others))
+    @cached_property
+    def nested(self) -> dict[RegionKey, NestedRegion]:
+        """The regions of the states."""
+        return {(s.name, r.name): r for s in self.region.states for r in s.regions}
 
-    def towards(self, place: RegionKey, vertex: str) -> str:
-        """What stands in ``place`` and is, or is around, ``vertex``."""
-        chain = (vertex, *self.around(vertex))
-        return next(one for one in chain if self.place(one) == place)
+    @cached_property
+    def lanes(self) -> tuple[Lane, ...]:
+        """The lanes, inner before outer."""
+        return self.region.lanes()
+
+    @cached_property
+    def lane_of(self) -> dict[str, Lane]:
+        """The lane that each state stands in."""
+        return {name: self.region.lane(name) for name in self.states}
+
+    def lane_at(self, slot: RegionKey) -> Lane:
+        """The lane that the states of a region stand in."""
+        owner, name = slot
+        if owner is None:
+            return self.lanes[-1]
+        return Lane(name, owner) if owner in self.orthogonal else self.lane_of[owner]
+
+    @cached_property
+    def orthogonal(self) -> frozenset[str]:
+        """The states of several regions."""
+        return frozenset(name for name, state in self.states.items() if state.is_orthogonal)
+
+    def regions_of(self, state: str) -> tuple[RegionKey, ...]:
+        """The regions of a state, in model order."""
+        return tuple((state, region.name) for region in self.states[state].regions)
 
     def fills_lane(self, state: str) -> bool:
         """Whether a state is a leaf of its lane: it has no region, or several."""
         return len(self.states[state].regions) != 1
 
-    def lane(self, vertex: str) -> list[RegionKey]:
-        """The places that a vertex is in, as far as the region of an orthogonal state around it."""
-        found: list[RegionKey] = []
-        for place in self.places(vertex):
-            found.append(place)
-            if place[0] is not None and len(self.states[place[0]].regions) > 1:
-                break
-        return found
+    @cached_property
+    def terminates(self) -> bool:
+        """Whether some transition may stop the region."""
+        return PseudoKind.TERMINATE in self.kinds.values()
 
-    def into(self, vertex: str) -> list[Transition]:
-        """The transitions that lead to a vertex, in model order."""
-        return [t for t in self.region.transitions if t.target == vertex]
+    @cached_property
+    def outgoing(self) -> dict[str, tuple[Transition, ...]]:
+        """What leaves each vertex, in model order, ``else`` last."""
+        return {name: self.region.outgoing(name) for name in self.slots}
 
-    def can_complete(self, state: str) -> bool:
-        """Whether anything waits for the completion of a state."""
-        return any(isinstance(t.trigger, Completion) for t in self.leaving[state])
-
-    def default(self, places: Iterable[RegionKey] = (TOP,)) -> frozenset[str]:
-        """The states that entering places by default makes active."""
-        found: set[str] = set()
-        for place in places:
-            owner, name = place
-            initial = (
-                self.region.initial if owner is None else self.states[owner].nested(name).initial
+    @cached_property
+    def incoming(self) -> dict[str, tuple[Transition, ...]]:
+        """What leads directly to each vertex."""
+        return {
+            name: tuple(
+                t
+                for t in self.region.transitions
+                if t.target == name and t.kind is not TransitionKind.INTERNAL
             )
-            path = [initial.target, *self.around(initial.target)]
-            path = path[: path.index(owner)] if owner is not None else path
-            found.update(path)
-            for outer, inner in zip(path[1:], path, strict=False):
-                others = [p for p in self.nested(outer) if p not in self.places(inner)]
-                found |= self.default(others)
-            found |= self.default(self.nested(initial.target))
+            for name in self.slots
+        }
+
+    @cached_property
+    def completing(self) -> frozenset[str]:
+        """The states whose completion matters."""
+        return frozenset(
+            t.source for t in self.region.transitions if isinstance(t.trigger, Completion)
+        )
+
+    @cached_property
+    def remembered(self) -> frozenset[RegionKey]:
+        """The regions whose last leaf some history reads."""
+        found: set[RegionKey] = set()
+        for pseudo in self.region.pseudostates:
+            if pseudo.kind is PseudoKind.HISTORY:
+                found.add(self.slots[pseudo.name])
+            elif pseudo.kind is PseudoKind.DEEP_HISTORY:
+                around = self.slots[pseudo.name]
+                found |= {around, *(s for s in self.nested if self.inside(s, around))}
         return frozenset(found)
+
+    def lane_slots(self, vertex: str) -> Iterator[RegionKey]:
+        """The regions that a vertex is in, as far as that of an orthogonal state around it."""
+        for name in self.chains[vertex]:
+            yield self.slots[name]
+            owner = self.slots[name][0]
+            if owner is not None and self.states[owner].is_orthogonal:
+                return
+
+    @cached_property
+    def default(self) -> tuple[str, ...]:
+        """What a region publishes before its first execution: the states entered by default."""
+        found: set[str] = set()
+        waiting: list[RegionKey] = [TOP]
+        while waiting:
+            slot = waiting.pop()
+            initial = self.region.initial if slot == TOP else self.nested[slot].initial
+            path = [n for n in self.path(initial.target, slot) if n in self.states]
+            found.update(path)
+            inside = {self.slots[name] for name in path}
+            waiting += [s for s in self.nested if s[0] in path and s not in inside]
+        return tuple(name for name in self.states if name in found)
+
+    def inside(self, slot: RegionKey, around: RegionKey) -> bool:
+        """Whether the owner of a region stands in another."""
+        owner = slot[0]
+        return owner is not None and any(self.slots[s] == around for s in self.chains[owner])
+
+    def path(self, vertex: str, boundary: RegionKey) -> tuple[str, ...]:
+        """The vertices from inside a region down to one in it, outer first."""
+        chain: list[str] = []
+        for name in self.chains[vertex]:
+            chain.append(name)
+            if self.slots[name] == boundary:
+                return tuple(reversed(chain))
+        raise ValueError(f"{vertex} is not in {boundary}")
+
+    def below(self, state: str, vertex: str) -> RegionKey:
+        """The region of a state that a vertex inside it stands in, at any depth."""
+        return next(self.slots[n] for n in self.chains[vertex] if self.slots[n][0] == state)
+
+    def around(self, vertex: str) -> tuple[str, ...]:
+        """The states around a vertex, innermost first."""
+        return self.chains[vertex][1:]
+
+    def places(self, vertex: str) -> tuple[RegionKey, ...]:
+        """The regions that a vertex is in, innermost first."""
+        return tuple(self.slots[name] for name in self.chains[vertex])
+
+    def common(self, first: str, *others: str) -> RegionKey:
+        """The innermost region that all stand in: what an external transition leaves is in it."""
+        around = [self.places(vertex) for vertex in others]
+        return next(one for one in self.places(first) if all(one in other for other in around))
+
+    def around_all(self, vertices: tuple[str, ...]) -> str:
+        """The innermost state around all of them."""
+        first, *others = vertices
+        return next(
+            s for s in self.around(first) if all(s in self.around(other) for other in others)
+        )
+
+    @cached_property
+    def _sources(self) -> dict[str, str]:
+        return {t.name: t.source for t in self.region.transitions}
+
+    def source_of(self, transition: str) -> str:
+        """Where a transition starts."""
+        return self._sources[transition]
+
+    @cached_property
+    def _triggered(self) -> dict[tuple[str, Occurrence], tuple[Transition, ...]]:
+        return {}
+
+    def triggered(self, state: str, occurrence: Occurrence) -> tuple[Transition, ...]:
+        """The transitions of a state that an occurrence triggers, guards aside."""
+        key = (state, occurrence)
+        if key not in self._triggered:
+            leaving = self.outgoing[state]
+            self._triggered[key] = tuple(t for t in leaving if occurs(t, occurrence))
+        return self._triggered[key]
+
+
+def occurs(transition: Transition, occurrence: Occurrence) -> bool:
+    """Whether an occurrence triggers a transition, guards and conditions aside."""
+    match transition.trigger:
+        case OnEvent(event):
+            return occurrence.kind == "event" and occurrence.subject == event
+        case After() | Every():
+            return occurrence.kind == "time" and occurrence.subject == transition.name
+        case When():
+            return occurrence.kind == "conditions"
+        case Completion():
+            return occurrence.kind == "completion" and occurrence.subject == transition.source
+        case Segment():
+            return False

@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+import textwrap
 from collections.abc import Sequence
 from importlib import import_module
 from typing import NoReturn
@@ -155,6 +156,18 @@ def _called(told: Sequence[str]) -> str | None:
     return found if found in COMMANDS else None
 
 
+class _Help(argparse.RawDescriptionHelpFormatter):
+    """Keeps the lines of the table of exit statuses, and wraps those that are too long."""
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        found: list[str] = []
+        for line in text.splitlines():
+            column = re.match(r" +\S.*?  +", line)
+            behind = " " * (column.end() if column else 0)
+            found += textwrap.wrap(line, width, subsequent_indent=behind)
+        return "".join(f"{indent}{line}\n" for line in found)
+
+
 class _Version(argparse.Action):
     """Prints the version; it is looked up only then."""
 
@@ -182,7 +195,7 @@ def _parser(told: Sequence[str], *, whole: bool = False) -> argparse.ArgumentPar
         description="From one model of a real-time controller to a proved SPARK Ada program, "
         "its timing analysis and its CAN bench.",
         epilog=STATUSES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=_Help,
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and end")
     called = _called(told)

@@ -188,6 +188,13 @@ class OffsetSearch:
             alignment=Alignment(whole.start, whole.window - whole.bound, self.names),
         )  # fmt: skip
 
+    def followed(self, reach: int) -> list[tuple[int, int]]:
+        """The instants of a cycle that the task arrives after in less than ``reach``, in order.
+
+        Each is with the time from it to that arrival, which is less than 0 where it was before.
+        """
+        return sorted((start, lead) for lead, start in self._instants() if lead < reach)
+
     def window(self, start: int) -> int | None:
         """From ``start`` until the task's first job is done that arrives then, less its jitter.
 

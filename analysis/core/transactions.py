@@ -44,7 +44,7 @@ STEPS_EFFORT = 500_000
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class LevelItem:
     """An item of a transaction as one level sees it: times from the event, cost of a job."""
 
     name: str
@@ -53,7 +53,7 @@ class Step:
     period: int
     cost: int
 
-    def phase(self, first: Step) -> int:
+    def phase(self, first: LevelItem) -> int:
         """phi_jc: its first arrival after the late release of another step of its transaction."""
         return self.period - (first.offset + first.jitter - self.offset) % self.period
 
@@ -62,12 +62,12 @@ class Step:
 class _Arriving:
     """A step in a busy period: how many jobs wait at its beginning, and when the next arrives."""
 
-    step: Step
+    step: LevelItem
     waiting: int
     phase: int
 
     @classmethod
-    def behind(cls, step: Step, first: Step) -> _Arriving:
+    def behind(cls, step: LevelItem, first: LevelItem) -> _Arriving:
         """The step where the busy period begins with the late release of ``first``."""
         phase = step.phase(first)
         return cls(step, (step.jitter + phase) // step.period, phase)
@@ -82,9 +82,9 @@ class _Arriving:
 class _Level:
     """What can delay one item: its own transaction, other ones, and sources without offsets."""
 
-    own: Step
-    mates: tuple[Step, ...]
-    others: tuple[tuple[Step, ...], ...]
+    own: LevelItem
+    mates: tuple[LevelItem, ...]
+    others: tuple[tuple[LevelItem, ...], ...]
     sources: tuple[Source, ...]
     fixed: int
     after: int = 0
@@ -175,7 +175,7 @@ def _of_task(response: Response, events: Mapping[str, str], best: Mapping[str, i
     """The level of a task, with the overheads of its core."""
     platform, order = response.level.platform, response.level.order
     steps = [
-        Step(
+        LevelItem(
             task.name, best[task.name], jitter_of(task, platform), task.period,
             max(demand_of(task, platform).costs),
         )
@@ -197,7 +197,7 @@ def _of_frame(
         return None
     bit = level.bus.bit_time
     steps = [
-        Step(
+        LevelItem(
             other.name, best[other.name],
             frame.jitter if other.name == frame.name else level.jitter(other, frame),
             other.period, other.cost,
@@ -215,7 +215,7 @@ def _of_frame(
 
 def _level(
     item: Task | Frame,
-    steps: Iterable[Step],
+    steps: Iterable[LevelItem],
     events: Mapping[str, str],
     sources: Iterable[Source],
     fixed: int,
@@ -223,9 +223,9 @@ def _level(
     closing: int = 0,
 ) -> _Level:
     """The steps sorted by what begins their transactions."""
-    groups: dict[str, list[Step]] = {}
+    groups: dict[str, list[LevelItem]] = {}
     alone = list(sources)
-    own: Step | None = None
+    own: LevelItem | None = None
     event = events.get(item.name)
     for step in steps:
         if step.name == item.name:

@@ -22,7 +22,6 @@ from ravenchart.analysis.system.authentication import authenticated
 from ravenchart.analysis.system.latencies import Latency, reception_frames
 from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.gen.derive.instants import instants, phased
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.claims import ChainClaim, Claims, ResponseClaim
@@ -33,9 +32,11 @@ from .deadlines import findings
 EFFORT = 200_000
 """Work for the windows of one task or message: as much as for its response."""
 
-
 MOST_JOBS = 1_000
 """Jobs or instances of one busy period that a certificate lists at most."""
+
+MOST_INSTANTS = 200
+"""Instants of one processor that a certificate lists at most."""
 
 
 class Unclaimed(Exception):  # noqa: N818
@@ -115,17 +116,17 @@ def _since(
     own = next(one for one in order if one.name == task.element)
     known = replace(response, task=own, level=replace(level, order=order))
     tasks = aligned(known)
-    everyone = {one.element for one in phased(analysis.system, task)}
-    assert response.bound is not None
-    reach = response.bound - response.jitter - task.deadline
-    starts = instants(analysis.system, task, reach)
-    if {one.name for one in tasks} != everyone or starts is None or task.deadline > task.period:
+    everyone = {one.name for one in order[: level.reach] if one.offset is not None}
+    if own not in tasks or {one.name for one in tasks} != everyone or own.deadline > own.period:
         return None
+    assert response.bound is not None
     search, found = OffsetSearch(known, tasks, Effort(EFFORT)), []
-    for start in starts:
-        window = search.window(start.time)
-        due = task.offset + start.release * task.period
-        if window is None or start.time + window > due + task.deadline:
+    starts = search.followed(response.bound - response.jitter - own.deadline)
+    if len(starts) > MOST_INSTANTS:
+        return None
+    for start, lead in starts:
+        window = search.window(start)
+        if window is None or window > lead + own.deadline:
             return None
         found.append(Ns(window))
     return tuple(found)

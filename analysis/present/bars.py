@@ -8,7 +8,7 @@ from typing import Any
 from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.findings.deadlines import no_bound_reason
 
-from .words import response_parts
+from .sentences import response_parts
 
 KINDS = ("jitter", "blocking", "own", "interference", "overhead")
 """What a response is made of, in the order of a bar."""

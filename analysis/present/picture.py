@@ -19,7 +19,7 @@ LEGIBLE = 60
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class NodeBox:
     """Where a node stands: its left upper corner, in px."""
 
     x: float
@@ -74,7 +74,7 @@ def draw(view: nx.DiGraph[str]) -> str | None:
     return Xml.tostring(svg, encoding="unicode")
 
 
-def _places(view: nx.DiGraph[str]) -> dict[str, Box]:
+def _places(view: nx.DiGraph[str]) -> dict[str, NodeBox]:
     """Where each node stands: instances by rank, their messages outside of them."""
     ranks = _ranks(view)
     last = max(ranks.values(), default=0)
@@ -97,7 +97,7 @@ def _places(view: nx.DiGraph[str]) -> dict[str, Box]:
         step = ROW * tallest / len(names)
         for row, name in enumerate(names):
             top = MARGIN + step * row + (step - ROW) / 2
-            places[name] = Box(MARGIN + (column - first) * COLUMN, top)
+            places[name] = NodeBox(MARGIN + (column - first) * COLUMN, top)
     return places
 
 
@@ -117,7 +117,7 @@ def _ranks(view: nx.DiGraph[str]) -> dict[str, int]:
 
 
 def _edge(
-    svg: Xml.Element, view: nx.DiGraph[str], places: dict[str, Box], source: str, target: str
+    svg: Xml.Element, view: nx.DiGraph[str], places: dict[str, NodeBox], source: str, target: str
 ) -> None:
     """An arrow; of two that run opposite, each keeps to its side."""
     a, b = places[source], places[target]
@@ -155,7 +155,7 @@ def _edge(
     text.text = label if len(label) <= 24 else label[:23] + "…"
 
 
-def _box(svg: Xml.Element, box: Box, label: str, kind: str) -> None:
+def _box(svg: Xml.Element, box: NodeBox, label: str, kind: str) -> None:
     """One node."""
     Xml.SubElement(
         svg,

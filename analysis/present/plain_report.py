@@ -12,7 +12,7 @@ from .bars import row_of, slack_of
 from .page import page
 from .report import Execution
 from .rows import chain_picture, hops_of, instants_of
-from .words import distance_lines, offset_lines, overload_lines
+from .sentences import distance_lines, offset_lines, overload_lines
 
 SHOWN = 300
 """Rows of a table; the tightest come first."""

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from ravenchart.analysis.core.chains import Latency
-from ravenchart.analysis.system.critical import GIVEN, Slice
+from ravenchart.analysis.system.critical import GIVEN, RunningSlice
 
-from .words import families
+from .sentences import families
 
 INK = "#1c2128"
 """Of text and axes; a page replaces it by its own."""
@@ -63,7 +63,7 @@ def room(factors: Sequence[tuple[str, float]], whole: float | None) -> Figure:
     return figure
 
 
-def gantt(slices: Sequence[Slice], deadline: int, blocked: str = "in a section") -> Figure:
+def gantt(slices: Sequence[RunningSlice], deadline: int, blocked: str = "in a section") -> Figure:
     """A critical instant; ``deadline`` counts from its beginning, ``blocked`` says how one is."""
     label = _labels(slices, blocked)
     order: dict[str, int] = {}
@@ -160,13 +160,13 @@ def _lines(axes: Axes, lines: Sequence[tuple[str, int]]) -> None:
                       fontsize=8.5, ha="left" if limit else "right", va="top")  # fmt: skip
 
 
-def _depth(piece: Slice) -> tuple[int, int]:
+def _depth(piece: RunningSlice) -> tuple[int, int]:
     """What is above all first, the task itself last, blocking before it."""
     order = {"overhead": 0, "interference": 1, "blocking": 2, "own": 3}
     return order[piece.kind], piece.start
 
 
-def _labels(slices: Sequence[Slice], blocked: str) -> dict[tuple[str, str], str]:
+def _labels(slices: Sequence[RunningSlice], blocked: str) -> dict[tuple[str, str], str]:
     """The row of each slice: rivals whose names differ in the last part only share one."""
     rivals = dict.fromkeys(piece.name for piece in slices if piece.kind == "interference")
     family = {member: name for name, members in families(rivals).items() for member in members}

@@ -30,7 +30,7 @@ from .bars import row_of
 from .page import page
 from .picture import draw
 from .rows import chain_picture, hops_of, instants_of
-from .words import binding_lines, families, growth_line, offset_lines, verdict_line
+from .sentences import binding_lines, families, growth_line, offset_lines, verdict_line
 
 SHOWN_CHAINS = 40
 """How many chains the report lists at most."""

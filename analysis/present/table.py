@@ -14,7 +14,7 @@ from ravenchart.analysis.findings import advice
 from ravenchart.analysis.system.timing import Analysis, Verdict
 from ravenchart.analysis.units import microseconds
 
-from .words import WORDS, load_lines, offset_lines, verdict_line
+from .sentences import WORDS, load_lines, offset_lines, verdict_line
 
 LEGEND = (
     "Times in us: T period, D deadline, C execution or transmission, J jitter,\n"

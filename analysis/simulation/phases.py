@@ -21,7 +21,7 @@ def none(_: int) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Inside:
+class InsideSection:
     """A job is inside the object of ``section`` from its tick ``start`` on."""
 
     start: int
@@ -44,7 +44,7 @@ class Phase:
     late: Choice = none
     more: Choice = none
     frame: int = 0
-    inside: tuple[Inside, ...] = ()
+    inside: tuple[InsideSection, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ def _chance_phase(item: Task | Frame, sections: Iterable[Section], chance: rando
 
 def _chance_inside(
     sections: list[Section], task: Task, chance: random.Random
-) -> tuple[Inside, ...]:
+) -> tuple[InsideSection, ...]:
     """The sections in any order, as many as fit a job, with a random rest between them."""
     found = []
     at = 0
@@ -107,7 +107,7 @@ def _chance_inside(
     for section in chance.sample(sections, len(sections)):
         room = least - at - section.length
         if room >= 0:
-            found.append(Inside(at + chance.randint(0, room), section))
+            found.append(InsideSection(at + chance.randint(0, room), section))
             at = found[-1].start + section.length
     return tuple(found)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from ravenchart.analysis.core.tasks import Task
 
-from .phases import Inside
+from .phases import InsideSection
 
 
 @dataclass(slots=True)
@@ -40,7 +40,7 @@ class Job:
 
 
 def segments_of(
-    task: Task, frame: int, inside: tuple[Inside, ...], ceilings: Mapping[str, int]
+    task: Task, frame: int, inside: tuple[InsideSection, ...], ceilings: Mapping[str, int]
 ) -> list[JobStretch]:
     """The stretches of a job that executes ``frame``: cut where a row or a section ends."""
     rows = list(_rows(task, frame))

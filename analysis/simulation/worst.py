@@ -16,7 +16,7 @@ from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.responses import Alignment, Response
 from ravenchart.analysis.core.tasks import Task
 
-from .phases import Choice, Inside, Phase, PhaseScenario
+from .phases import Choice, InsideSection, Phase, PhaseScenario
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ def of_task(response: Response) -> WorstCase:
         phases[other.name] = Phase(_never(lead, response))
     blocking = response.blocking
     if blocking is not None and blocking.user in phases:
-        phases[blocking.user] = Phase(lead - 1, inside=(Inside(0, blocking),))
+        phases[blocking.user] = Phase(lead - 1, inside=(InsideSection(0, blocking),))
     return WorstCase(PhaseScenario(phases), _never(lead, response))
 
 

@@ -24,7 +24,7 @@ MOST_JOBS = 400
 
 
 @dataclass(frozen=True, slots=True)
-class Slice:
+class RunningSlice:
     """Something that runs without a break, in ticks from the beginning of the busy period."""
 
     name: str
@@ -38,22 +38,22 @@ Job = tuple[int, int, int, str, str]
 """Release, precedence (least first), length, name and kind."""
 
 
-def schedule(response: Response) -> tuple[Slice, ...]:
+def schedule(response: Response) -> tuple[RunningSlice, ...]:
     """The slices until the worst job is done; none without a bound, or of too many jobs."""
     if response.bound is None:
         return ()
     jobs = _jobs(response)
     if len(jobs) > MOST_JOBS:
         return ()
-    found: list[Slice] = []
+    found: list[RunningSlice] = []
     heapify(jobs)
     ready: list[tuple[int, int, int, str, str]] = []
     now = response.blocked
     section = 0 if response.blocking is None else response.blocking.length
     if response.blocking is not None:
-        found.append(Slice(response.blocking.user, "blocking", 0, section))
+        found.append(RunningSlice(response.blocking.user, "blocking", 0, section))
     if now > section:
-        found.append(Slice(GIVEN, "blocking", section, now))
+        found.append(RunningSlice(GIVEN, "blocking", section, now))
     while jobs or ready:
         if not ready:
             now = max(now, jobs[0][0])
@@ -63,14 +63,14 @@ def schedule(response: Response) -> tuple[Slice, ...]:
         precedence, release, left, name, kind = heappop(ready)
         end = now + left if not jobs else min(now + left, max(now, jobs[0][0]))
         if end > now:
-            _add(found, Slice(name, kind, now, end))
+            _add(found, RunningSlice(name, kind, now, end))
         if end < now + left:
             heappush(ready, (precedence, release, now + left - end, name, kind))
         now = end
     return tuple(found)
 
 
-def frame_schedule(response: FrameResponse) -> tuple[Slice, ...]:
+def frame_schedule(response: FrameResponse) -> tuple[RunningSlice, ...]:
     """The same of a frame, until its worst instance is sent; no transmission is preempted.
 
     A frame takes part in an arbitration that begins less than a bit before it is queued.
@@ -92,22 +92,22 @@ def frame_schedule(response: FrameResponse) -> tuple[Slice, ...]:
     if len(jobs) > MOST_JOBS:
         return ()
     now = response.blocked
-    found = [Slice(response.blocker or "another frame", "blocking", 0, now)] if now else []
+    found = [RunningSlice(response.blocker or "another frame", "blocking", 0, now)] if now else []
     while jobs:
         ready = [job for job in jobs if job[0] <= now]
         job = min(ready, key=lambda job: (job[1], job[0])) if ready else min(jobs)
         jobs.remove(job)
         now = max(now, job[0])
-        found.append(Slice(job[3], job[4], now, now + job[2]))
+        found.append(RunningSlice(job[3], job[4], now, now + job[2]))
         now += job[2]
     return tuple(found)
 
 
-def _add(found: list[Slice], piece: Slice) -> None:
+def _add(found: list[RunningSlice], piece: RunningSlice) -> None:
     """A slice, joined with the one before it where that only goes on."""
     before = found[-1] if found else None
     if before and (before.name, before.kind, before.end) == (piece.name, piece.kind, piece.start):
-        found[-1] = Slice(piece.name, piece.kind, before.start, piece.end)
+        found[-1] = RunningSlice(piece.name, piece.kind, before.start, piece.end)
     else:
         found.append(piece)
 

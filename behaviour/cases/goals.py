@@ -34,10 +34,15 @@ from ravenchart.gen.origins import Origin
 
 GoalElement = tuple[str, str, str]
 """Component, region, and transition or state."""
-WHEN = ".when"
-"""Behind the name of a transition: the condition that triggers it, and not its guard."""
 GuardValues = tuple[tuple[bool | None, ...], bool]
 """The conditions of a decision, None where it did not come to one, and the outcome."""
+
+
+class Decision(Enum):
+    """Which condition of a transition; the value names it in a report."""
+
+    GUARD = "guard"
+    TRIGGER = "trigger"
 
 
 class GoalKind(Enum):
@@ -61,12 +66,12 @@ class Goal:
     state: str
     """That must be active."""
     detail: int | str = ""
+    decision: Decision = Decision.GUARD
 
     def text(self) -> str:
         """In words."""
         component, region, name = self.element
-        place = f"{component}.{region}.{name.removesuffix(WHEN)}"
-        decision = "trigger" if name.endswith(WHEN) else "guard"
+        place, decision = f"{component}.{region}.{name}", self.decision.value
         match self.kind:
             case GoalKind.TAKEN:
                 return f"{place} is taken"
@@ -99,18 +104,17 @@ def _of_transition(component: str, region: str, transition: Transition) -> Itera
     element = component, region, transition.name
     here = transition.origin, transition.source
     yield Goal(GoalKind.TAKEN, element, *here)
-    decisions = [(transition.name, transition.guard)]
+    decisions = [(Decision.GUARD, transition.guard)]
     if isinstance(transition.trigger, When):
-        decisions.append((transition.name + WHEN, transition.trigger.condition))
-    for name, expression in decisions:
+        decisions.append((Decision.TRIGGER, transition.trigger.condition))
+    for decision, expression in decisions:
         if expression is None:
             continue
-        decided = component, region, name
-        yield Goal(GoalKind.TRUE, decided, *here)
-        yield Goal(GoalKind.FALSE, decided, *here)
+        yield Goal(GoalKind.TRUE, element, *here, decision=decision)
+        yield Goal(GoalKind.FALSE, element, *here, decision=decision)
         count = _conditions(expression)
-        if count > 1:
-            yield from (Goal(GoalKind.CONDITION, decided, *here, n) for n in range(count))
+        for number in range(count) if count > 1 else ():
+            yield Goal(GoalKind.CONDITION, element, *here, number, decision)
 
 
 def _of_leaves(component: str, tree: ChartTree, transition: Transition) -> Iterator[Goal]:
@@ -133,7 +137,7 @@ def _always_takes(tree: ChartTree, state: str, trigger: Trigger) -> bool:
     if not isinstance(trigger, OnEvent):
         return False
     return trigger.event in tree.states[state].defers or any(
-        one.trigger == trigger and one.guard is None for one in tree.leaving[state]
+        one.trigger == trigger and one.guard is None for one in tree.outgoing[state]
     )
 
 
@@ -185,7 +189,7 @@ class GoalCoverage:
     """What executions have shown. ``size`` grows with each thing that is new."""
 
     taken: set[GoalElement] = field(default_factory=set)
-    evaluations: dict[GoalElement, set[GuardValues]] = field(default_factory=dict)
+    evaluations: dict[tuple[GoalElement, Decision], set[GuardValues]] = field(default_factory=dict)
     deferred: set[tuple[GoalElement, str]] = field(default_factory=set)
     left: set[tuple[GoalElement, str]] = field(default_factory=set)
     size: int = 0
@@ -195,9 +199,9 @@ class GoalCoverage:
         self.size += element not in self.taken
         self.taken.add(element)
 
-    def decide(self, element: GoalElement, evaluation: GuardValues) -> None:
-        """A guard was evaluated."""
-        known = self.evaluations.setdefault(element, set())
+    def decide(self, element: GoalElement, decision: Decision, evaluation: GuardValues) -> None:
+        """A guard or a trigger was evaluated."""
+        known = self.evaluations.setdefault((element, decision), set())
         self.size += evaluation not in known
         known.add(evaluation)
 
@@ -215,9 +219,9 @@ class GoalCoverage:
         """What others have shown, too."""
         for element in other.taken:
             self.take(element)
-        for element, known in other.evaluations.items():
+        for (element, decision), known in other.evaluations.items():
             for evaluation in known:
-                self.decide(element, evaluation)
+                self.decide(element, decision, evaluation)
         for element, event in other.deferred:
             self.defer(element, event)
         for element, state in other.left:
@@ -231,7 +235,7 @@ class GoalCoverage:
             return (goal.element, goal.detail) in self.deferred
         if goal.kind is GoalKind.LEFT:
             return (goal.element, goal.detail) in self.left
-        known = self.evaluations.get(goal.element, set())
+        known = self.evaluations.get((goal.element, goal.decision), set())
         if goal.kind is GoalKind.CONDITION:
             assert isinstance(goal.detail, int)
             return any(_decides(goal.detail, *pair) for pair in combinations(known, 2))

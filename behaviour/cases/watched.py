@@ -13,7 +13,7 @@ from ravenchart.behaviour.interpreter.region import (
 from ravenchart.gen.model.statechart import Transition, When
 from ravenchart.gen.model.system import System
 
-from .goals import WHEN, GoalCoverage, evaluated
+from .goals import Decision, GoalCoverage, GuardValues, evaluated
 
 
 class WatchedRegion(RegionRun):
@@ -26,15 +26,19 @@ class WatchedRegion(RegionRun):
         if transition.guard is None:
             return True
         found = evaluated(transition.guard, self._view)
-        self.coverage.decide((self.component, self.region.name, transition.name), found)
+        self._decided(transition, Decision.GUARD, found)
         return found[1]
 
     def _triggers(self, transition: Transition, occurrence: Occurrence) -> bool:
         if not (isinstance(occurrence, Nothing) and isinstance(transition.trigger, When)):
             return super()._triggers(transition, occurrence)
         found = evaluated(transition.trigger.condition, self._view)
-        self.coverage.decide((self.component, self.region.name, transition.name + WHEN), found)
+        self._decided(transition, Decision.TRIGGER, found)
         return found[1]
+
+    def _decided(self, transition: Transition, decision: Decision, found: GuardValues) -> None:
+        element = self.component, self.region.name, transition.name
+        self.coverage.decide(element, decision, found)
 
     def _effect(self, transition: Transition) -> None:
         self.coverage.take((self.component, self.region.name, transition.name))

@@ -35,7 +35,7 @@ Reads = tuple[tuple[Name | PortTest | InState, Value], ...]
 """What an expression reads, with the values that it had."""
 
 
-class Reason(Enum):
+class FiringReason(Enum):
     """Why a transition from an active state fired or did not."""
 
     FIRED = auto()
@@ -75,11 +75,11 @@ class FalseGuard:
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class Judgement:
     """A transition, and why it fired or did not."""
 
     transition: Transition
-    reason: Reason
+    reason: FiringReason
     because: tuple[str, ...] = ()
     """The transitions that went before it, or the states that defer or have not completed."""
     failed: tuple[FalseGuard, ...] = ()
@@ -97,7 +97,7 @@ class ObservedStep:
     """It was the first step of the region."""
     deferring: tuple[str, ...]
     """The active states that defer its event, where it was deferred."""
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[Judgement, ...]
     behaviours: tuple[str, ...]
     sent: tuple[tuple[str, Value], ...]
     raised: tuple[tuple[str, Value | None], ...]
@@ -109,7 +109,7 @@ class ObservedRegion(RegionRun):
 
     steps: tuple[ObservedStep, ...] = ()
     _occurrence: Occurrence | None = None
-    _verdicts: tuple[Verdict, ...] = ()
+    _verdicts: tuple[Judgement, ...] = ()
     _deferring: tuple[str, ...] = ()
 
     def begin(self) -> None:
@@ -161,26 +161,26 @@ class ObservedRegion(RegionRun):
         active = self.configuration()
         return [state for state in self.tree.states if state in active]
 
-    def _judged(self, selected: Sequence[ExecutedTransition]) -> Iterator[Verdict]:
+    def _judged(self, selected: Sequence[ExecutedTransition]) -> Iterator[Judgement]:
         """What is to be said before anything fires: FIRED is of all that were selected."""
         active = self._active()
         for transition in self.region.transitions:
             if transition.source in active:
                 yield self._verdict(transition, selected)
 
-    def _settled(self, verdict: Verdict, selected: Sequence[ExecutedTransition]) -> Verdict:
+    def _settled(self, verdict: Judgement, selected: Sequence[ExecutedTransition]) -> Judgement:
         """Of one that was selected: whether it was taken, and else what was taken before it."""
-        if verdict.reason is not Reason.FIRED:
+        if verdict.reason is not FiringReason.FIRED:
             return verdict
         mine = next(one for one in selected if verdict.transition in one.effects)
         if any(one is mine for one in self._fired):
             return verdict
         before = [one.effects[0].name for one in self._fired if one in selected]
-        return replace(verdict, reason=Reason.CONFLICT, because=tuple(before))
+        return replace(verdict, reason=FiringReason.CONFLICT, because=tuple(before))
 
-    def _verdict(self, transition: Transition, selected: Sequence[ExecutedTransition]) -> Verdict:
+    def _verdict(self, transition: Transition, selected: Sequence[ExecutedTransition]) -> Judgement:
         if any(transition in one.effects for one in selected):
-            return Verdict(transition, Reason.FIRED)
+            return Judgement(transition, FiringReason.FIRED)
         assert self._occurrence is not None
         if not self._triggers(transition, self._occurrence):
             return self._not_triggered(transition, self._occurrence)
@@ -190,49 +190,53 @@ class ObservedRegion(RegionRun):
             if transition.source in self.tree.around(one.source)
         ]
         if inside:
-            return Verdict(transition, Reason.INSIDE, tuple(inside))
+            return Judgement(transition, FiringReason.INSIDE, tuple(inside))
         if not self._lets_through(transition):
             assert transition.guard is not None
-            return Verdict(transition, Reason.GUARD_FALSE, (), (self._failed(transition.guard),))
+            return Judgement(
+                transition, FiringReason.GUARD_FALSE, (), (self._failed(transition.guard),)
+            )
         if self._enabled(transition) is None:
             failed = tuple(self._failures(transition.target, (transition.target,)))
             waiting = tuple(self._incomplete(transition.target))
-            return Verdict(transition, Reason.NO_WAY_ON, waiting, failed)
+            return Judgement(transition, FiringReason.NO_WAY_ON, waiting, failed)
         earlier = [one.effects[0].name for one in selected if one.source == transition.source]
         if earlier:
-            return Verdict(transition, Reason.EARLIER, tuple(earlier))
-        return Verdict(transition, Reason.DEFERRED, self._deferring)
+            return Judgement(transition, FiringReason.EARLIER, tuple(earlier))
+        return Judgement(transition, FiringReason.DEFERRED, self._deferring)
 
-    def _not_triggered(self, transition: Transition, occurrence: Occurrence) -> Verdict:
+    def _not_triggered(self, transition: Transition, occurrence: Occurrence) -> Judgement:
         """Why the occurrence of this step does not trigger a transition."""
         name = transition.name
         match transition.trigger:
             case OnEvent(event):
                 waits = any(one.event == event for one in self.queue)
                 waits = waits or any(one.happened.event == event for one in self.deferred)
-                return Verdict(transition, Reason.LATER if waits else Reason.OTHER_TRIGGER)
+                return Judgement(
+                    transition, FiringReason.LATER if waits else FiringReason.OTHER_TRIGGER
+                )
             case After() | Every() if name in self.timers:
                 left = self.timers[name] - self.executions
-                reason = Reason.NOT_DUE if left > 0 else Reason.LATER
-                return Verdict(transition, reason, executions=max(0, left))
+                reason = FiringReason.NOT_DUE if left > 0 else FiringReason.LATER
+                return Judgement(transition, reason, executions=max(0, left))
             case After() | Every():
-                return Verdict(transition, Reason.TIME_OUT_OVER)
+                return Judgement(transition, FiringReason.TIME_OUT_OVER)
             case Completion() if transition.source in self.completed:
-                return Verdict(transition, Reason.LATER)
+                return Judgement(transition, FiringReason.LATER)
             case Completion() if self._is_complete(transition.source):
-                return Verdict(transition, Reason.COMPLETION_OVER)
+                return Judgement(transition, FiringReason.COMPLETION_OVER)
             case Completion():
-                return Verdict(transition, Reason.NOT_COMPLETE, (transition.source,))
+                return Judgement(transition, FiringReason.NOT_COMPLETE, (transition.source,))
             case When(condition) if isinstance(occurrence, Nothing):
                 failed = self._failed(condition)
-                return Verdict(transition, Reason.CONDITION_FALSE, failed=(failed,))
-        return Verdict(transition, Reason.OTHER_TRIGGER)
+                return Judgement(transition, FiringReason.CONDITION_FALSE, failed=(failed,))
+        return Judgement(transition, FiringReason.OTHER_TRIGGER)
 
     def _failures(self, vertex: str, seen: tuple[str, ...]) -> Iterator[FalseGuard]:
         """The guards behind a junction that do not hold."""
-        if self.tree.kind(vertex) is not PseudoKind.JUNCTION:
+        if self.tree.kinds.get(vertex) is not PseudoKind.JUNCTION:
             return
-        for segment in self.tree.leaving[vertex]:
+        for segment in self.tree.outgoing[vertex]:
             if segment.guard is not None and not self._lets_through(segment):
                 yield self._failed(segment.guard)
             elif segment.target not in seen:
@@ -240,8 +244,8 @@ class ObservedRegion(RegionRun):
 
     def _incomplete(self, vertex: str) -> Iterator[str]:
         """The sources of a join that have not completed."""
-        if self.tree.kind(vertex) is PseudoKind.JOIN:
-            for segment in self.tree.into(vertex):
+        if self.tree.kinds.get(vertex) is PseudoKind.JOIN:
+            for segment in self.tree.incoming[vertex]:
                 if not self._ready(segment):
                     yield segment.source
 

@@ -145,7 +145,7 @@ class RegionRun:
         self.queue: deque[Happened] = deque()
         self.executions = 0
         self.stopped = False
-        self.published = self.tree.default()
+        self.published = frozenset(self.tree.default)
         self._view: View
         self._step: Step
         self._left: set[str] = set()
@@ -202,7 +202,7 @@ class RegionRun:
 
     def is_active(self, vertex: str) -> bool:
         """Whether a vertex is active."""
-        return self.active.get(self.tree.place(vertex)) == vertex
+        return self.active.get(self.tree.slots[vertex]) == vertex
 
     # --- the next occurrence
 
@@ -249,12 +249,14 @@ class RegionRun:
         if state not in self.tree.states:
             return
         inside = [
-            one for nested in self.tree.nested(state) for one in self._selected(nested, occurrence)
+            one
+            for nested in self.tree.regions_of(state)
+            for one in self._selected(nested, occurrence)
         ]
         if inside:
             yield from inside
             return
-        for transition in self.tree.leaving[state]:
+        for transition in self.tree.outgoing[state]:
             if self._triggers(transition, occurrence):
                 firing = self._enabled(transition)
                 if firing is not None:
@@ -280,20 +282,20 @@ class RegionRun:
         if not self._lets_through(first):
             return None
         if first.kind is TransitionKind.INTERNAL:
-            place = self.tree.place(first.source)
+            place = self.tree.slots[first.source]
             return ExecutedTransition(first.source, place, (first,), (), internal=True)
         path = self._path((first,))
         if path is None:
             return None
         target = path[-1].target
         goals: tuple[NamedGoal, ...] = (NamedGoal(target),)
-        if self.tree.kind(target) is PseudoKind.FORK:
-            goals = tuple(NamedGoal(s.target, s) for s in self.tree.leaving[target])
+        if self.tree.kinds.get(target) is PseudoKind.FORK:
+            goals = tuple(NamedGoal(s.target, s) for s in self.tree.outgoing[target])
         ends = [goal.vertex for goal in goals]
         sources = [t.source for t in path if t.source in self.tree.states] or [first.source]
-        scope = self.tree.common([*sources, *ends])
+        scope = self.tree.common(*sources, *ends)
         if first.kind is TransitionKind.LOCAL:
-            within = [p for p in self.tree.nested(first.source) if self._is_in(p, *ends)]
+            within = [p for p in self.tree.regions_of(first.source) if self._is_in(p, *ends)]
             scope = within[0] if within else scope
         return ExecutedTransition(first.source, scope, path, goals)
 
@@ -303,14 +305,14 @@ class RegionRun:
     def _path(self, taken: tuple[Transition, ...]) -> tuple[Transition, ...] | None:
         """The first way from there through junctions and joins whose guards all hold."""
         vertex = taken[-1].target
-        kind = self.tree.kind(vertex)
+        kind = self.tree.kinds.get(vertex)
         if kind is PseudoKind.JOIN:
-            taken = tuple(self.tree.into(vertex))
+            taken = tuple(self.tree.incoming[vertex])
             if not all(self._ready(segment) for segment in taken):
                 return None
         elif kind is not PseudoKind.JUNCTION:
             return taken
-        for segment in self.tree.leaving[vertex]:
+        for segment in self.tree.outgoing[vertex]:
             if segment not in taken and self._lets_through(segment):
                 path = self._path((*taken, segment))
                 if path is not None:
@@ -356,7 +358,7 @@ class RegionRun:
             reached = next(self._passing(TOP), None)
             if reached is None or self.stopped:
                 return
-            match self.tree.kind(reached):
+            match self.tree.kinds.get(reached):
                 case PseudoKind.TERMINATE:
                     self.stopped = True
                 case PseudoKind.CHOICE:
@@ -369,32 +371,33 @@ class RegionRun:
     def _passing(self, place: RegionKey) -> Iterator[str]:
         """The pseudostates that are active, in model order."""
         vertex = self.active.get(place)
-        if vertex in self.tree.pseudo:
+        if vertex in self.tree.kinds:
             yield vertex
         elif vertex is not None:
-            for nested in self.tree.nested(vertex):
+            for nested in self.tree.regions_of(vertex):
                 yield from self._passing(nested)
 
     def _way_out(self, vertex: str) -> ExecutedTransition:
         """The first enabled segment from a pseudostate."""
-        for segment in self.tree.leaving[vertex]:
+        for segment in self.tree.outgoing[vertex]:
             firing = self._enabled(segment)
             if firing is not None:
                 return firing
-        raise Stuck(self.tree.pseudo[vertex].origin, f"{vertex} has no way out: no guard holds")
+        origin = self.tree.pseudostates[vertex].origin
+        raise Stuck(origin, f"{vertex} has no way out: no guard holds")
 
     def _restore(self, vertex: str) -> None:
         """Go on from a history pseudostate."""
-        place = self.tree.place(vertex)
+        place = self.tree.slots[vertex]
         last = self.history.get(place)
-        if last is None and self.tree.leaving[vertex]:
+        if last is None and self.tree.outgoing[vertex]:
             self._fire(self._way_out(vertex))
             return
         goals: list[str] = []
-        if self.tree.kind(vertex) is PseudoKind.DEEP_HISTORY:
+        if self.tree.kinds.get(vertex) is PseudoKind.DEEP_HISTORY:
             goals = self._recorded(place)
         elif last is not None:
-            goals = [self.tree.towards(place, last)]
+            goals = [self.tree.path(last, place)[0]]
         del self.active[place]
         self._enter_place(place, tuple(NamedGoal(goal) for goal in goals))
 
@@ -406,7 +409,7 @@ class RegionRun:
         state = self.tree.states[last]
         if state.final:
             return [self.tree.around(last)[0]]
-        below = [goal for nested in self.tree.nested(last) for goal in self._recorded(nested)]
+        below = [goal for nested in self.tree.regions_of(last) for goal in self._recorded(nested)]
         return below or [last]
 
     # --- leaving and entering
@@ -418,12 +421,12 @@ class RegionRun:
         self.active.pop(place, None)
 
     def _exit(self, name: str) -> None:
-        for nested in self.tree.nested(name):
+        for nested in self.tree.regions_of(name):
             self._exit_place(nested)
         state = self.tree.states[name]
         if not state.final:
             self._behave(f"{name}.exit", state.exit)
-        for transition in self.tree.leaving[name]:
+        for transition in self.tree.outgoing[name]:
             self.timers.pop(transition.name, None)
         for kept in self.deferred:
             kept.is_free = kept.is_free or kept.happened.event in state.defers
@@ -431,10 +434,10 @@ class RegionRun:
         self.completed.discard(name)
         self.done.discard(name)
         if self.tree.fills_lane(name):
-            for place in self.tree.lane(name):
+            for place in self.tree.lane_slots(name):
                 self.history[place] = name
             if state.final:
-                del self.history[self.tree.place(name)]
+                del self.history[self.tree.slots[name]]
 
     def _enter_place(self, place: RegionKey, goals: Sequence[NamedGoal]) -> None:
         """Enter a place on the way to goals in it, or by default when there is none."""
@@ -443,7 +446,7 @@ class RegionRun:
         elif len(goals) == 1 and goals[0].segment is not None:
             self._effect(goals[0].segment)
             goals = (NamedGoal(goals[0].vertex),)
-        vertex = self.tree.towards(place, goals[0].vertex)
+        vertex = self.tree.path(goals[0].vertex, place)[0]
         self.active[place] = vertex
         if vertex in self.tree.states:
             self._enter(vertex, [goal for goal in goals if goal.vertex != vertex])
@@ -463,10 +466,10 @@ class RegionRun:
         state = self.tree.states[name]
         if not state.final:
             self._behave(f"{name}.entry", state.entry)
-        for transition in self.tree.leaving[name]:
+        for transition in self.tree.outgoing[name]:
             if isinstance(transition.trigger, After | Every):
                 self.timers[transition.name] = self.executions + transition.trigger.executions
-        for nested in self.tree.nested(name):
+        for nested in self.tree.regions_of(name):
             inside = [goal for goal in goals if self._is_in(nested, goal.vertex)]
             self._enter_place(nested, inside)
         if state.final and state.parent is not None:
@@ -478,12 +481,12 @@ class RegionRun:
 
     def _complete(self, state: str) -> None:
         """Let the completion of a state wait for its step, if it is complete."""
-        if self.tree.can_complete(state) and self._is_complete(state):
+        if state in self.tree.completing and self._is_complete(state):
             self.completed.add(state)
 
     def _is_complete(self, state: str) -> bool:
         """Whether an active state is: its regions final, its do activity done."""
-        inside = [self.active.get(place) for place in self.tree.nested(state)]
+        inside = [self.active.get(place) for place in self.tree.regions_of(state)]
         final = all(one in self.tree.states and self.tree.states[one].final for one in inside)
         return final and (state not in self.works_in or state in self.done)
 

@@ -12,12 +12,12 @@ from ravenchart.gen.model.statechart import OnEvent, Region, State, Transition
 from ravenchart.gen.origins import Origin
 
 from . import logic
+from .labels import label, reached, trace, valuation, where
 from .logic import Term
 from .reach import Reachable
 from .reasons import Obstacle, beaten, in_front, taken_inside
 from .stepping import Beaten
 from .threads import Edge, Thread
-from .words import label, reached, trace, valuation, where
 
 Rule = Callable[[Reachable, Thread], Iterator[Diagnostic]]
 
@@ -99,8 +99,8 @@ def transitions_fire(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
             continue
         reason = _reason(reach, thread, transition, shut_out)
         message = f"{transition.name} is never taken: {reason.text}"
-        joint = "; " if reason.removal.startswith("where") else ", or "
-        hint = f"{reason.change}{joint}{reason.removal}"
+        otherwise = f"; {reason.successor}" if reason.successor else f", or {reason.removal}"
+        hint = f"{reason.change}{otherwise}"
         yield error("RV-1102", transition.origin, message, notes=reason.notes, hint=hint)
 
 

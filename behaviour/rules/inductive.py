@@ -16,6 +16,7 @@ from typing import Any, cast
 import z3
 
 from ravenchart.behaviour.limits import ON_MODEL
+from ravenchart.behaviour.tree import ChartTree
 from ravenchart.gen.diagnostics import Diagnostic, warning
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -34,7 +35,6 @@ from .budget import TooManyQuestions
 from .cells import partition
 from .logic import Term, Variable
 from .moves import ChartMove, Position, TooManyMoves, guard_of, moves_of
-from .tree import RegionTree
 
 MOST_QUESTIONS = 20_000
 """What the facts of one region may cost: the same on every machine."""
@@ -179,7 +179,7 @@ class _Search:
         }
         cells = partition(component, self.types, self.initial)
         self.cells = {n: c for n, c in cells.items() if n[1] in self.region.writes}
-        self.tree = RegionTree(self.region)
+        self.tree = ChartTree(self.region)
         self.moves = list(moves_of(self.tree, self.symbol, self.alone))
         self.bad = {i.name: logic.term(i.condition, self.of_condition) for i in self.invariants}
         places = {move.after for move in self.moves}

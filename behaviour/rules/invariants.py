@@ -19,6 +19,7 @@ from ravenchart.gen.origins import Origin
 
 from . import logic
 from .budget import Exhausted
+from .labels import label, valuation, where
 from .logic import Term, Variable
 from .parts import determines
 from .reach import Reachable
@@ -26,7 +27,6 @@ from .schedule import PORTS, schedules, together
 from .search import Violation, WaySearch
 from .stepping import Configuration
 from .threads import Edge, Thread
-from .words import label, valuation, where
 
 VIOLATED = "RV-1108"
 NOT_PROVED = "RV-1109"

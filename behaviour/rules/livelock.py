@@ -15,10 +15,10 @@ import z3
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 
 from . import logic
+from .labels import reached, trace, valuation
 from .logic import Term, Variable
 from .reach import Reachable
 from .threads import Edge, Situation, Thread
-from .words import reached, trace, valuation
 
 LONGEST_CYCLE = 8
 """Steps of the cycles that are looked at."""

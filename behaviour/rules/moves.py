@@ -13,13 +13,13 @@ from dataclasses import dataclass, field
 
 import z3
 
+from ravenchart.behaviour.tree import START, TOP, ChartTree, RegionKey
 from ravenchart.gen.language.terms import Expression, Flow, If, Set
 from ravenchart.gen.model.safety import knows_guards
 from ravenchart.gen.model.statechart import PseudoKind, Segment, Transition, When
 
 from .logic import Questions, Read, Term, Variable, term
 from .stepping import Configuration, OpenStep, TransitionPath
-from .tree import START, TOP, RegionTree, Slot
 
 MOST_PLACES = 300
 """A region with more configurations is not looked into."""
@@ -57,7 +57,7 @@ class TooManyMoves(Exception):  # noqa: N818
     """The region is too large for its moves to be looked at one by one."""
 
 
-def moves_of(tree: RegionTree, symbols: Read, alone: Container[str]) -> Iterator[ChartMove]:
+def moves_of(tree: ChartTree, symbols: Read, alone: Container[str]) -> Iterator[ChartMove]:
     """Every move from every place that control can come to, data aside.
 
     ``alone`` names the transitions that fire only when nothing has fired before in their step.
@@ -90,7 +90,7 @@ class _Mover(OpenStep):
 
     remembered: list[str | None] = field(default_factory=list)
     """What histories answer, one after the other."""
-    asked: list[Slot] = field(default_factory=list)
+    asked: list[RegionKey] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -109,7 +109,7 @@ class _Mover(OpenStep):
         place = Position(self.tree.ordered(self.active), tuple(sorted(self.arrivals)))
         return ChartMove(before, condition, self.store, place, path)
 
-    def _recalled(self, slot: Slot) -> str | None:
+    def _recalled(self, slot: RegionKey) -> str | None:
         self.asked.append(slot)
         if len(self.asked) <= len(self.remembered):
             return self.remembered[len(self.asked) - 1]
@@ -117,7 +117,7 @@ class _Mover(OpenStep):
 
 
 def _mover(
-    tree: RegionTree, place: Position, questions: Questions, remembered: tuple[str | None, ...] = ()
+    tree: ChartTree, place: Position, questions: Questions, remembered: tuple[str | None, ...] = ()
 ) -> _Mover:
     made = _Mover(
         tree,
@@ -132,7 +132,7 @@ def _mover(
 
 
 def _from(
-    tree: RegionTree, place: Position, questions: Questions, alone: Container[str]
+    tree: ChartTree, place: Position, questions: Questions, alone: Container[str]
 ) -> Iterator[ChartMove]:
     if place.passing:
         yield from _passed(tree, place, questions)
@@ -146,7 +146,7 @@ def _from(
                     yield _fired(tree, place, questions, path, known=sure)
 
 
-def _passed(tree: RegionTree, place: Position, questions: Questions) -> Iterator[ChartMove]:
+def _passed(tree: ChartTree, place: Position, questions: Questions) -> Iterator[ChartMove]:
     """The moves from the first pseudostate on the way."""
     vertex = next(_mover(tree, place, questions).passing(TOP))
     rest = Position(place.active, tuple(n for n in place.passing if n != vertex))
@@ -168,7 +168,7 @@ def _passed(tree: RegionTree, place: Position, questions: Questions) -> Iterator
             waiting += [(*remembered, *unknown, leaf) for leaf in leaves]
 
 
-def _leaves(tree: RegionTree, slot: Slot) -> list[str]:
+def _leaves(tree: ChartTree, slot: RegionKey) -> list[str]:
     """What a region inside may remember."""
     return [
         name
@@ -177,7 +177,7 @@ def _leaves(tree: RegionTree, slot: Slot) -> list[str]:
     ]
 
 
-def _ways(tree: RegionTree, place: Position, transition: Transition) -> Iterator[TransitionPath]:
+def _ways(tree: ChartTree, place: Position, transition: Transition) -> Iterator[TransitionPath]:
     """A transition with each way through junctions; a join only where all its sources are."""
     kind = tree.kinds.get(transition.target)
     if kind is PseudoKind.JUNCTION:
@@ -193,7 +193,7 @@ def _ways(tree: RegionTree, place: Position, transition: Transition) -> Iterator
 
 
 def _fired(
-    tree: RegionTree, place: Position, questions: Questions, path: TransitionPath, *, known: bool
+    tree: ChartTree, place: Position, questions: Questions, path: TransitionPath, *, known: bool
 ) -> ChartMove:
     mover = _mover(tree, place, questions)
     mover.fire(path)

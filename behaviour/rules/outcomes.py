@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 import z3
 
+from ravenchart.behaviour.tree import ChartTree, Occurrence, RegionKey
+
 from .logic import Questions, Term, Variable, unknowns
 from .stepping import Beaten, Configuration, OpenStep, Rival
-from .tree import Occurrence, RegionTree, Slot
 
-Past = Mapping[Slot, set[str]]
+Past = Mapping[RegionKey, set[str]]
 """Every leaf that each region has been seen to remember."""
 
 
@@ -34,9 +35,9 @@ class Outcome:
     entered: frozenset[str]
     left: frozenset[str]
     beaten: tuple[Beaten, ...]
-    recalled: frozenset[Slot] = frozenset()
+    recalled: frozenset[RegionKey] = frozenset()
     """The regions whose remembered leaf was any that is known of (`Past`)."""
-    remembered: tuple[tuple[Slot, str], ...] = ()
+    remembered: tuple[tuple[RegionKey, str], ...] = ()
     """What it remembers, where the configuration does not say."""
 
 
@@ -49,7 +50,7 @@ class TooManyWays(Exception):  # noqa: N818
 
 
 def outcomes(
-    tree: RegionTree,
+    tree: ChartTree,
     before: Configuration,
     occurrence: Occurrence,
     questions: Questions,
@@ -66,15 +67,15 @@ def outcomes(
     while waiting:
         answers, recalled = waiting.pop()
         asked: list[Term] = []
-        slots: list[Slot] = []
+        slots: list[RegionKey] = []
         guessed: list[Term] = []
 
         def recall(
-            slot: Slot,
+            slot: RegionKey,
             answers: list[bool] = answers,
             recalled: list[str | None] = recalled,
             asked: list[Term] = asked,
-            slots: list[Slot] = slots,
+            slots: list[RegionKey] = slots,
         ) -> str | None:
             if past is None:
                 return None

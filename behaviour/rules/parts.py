@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from ravenchart.behaviour.tree import TOP, ChartTree, Occurrence, RegionKey
 from ravenchart.gen.language.terms import Flow, Reading, ScalarType, Set
 from ravenchart.gen.model.statechart import Lane
 
@@ -27,7 +28,6 @@ from .cells import every
 from .logic import Term, Variable
 from .outcomes import Outcome
 from .stepping import Configuration
-from .tree import TOP, Occurrence, RegionTree, Slot
 
 Met = tuple[Configuration, Configuration, Occurrence]
 """A part, its union with another one, and the occurrence that a step of both is made for."""
@@ -41,11 +41,11 @@ KeptParts = tuple[str, ...]
 class RegionParts:
     """The parts of one region's configurations that were seen."""
 
-    tree: RegionTree
+    tree: ChartTree
     types: Mapping[Variable, ScalarType]
     seen: dict[str, list[Configuration]] = field(default_factory=dict)
     """By leaf, an orthogonal state being one."""
-    final: set[Slot] = field(default_factory=set)
+    final: set[RegionKey] = field(default_factory=set)
     """The regions that were seen in a final state of their own."""
     leaving: dict[tuple[object, ...], tuple[Configuration, Occurrence, str]] = field(
         default_factory=dict
@@ -201,7 +201,7 @@ class RegionParts:
             yield region.lane(transition.source), transition.effect
 
 
-def determines(tree: RegionTree, active: tuple[str, ...], state: str) -> bool:
+def determines(tree: ChartTree, active: tuple[str, ...], state: str) -> bool:
     """Whether a configuration, or a part or union of parts, says if a state is active."""
     lane = tree.lane_of[state]
     if lane.owner is None or any(tree.lane_of[name] == lane for name in active):

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import z3
 
+from ravenchart.behaviour.tree import ChartTree
 from ravenchart.gen.model.statechart import Lane
 
 from .logic import Read, Term, Variable
-from .tree import RegionTree
 
 
 def is_in(asked: Sequence[Variable], found: Sequence[tuple[str, ...]], read: Read) -> Term:
@@ -19,14 +19,14 @@ def is_in(asked: Sequence[Variable], found: Sequence[tuple[str, ...]], read: Rea
 
 
 def is_in_parts(
-    tree: RegionTree, asked: Sequence[Variable], found: Sequence[tuple[str, ...]], read: Read
+    tree: ChartTree, asked: Sequence[Variable], found: Sequence[tuple[str, ...]], read: Read
 ) -> Term:
     """The same of a region whose configurations are known in parts: each lane is in one."""
     return z3.And([_lane(tree, lane, asked, found, read) for lane in tree.lanes])
 
 
 def _lane(
-    tree: RegionTree,
+    tree: ChartTree,
     lane: Lane,
     asked: Sequence[Variable],
     found: Sequence[tuple[str, ...]],

@@ -21,6 +21,7 @@ from functools import cached_property
 
 import z3
 
+from ravenchart.behaviour.tree import CONDITIONS, START, ChartTree, Occurrence
 from ravenchart.gen.language.terms import BOOLEAN, Set
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import DONE, After, Every, When
@@ -35,7 +36,6 @@ from .outside import as_region, done_of, external_events, parameters_of
 from .publishing import is_in, is_in_parts
 from .stepping import Configuration
 from .threads import MOST_QUESTIONS, Cells, Edge, Situation, Thread
-from .tree import CONDITIONS, START, Occurrence, RegionTree
 
 PendingStep = tuple[Situation, Configuration, Occurrence | None]
 """A node, where its step starts, and what it is made for: None for all that may be."""
@@ -78,8 +78,8 @@ class Reachable:
     # --- set-up
 
     def _threads(self) -> list[Thread]:
-        regions = [RegionTree(r, frozenset(self._working(r.name))) for r in self.component.regions]
-        flows = [RegionTree(as_region(a)) for a in self.component.activities if a.flow is not None]
+        regions = [ChartTree(r, frozenset(self._working(r.name))) for r in self.component.regions]
+        flows = [ChartTree(as_region(a)) for a in self.component.activities if a.flow is not None]
         made = []
         for tree in (*regions, *flows):
             own = (v for v in self.cells if v[1] in tree.region.writes)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
+from ravenchart.behaviour.tree import ChartTree, occurs
 from ravenchart.gen.model.statechart import Transition
 from ravenchart.gen.origins import Origin
 
@@ -13,7 +14,6 @@ from .logic import Term
 from .reach import Reachable
 from .stepping import Beaten, Defeat
 from .threads import Edge, Thread
-from .tree import RegionTree, occurs
 
 MOST_GUARDED = 64
 """Steps at most in which the guard of one transition is looked at."""
@@ -30,13 +30,15 @@ class Obstacle:
     change: str
     """What to do about it, as the beginning of a hint."""
     removal: str
-    """What removal of the transition would do, as its end."""
+    """How the transition is removed instead, as its end: ``remove NAME``."""
     notes: tuple[tuple[Origin, str], ...] = ()
+    successor: str = ""
+    """What would happen if it were removed, where that is not the end of it."""
     is_guard: bool = False
     """Whether nothing comes before it: its guard, or what makes it due, is in its way."""
 
 
-def in_front(tree: RegionTree, transition: Transition, earlier: Sequence[str]) -> Obstacle:
+def in_front(tree: ChartTree, transition: Transition, earlier: Sequence[str]) -> Obstacle:
     """Transitions of the same source and trigger, one of which always fires."""
     found = [t for t in tree.region.transitions if t.name in earlier]
     notes = tuple((t.origin, f"{t.name} is earlier in the model") for t in found)
@@ -44,7 +46,7 @@ def in_front(tree: RegionTree, transition: Transition, earlier: Sequence[str]) -
     return Obstacle(text, "change the order or the guards", f"remove {transition.name}", notes)
 
 
-def beaten(tree: RegionTree, transition: Transition, found: Sequence[Beaten]) -> Obstacle:
+def beaten(tree: ChartTree, transition: Transition, found: Sequence[Beaten]) -> Obstacle:
     """What another region does instead of the transition, which is enabled."""
     name, source = transition.name, transition.source
     states = [b.by for b in found if b.why is Defeat.DEFERRAL]
@@ -58,11 +60,12 @@ def beaten(tree: RegionTree, transition: Transition, found: Sequence[Beaten]) ->
     if all(b.why is Defeat.END for b in found):
         text = f"{' or '.join(w.name for w in winners)} is taken before it and ends the region"
         return Obstacle(text, change, f"remove {name}", notes)
-    removal = (
+    successor = (
         f"where {name} is removed, the next transition of {source}, or of a state around it, "
         "takes its place and may be taken"
     )
-    return Obstacle(f"it conflicts with {_and(w.name for w in winners)}", change, removal, notes)
+    text = f"it conflicts with {_and(w.name for w in winners)}"
+    return Obstacle(text, change, f"remove {name}", notes, successor)
 
 
 def taken_inside(
@@ -107,7 +110,7 @@ def taken_inside(
 
 
 def _inside(
-    tree: RegionTree, transition: Transition, firing: Sequence[str], deferring: Sequence[str]
+    tree: ChartTree, transition: Transition, firing: Sequence[str], deferring: Sequence[str]
 ) -> Obstacle:
     """Transitions and deferrals of states inside the source take everything."""
     source = transition.source
@@ -126,7 +129,7 @@ def _inside(
     return Obstacle(text, " or ".join(changes), f"remove {transition.name}", tuple(notes))
 
 
-def _transition(tree: RegionTree, name: str) -> Transition:
+def _transition(tree: ChartTree, name: str) -> Transition:
     return next(t for t in tree.region.transitions if t.name == name)
 
 

@@ -16,11 +16,13 @@ from types import MappingProxyType
 
 import z3
 
+from ravenchart.behaviour.tree import CONDITIONS, START, Occurrence
 from ravenchart.gen.language.terms import BOOLEAN, Reading
 from ravenchart.gen.model.statechart import DONE, After, Every, Overflow, Transition
 from ravenchart.gen.model.system import System
 
 from . import logic
+from .labels import label, where
 from .logic import Term, Variable
 from .outcomes import Outcome
 from .outside import external_events
@@ -29,8 +31,6 @@ from .schedule import Rows
 from .stepping import Configuration
 from .threads import Thread
 from .timing import TimedWay
-from .tree import CONDITIONS, START, Occurrence
-from .words import label, where
 
 MOST_SITUATIONS = 300
 """Situations that one search looks at."""

@@ -13,11 +13,11 @@ from enum import Enum
 
 import z3
 
+from ravenchart.behaviour.tree import TOP, ChartTree, Occurrence, RegionKey
 from ravenchart.gen.language.terms import Expression, Flow, If, Raise, Reading, Set
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Transition, TransitionKind, When
 
 from .logic import Questions, Term, Variable, term, variable
-from .tree import TOP, Occurrence, RegionTree, Slot
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Configuration:
     """Those whose completion has not had its step."""
     done: tuple[str, ...] = ()
     """Active states whose do activity has said so."""
-    history: tuple[tuple[Slot, str], ...] = ()
+    history: tuple[tuple[RegionKey, str], ...] = ()
     stopped: bool = False
 
 
@@ -84,18 +84,18 @@ class Beaten:
 class OpenStep:
     """One step that is being made."""
 
-    tree: RegionTree
+    tree: ChartTree
     before: Configuration
     occurrence: Occurrence
     questions: Questions
     decide: Callable[[Term], bool]
-    recall: Callable[[Slot], str | None] = lambda slot: None
+    recall: Callable[[RegionKey], str | None] = lambda slot: None
     """What a region remembers of which this step and the configuration before say nothing."""
     contested: Mapping[Variable, Term] | None = None
     """Where ``before`` is a part of a configuration (`parts`): what may be set by regions that it
     says nothing about, with what stands for it once the step has selected."""
     active: set[str] = field(init=False)
-    history: dict[Slot, str | None] = field(init=False)
+    history: dict[RegionKey, str | None] = field(init=False)
     store: dict[Variable, Term] = field(default_factory=dict)
     raised: list[tuple[str, tuple[tuple[str | None, Term], ...]]] = field(default_factory=list)
     fired: list[str] = field(default_factory=list)
@@ -301,7 +301,7 @@ class OpenStep:
             return self.tree.around_all(targets)
         return target
 
-    def boundary(self, path: TransitionPath) -> Slot:
+    def boundary(self, path: TransitionPath) -> RegionKey:
         """The region whose active child a transition leaves."""
         source, goal = self.source(path), self.goal(path)
         if path[0].kind is TransitionKind.LOCAL and source in self.tree.chains[goal][1:]:
@@ -346,7 +346,7 @@ class OpenStep:
                 raise StuckStep(vertex)
             self.fire(path)
 
-    def passing(self, slot: Slot) -> Iterator[str]:
+    def passing(self, slot: RegionKey) -> Iterator[str]:
         """The pseudostates that have been reached inside a region, in model order."""
         yield from (name for name in self.arrivals if self.tree.slots[name] == slot)
         for name in self.tree.ordered(self.active):
@@ -356,7 +356,7 @@ class OpenStep:
 
     # --- exits and entries
 
-    def leave(self, slot: Slot) -> None:
+    def leave(self, slot: RegionKey) -> None:
         """Leave the active child of a region, inner before outer."""
         self.arrivals = [name for name in self.arrivals if self.tree.slots[name] != slot]
         for name in self.tree.ordered(self.active):
@@ -406,7 +406,7 @@ class OpenStep:
         self.entered.add(name)
         self.perform(self.tree.states[name].entry)
 
-    def initial(self, slot: Slot) -> None:
+    def initial(self, slot: RegionKey) -> None:
         """Enter a region by default."""
         initial = self.tree.region.initial if slot == TOP else self.tree.nested[slot].initial
         self.perform(initial.effect)
@@ -427,7 +427,7 @@ class OpenStep:
         else:
             self.enter(self.tree.path(last, slot)[:1])
 
-    def last(self, slot: Slot) -> str | None:
+    def last(self, slot: RegionKey) -> str | None:
         """The leaf that a region remembers."""
         if slot not in self.history:
             self.history[slot] = self.recall(slot)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from ravenchart.behaviour.tree import ChartTree, Occurrence, RegionKey
 from ravenchart.gen.language.terms import ScalarType
 
 from .logic import Term, Variable
 from .outcomes import Outcome
 from .parts import RegionParts
 from .stepping import Configuration
-from .tree import Occurrence, RegionTree, Slot
 
 Steps = dict[tuple[Configuration, Occurrence], tuple[Outcome, ...]]
 """The outcomes of steps, data aside."""
@@ -47,14 +47,14 @@ class Edge:
 class Thread:
     """A region, or an activity with a flow (a region of one state), and what it was seen to do."""
 
-    tree: RegionTree
+    tree: ChartTree
     own: tuple[Variable, ...]
     types: Mapping[Variable, ScalarType]
     nodes: dict[Situation, Edge | None] = field(default_factory=dict)
     """Each with the edge that leads to it on a shortest way."""
     edges: list[Edge] = field(default_factory=list)
     questions: int = 0
-    past: dict[Slot, set[str]] | None = None
+    past: dict[RegionKey, set[str]] | None = None
     """What each region inside was seen to remember, where no node says it."""
     steps: Steps = field(default_factory=dict)
     exact: Steps = field(default_factory=dict)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import z3
 
+from ravenchart.behaviour.tree import CONDITIONS, START, Occurrence
 from ravenchart.gen.model.statechart import After, Every
 
 from . import logic
@@ -20,7 +21,6 @@ from .logic import PORT_STATES, Term, Variable
 from .outcomes import Outcome
 from .schedule import PORTS, RowReleases
 from .stepping import Configuration
-from .tree import CONDITIONS, START, Occurrence
 
 if TYPE_CHECKING:
     from .search import Point, SearchMove, WaySearch

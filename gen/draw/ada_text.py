@@ -54,7 +54,7 @@ class NotDeclaredError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Composite:
+class DeclaredComposite:
     """A composite state: the range of leaves of ``outer``, a composite or a lane's type."""
 
     name: str
@@ -81,7 +81,7 @@ class Declared:
 
     title: str
     leaves: dict[str, tuple[str, ...]]
-    composites: tuple[Composite, ...]
+    composites: tuple[DeclaredComposite, ...]
     lanes: tuple[DrawnLane, ...]
     conditions: dict[str, tuple[str, ...]]
     moves: dict[str, str | Leaves]
@@ -103,9 +103,9 @@ class _Reader(Transformer[Token, object]):
         """A type and its literals."""
         return str(names[0]), tuple(map(str, names[1:]))
 
-    def composite(self, _: Meta, names: Sequence[Token]) -> Composite:
+    def composite(self, _: Meta, names: Sequence[Token]) -> DeclaredComposite:
         """A range of leaves."""
-        return Composite(*map(str, names))
+        return DeclaredComposite(*map(str, names))
 
     def lane(self, _: Meta, names: Sequence[Token]) -> DrawnLane:
         """A component of a configuration."""

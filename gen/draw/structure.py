@@ -150,10 +150,10 @@ class _Drawing:
         name = f"{html(instance.name, 'b')} : {html(component.name)}"
         rows = f'<tr><td colspan="3" border="0" cellpadding="5">{name}</td></tr>'
         cells: tuple[list[str], list[str]] = [_cell(p) for p in left], [_cell(p) for p in right]
-        ends = [(required_port(one), one) for one in required(instance)]
-        ends += [(provided_port(one.name), one.name) for one in component.provides]
-        for port, text in ends:
-            on_right = self.on_right.get((instance.name, port), port.startswith("requires"))
+        ends = [(required_port(one), one, True) for one in required(instance)]
+        ends += [(provided_port(one.name), one.name, False) for one in component.provides]
+        for port, text, requires in ends:
+            on_right = self.on_right.get((instance.name, port), requires)
             cells[on_right].append(interface_cell(port, text))
         for one, other in zip_longest(*cells, fillvalue='<td border="0"></td>'):
             rows += f'<tr>{one}<td border="0" width="20"></td>{other}</tr>'

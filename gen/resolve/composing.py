@@ -142,8 +142,8 @@ class _Composing:
             message = f"{name} has {size:,} instances inside; the limit is {MOST_INSTANCES:,}"
             self.findings.error("RV-0209", form.at_key("instances"), message)
             return None
-        requires = self._interfaces("required interface", form.requires or {})
-        provides = self._interfaces("provided interface", form.provides or {})
+        requires = self._interfaces("required interface", "requires", form.requires or {})
+        provides = self._interfaces("provided interface", "provides", form.provides or {})
         self._join_ports(members)
         self._join_interfaces(requires, provides)
         self._nothing_is_left(members, requires, provides)
@@ -266,10 +266,9 @@ class _Composing:
     # --- interfaces
 
     def _interfaces(
-        self, kind: str, forms: dict[str, RequiredForm] | dict[str, ProvidedForm]
+        self, kind: str, section: str, forms: dict[str, RequiredForm] | dict[str, ProvidedForm]
     ) -> NameScope[Interface]:
         """Its own interfaces, before it is known what they lead to."""
-        section = "requires" if kind.startswith("required") else "provides"
         scope: NameScope[Interface] = NameScope(f"{kind} of {self.name}")
         scope.open = self.form.lost(section)
         for gone in self.form.dropped(section):

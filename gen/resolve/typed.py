@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from ravenchart.gen.files.located import TextPlace
 from ravenchart.gen.language import folding, intervals
 from ravenchart.gen.language.expressions import Malformed, Term, parse
-from ravenchart.gen.language.names import Findings, NameUse, Unknown, meant
+from ravenchart.gen.language.names import Findings, NameUse, Unknown, meant, nearest
 from ravenchart.gen.language.narrowing import COMPARISONS, Known, narrowed
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -158,8 +158,9 @@ class Checker:
                 if literal.lower() == term.word.lower():
                     self.findings.uses.append(literal_use(literal, expected, self.at(term)))
                     return CheckedExpression(Literal(literal, expected), expected)
-            near = meant(term.word, (*expected.literals, *known))
-            hint = near if near and near.startswith("did") else meant(term.word, expected.literals)
+            everything = (*expected.literals, *known)
+            near = nearest(term.word, everything) is not None
+            hint = meant(term.word, everything if near else expected.literals)
             message = f"`{term.word}` is no literal of {expected.name}"
             self.refuse("RV-0410", term, message, hint)
         return None

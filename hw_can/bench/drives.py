@@ -25,7 +25,7 @@ SET_POINT_FIELDS = ("mode", "speed")
 
 
 @dataclass(slots=True)
-class Track:
+class AxisTrack:
     """What one axis did, one entry a tick: um, um/s, times in s from the bench's start."""
 
     time: list[float] = field(default_factory=list)
@@ -43,7 +43,7 @@ class Station:
 
     form: DriveForm
     drive: Drive
-    track: Track = field(default_factory=Track)
+    track: AxisTrack = field(default_factory=AxisTrack)
     zero: float | None = None
     """True position in m where the axis last left its low switch."""
     ordered: float | None = None

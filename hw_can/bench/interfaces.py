@@ -15,7 +15,7 @@ BACKENDS.setdefault("ravenchart", ("ravenchart.hw_can.bench.bus_client", "Ravenc
 
 
 @dataclass(frozen=True, slots=True)
-class Interface:
+class BusEnd:
     """One end of a bus, by its names in python-can."""
 
     name: str
@@ -41,7 +41,7 @@ class Interface:
         return told
 
 
-def opened(interface: Interface, *, echo: bool = False) -> can.BusABC:
+def opened(interface: BusEnd, *, echo: bool = False) -> can.BusABC:
     """One bus object, which receives its own frames with ``echo``; BenchError when there is none.
 
     Drivers raise what they like.
@@ -55,10 +55,10 @@ def opened(interface: Interface, *, echo: bool = False) -> can.BusABC:
     except PermissionError as fault:
         raise BenchError(f"no permission for {interface}: {fault}") from None
     except Exception as fault:
-        raise BenchError(f"{interface} cannot be opened: {words(fault)}") from None
+        raise BenchError(f"{interface} cannot be opened: {fault_text(fault)}") from None
 
 
-def words(fault: BaseException) -> str:
+def fault_text(fault: BaseException) -> str:
     """What a driver's exception says, on one printable line."""
     said = " ".join(str(fault).split()) or type(fault).__name__
     if not isinstance(fault, can.CanError | OSError | BenchError):
@@ -66,7 +66,7 @@ def words(fault: BaseException) -> str:
     return "".join(c if c.isprintable() else "?" for c in said)
 
 
-def joined(interface: Interface, codec: Codec, record: OnFrame = unrecorded) -> Peer:
+def joined(interface: BusEnd, codec: Codec, record: OnFrame = unrecorded) -> Peer:
     """A peer at that end of a bus; BenchError when there is none."""
     bus = opened(interface)
     link = link_of(bus) if interface.name == "slcan" and "socket://" in interface.channel else None

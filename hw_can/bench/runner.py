@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 
-from .drives import Bench, Track, press
+from .drives import AxisTrack, Bench, press
 from .peer import BenchError, FrameValues, Peer, Value
 from .plant import UM
 from .replay import from_outside, read_log
@@ -61,7 +61,7 @@ class ScenarioResult:
     started: float
     steps: tuple[StepResult, ...]
     not_run: int
-    tracks: Mapping[str, Track]
+    tracks: Mapping[str, AxisTrack]
     zeros: Mapping[str, float | None]
     sendings: tuple[Sending, ...]
     sent: Mapping[str, int]

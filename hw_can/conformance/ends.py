@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import can
 
 from ravenchart.hw_can.bench import interfaces
-from ravenchart.hw_can.bench.interfaces import Interface
+from ravenchart.hw_can.bench.interfaces import BusEnd
 from ravenchart.hw_can.bench.peer import BenchError
 
 PATIENCE = 2.0
@@ -106,7 +106,7 @@ def open_ends(setup: Setup, patience: float = PATIENCE) -> Ends:
 
 def opened(interface: str, channel: str, setup: Setup, *, echo: bool = False) -> can.BusABC:
     """One bus object; BenchError when that is impossible."""
-    return interfaces.opened(Interface(interface, channel, setup.bitrate, fd=setup.fd), echo=echo)
+    return interfaces.opened(BusEnd(interface, channel, setup.bitrate, fd=setup.fd), echo=echo)
 
 
 def is_faulty(bus: can.BusABC) -> bool:

@@ -9,7 +9,7 @@ from enum import Enum
 
 import can
 
-from ravenchart.hw_can.bench.interfaces import words
+from ravenchart.hw_can.bench.interfaces import fault_text
 
 from .cases import CASES, LAST, ConformanceCase, Failed, Skipped, frame
 from .ends import Ends, Setup, is_faulty
@@ -87,7 +87,7 @@ def _loss(ends: Ends) -> str | None:
         if ends.across([frame(LAST)]):
             return None
     except Exception as fault:
-        return f"; no frame can be sent: {words(fault)}"
+        return f"; no frame can be sent: {fault_text(fault)}"
     if ends.errors or is_faulty(ends.near):
         return "; no other node acknowledges a frame: connect one, or check the cable"
     return f"; no frame arrives within {ends.patience:g} s"
@@ -103,11 +103,11 @@ def _run_one(ends: Ends, case: ConformanceCase) -> tuple[CaseVerdict, str]:
     except Failed as reason:
         return CaseVerdict.FAILED, str(reason)
     except NotImplementedError as missing:
-        return CaseVerdict.SKIPPED, f"not implemented there: {words(missing)}"
+        return CaseVerdict.SKIPPED, f"not implemented there: {fault_text(missing)}"
     except (can.CanError, OSError) as fault:
-        return CaseVerdict.FAILED, words(fault)
+        return CaseVerdict.FAILED, fault_text(fault)
     except Exception as fault:
-        return CaseVerdict.FAILED, f"the driver raised {words(fault)}"
+        return CaseVerdict.FAILED, f"the driver raised {fault_text(fault)}"
 
 
 def histogram(latencies: Sequence[int]) -> tuple[tuple[int, int], ...]:

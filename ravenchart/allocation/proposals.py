@@ -16,7 +16,7 @@ from ravenchart.analysis.core import allocation
 from ravenchart.analysis.core.allocation import Movable, Strategy, Table
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.analysis.present.words import verdict_line
+from ravenchart.analysis.present.sentences import verdict_line
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.analysis.units import duration
 from ravenchart.gen.derive.completion import completed

@@ -9,7 +9,7 @@ from rich.table import Table as Printed
 from rich.text import Text
 
 from ravenchart.allocation.proposals import STRATEGIES, Proposal, propose, yaml
-from ravenchart.analysis.present.words import verdict_line
+from ravenchart.analysis.present.sentences import verdict_line
 from ravenchart.analysis.units import microseconds
 from ravenchart.failures import OK, WRONG
 from ravenchart.terminal import console, progress

@@ -81,7 +81,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
-def words(options: argparse.Namespace) -> list[str]:
+def server_settings(options: argparse.Namespace) -> list[str]:
     """What the server is told, NAME=VALUE each."""
     told = [
         f"port={options.port}",
@@ -153,9 +153,11 @@ def _words(most: int, kinds: Sequence[str] = ()) -> Callable[[str], str]:
 def execute(options: argparse.Namespace) -> int:
     """Serve until it is stopped; the exit status."""
     if not options.json:
-        return server.serve(words(options), options.log)
+        return server.serve(server_settings(options), options.log)
 
     def serves(channel: str) -> None:
         options.answer.serves(BusResult(channel))
 
-    return server.announced(words(options), options.log, serves, partial(say, options.answer))
+    return server.announced(
+        server_settings(options), options.log, serves, partial(say, options.answer)
+    )

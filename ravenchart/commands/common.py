@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ravenchart.building.unchanged import Generation
     from ravenchart.building.written import Written
     from ravenchart.gen.model.system import System
-    from ravenchart.hw_can.bench.interfaces import Interface
+    from ravenchart.hw_can.bench.interfaces import BusEnd
     from ravenchart.workbench.pages import Pages
 
 
@@ -70,7 +70,7 @@ def add_interface(sub: argparse.ArgumentParser, use: str) -> None:
     )
 
 
-def interface(options: argparse.Namespace, system: System) -> Interface | None:
+def interface(options: argparse.Namespace, system: System) -> BusEnd | None:
     """The interface that was named; Unusable where half of it is, or the model has no bus."""
     from ravenchart.running.attaching import interface_of
 

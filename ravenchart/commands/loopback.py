@@ -99,7 +99,8 @@ def tested(options: argparse.Namespace) -> bool:
     )
     ends = open_ends(setup)
     try:
-        result = run(ends)
+        with terminal.stages("loopback") as tell:
+            result = run(ends, tell)
     finally:
         ends.close()
     options.answer.result = results.LoopbackResult(

@@ -21,7 +21,7 @@ from ravenchart.analysis.plain.observed import budgets, observed
 from ravenchart.analysis.plain.results import Json, PlainResult, analyse, everything, loads
 from ravenchart.analysis.present.plain_report import render_plain
 from ravenchart.analysis.present.report import Execution
-from ravenchart.analysis.present.words import distance_lines, offset_lines, overload_lines
+from ravenchart.analysis.present.sentences import distance_lines, offset_lines, overload_lines
 from ravenchart.analysis.units import duration, percent
 from ravenchart.failures import Refused
 from ravenchart.terminal import console

@@ -167,7 +167,7 @@ def _covered(checked: Checked, cases: list[FoundCase], file: Path) -> list[Sourc
     found = coverage.measured(home, places_of_user(checked.system, checked.folder))
     file.parent.mkdir(parents=True, exist_ok=True)
     replace_file(file, coverage.tracefile(found))
-    for origin in coverage.Origin:
+    for origin in coverage.SourceOwner:
         some = [one for one in found if one.origin is origin]
         lines, branches = sum(len(one.lines) for one in some), sum(len(o.branches) for o in some)
         executed, taken = sum(one.executed() for one in some), sum(one.taken() for one in some)

@@ -12,7 +12,7 @@ FORMAT = 1
 
 
 @dataclass(slots=True)
-class Gap(Described):
+class Lack(Described):
     """Something that is not shown."""
 
     kind: str
@@ -197,7 +197,7 @@ class Evidence(Described):
     """SHA-256 over the model's files, as the timing certificate has it."""
     driver: str
     """The CAN driver."""
-    not_shown: list[Gap]
+    not_shown: list[Lack]
     """What is not shown: read this first."""
     claims: list[ClaimEntry]
     """Every claim."""

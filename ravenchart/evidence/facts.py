@@ -6,7 +6,6 @@ equal inputs give equal facts.
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,6 +22,7 @@ from ravenchart.gen.files.links import Link, links
 from ravenchart.gen.files.load import read_file, read_model
 from ravenchart.paths import ROOT
 from ravenchart.proof import outside_spark
+from ravenchart.proof.proving import digest
 from ravenchart.stacks.report import Memory
 
 from . import records, tracefile
@@ -103,7 +103,7 @@ def gather(
     _refuse_foreign(given, made)
     nodes = tuple(_node(program, chosen, files, why, given) for program in made)
     runtime, reasons = _runtime(chosen, folder)
-    sources = tuple((name, _sha(folder / name)) for name in found.sources)
+    sources = tuple((name, digest(folder / name)) for name in found.sources)
     return Facts(
         checked,
         chosen,
@@ -177,7 +177,7 @@ def _node(
             differences.append(f"{name} is not generated of this model")
         elif files and path.read_bytes() != wanted[name].encode("utf-8"):
             differences.append(f"{name} is not what the model gives")
-    pairs = tuple((records.shown(path, folder), _sha(path)) for path in there.values())
+    pairs = tuple((records.shown(path, folder), digest(path)) for path in there.values())
     return NodeFacts(program, record, tuple(differences), pairs)
 
 
@@ -195,7 +195,3 @@ def _runtime(
         if OUTSIDE.is_file():
             reasons |= outside_spark.reasons_for_target(OUTSIDE, target)
     return tuple(found), tuple(reasons.items())
-
-
-def _sha(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()

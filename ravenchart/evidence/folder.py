@@ -30,8 +30,8 @@ from .documents import (
     Evidence,
     Fault,
     Finding,
-    Gap,
     Input,
+    Lack,
     ProbeEntry,
     RequirementEntry,
 )
@@ -141,10 +141,10 @@ def _document(
     )
 
 
-def _untraced(trace: Traceability | None) -> list[Gap]:
+def _untraced(trace: Traceability | None) -> list[Lack]:
     if trace is None:
-        return [Gap("limit", "traceability", "no list of requirements is given")]
-    return [Gap("claim", one.code, one.message) for one in trace.findings]
+        return [Lack("limit", "traceability", "no list of requirements is given")]
+    return [Lack("claim", one.code, one.message) for one in trace.findings]
 
 
 def _claim(claim: Claim, ids: Iterable[str]) -> ClaimEntry:

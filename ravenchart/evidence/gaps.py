@@ -10,7 +10,7 @@ from ravenchart.gen.emit.commands.lifecycle import has_lifecycle
 
 from . import ledger
 from .claim import Claim, Shown
-from .documents import Gap
+from .documents import Lack
 from .facts import Facts
 from .records import UNKNOWN_TOOL
 from .results import PASSED
@@ -33,7 +33,7 @@ LIMITS = (
 """What no folder shows."""
 
 
-_UNCOVERED = Gap(
+_UNCOVERED = Lack(
     "limit",
     "coverage",
     "No structural coverage is given: `ravenchart tests MODEL --coverage FILE` counts it, and "
@@ -41,7 +41,7 @@ _UNCOVERED = Gap(
 )
 
 
-def gaps(facts: Facts, claims: Sequence[Claim]) -> tuple[Gap, ...]:
+def gaps(facts: Facts, claims: Sequence[Claim]) -> tuple[Lack, ...]:
     """All of them, the worst first."""
     return (
         *_claims(claims),
@@ -51,41 +51,41 @@ def gaps(facts: Facts, claims: Sequence[Claim]) -> tuple[Gap, ...]:
         *_tests(facts),
         *_tools(facts),
         *(() if facts.coverage else (_UNCOVERED,)),
-        *(Gap("limit", what, why) for what, why in LIMITS),
+        *(Lack("limit", what, why) for what, why in LIMITS),
     )
 
 
-def _claims(claims: Sequence[Claim]) -> Iterator[Gap]:
+def _claims(claims: Sequence[Claim]) -> Iterator[Lack]:
     for verdict in ORDER:
         for claim in claims:
             if claim.verdict is verdict:
                 reason = claim.reasons[0] if claim.reasons else claim.theorem
                 more = f" (and {len(claim.reasons) - 1} more)" if len(claim.reasons) > 1 else ""
-                yield Gap("claim", claim.id, f"{verdict.value}: {reason}{more}")
+                yield Lack("claim", claim.id, f"{verdict.value}: {reason}{more}")
 
 
-def _assumptions(facts: Facts) -> Iterator[Gap]:
+def _assumptions(facts: Facts) -> Iterator[Lack]:
     found = ledger.in_use(facts.checked.system, facts.driver)
     for one in found:
-        yield Gap("assumption", one.id, f"{one.title[:1].upper()}{one.title[1:]}. {one.text}")
+        yield Lack("assumption", one.id, f"{one.title[:1].upper()}{one.title[1:]}. {one.text}")
     if not found:
-        yield Gap("assumption", "ledger", "the ledger of assumptions is not at hand")
+        yield Lack("assumption", "ledger", "the ledger of assumptions is not at hand")
 
 
-def _outside(facts: Facts) -> Iterator[Gap]:
+def _outside(facts: Facts) -> Iterator[Lack]:
     if has_lifecycle(facts.checked.system):
         told = "no check of its body is made: ASM-019"
-        yield Gap("outside", "Ravenchart.Device_Failures", told)
+        yield Lack("outside", "Ravenchart.Device_Failures", told)
     for name, reason in (*facts.runtime_reasons, *facts.reasons):
-        yield Gap("outside", name, f"no check of its body is made: {reason}")
+        yield Lack("outside", name, f"no check of its body is made: {reason}")
 
 
-def _budgets(facts: Facts) -> Iterator[Gap]:
+def _budgets(facts: Facts) -> Iterator[Lack]:
     system = facts.checked.system
     given = "is given by the model, and not measured"
     for processor in system.processors:
         for slot in processor.slots:
-            yield Gap("budget", slot.element, f"wcet {duration(slot.timing.wcet)} {given}")
+            yield Lack("budget", slot.element, f"wcet {duration(slot.timing.wcet)} {given}")
     for node in system.nodes:
         figures = [
             ("context_switch", node.context_switch),
@@ -93,35 +93,37 @@ def _budgets(facts: Facts) -> Iterator[Gap]:
             ("release", node.release),
         ]
         told = ", ".join(f"{name} {duration(value)}" for name, value in figures)
-        yield Gap("budget", node.name, f"{told}: {given}")
+        yield Lack("budget", node.name, f"{told}: {given}")
     for device in system.devices:
         if device.type is not None:
             told = f"the execution times of the commands of {device.type.name}"
-            yield Gap("budget", device.name, f"{told} are given by the model, and not measured")
+            yield Lack("budget", device.name, f"{told} are given by the model, and not measured")
     for bus in system.buses:
-        yield Gap("budget", bus.name, f"driver_wcet {duration(bus.driver_wcet)} {given}")
+        yield Lack("budget", bus.name, f"driver_wcet {duration(bus.driver_wcet)} {given}")
         if bus.errors is None:
-            yield Gap("budget", bus.name, "bounds hold for a bus without errors: `errors` is empty")
+            yield Lack(
+                "budget", bus.name, "bounds hold for a bus without errors: `errors` is empty"
+            )
         else:
             every = duration(bus.errors.period)
-            yield Gap(
+            yield Lack(
                 "budget", bus.name,
                 f"bounds hold for {bus.errors.burst} errors at once and one every {every}",
             )  # fmt: skip
 
 
-def _tests(facts: Facts) -> Iterator[Gap]:
+def _tests(facts: Facts) -> Iterator[Lack]:
     if facts.tests is None:
-        yield Gap("test", "tests", "no results of tests are given, so none is shown to pass")
+        yield Lack("test", "tests", "no results of tests are given, so none is shown to pass")
         return
     for test in facts.tests:
         if test.outcome != PASSED:
-            yield Gap("test", test.name, f"{test.outcome}: {test.why}")
+            yield Lack("test", test.name, f"{test.outcome}: {test.why}")
 
 
-def _tools(facts: Facts) -> Iterator[Gap]:
+def _tools(facts: Facts) -> Iterator[Lack]:
     held = [node.record for node in facts.nodes if node.record is not None]
     names = [one.name for one in (*held, *facts.runtime) if one.tool == UNKNOWN_TOOL]
     if names:
         told = re.sub(r", ([^,]*)$", r" and \1", ", ".join(dict.fromkeys(names)))
-        yield Gap("limit", "prover", f"the version of gnatprove is not recorded in {told}")
+        yield Lack("limit", "prover", f"the version of gnatprove is not recorded in {told}")

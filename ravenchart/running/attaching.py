@@ -5,7 +5,7 @@ from __future__ import annotations
 from ravenchart.failures import Unusable
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import System
-from ravenchart.hw_can.bench.interfaces import Interface, joined
+from ravenchart.hw_can.bench.interfaces import BusEnd, joined
 from ravenchart.hw_can.bench.peer import BenchError, OnFrame, Peer
 
 from .vocabulary import BusVocabulary
@@ -18,14 +18,14 @@ def bus_of(system: System) -> Bus:
     return system.buses[0]
 
 
-def interface_of(system: System, name: str, channel: str) -> Interface:
+def interface_of(system: System, name: str, channel: str) -> BusEnd:
     """The interface with the bit rates that the model gives its bus; Unusable without a bus."""
     bus = bus_of(system)
     data_rate = (bus.data_rate or bus.bit_rate) if bus.takes_fd else None
-    return Interface(name, channel, bus.bit_rate, data_rate, fd=bus.takes_fd)
+    return BusEnd(name, channel, bus.bit_rate, data_rate, fd=bus.takes_fd)
 
 
-def attached(interface: Interface, vocabulary: BusVocabulary, record: OnFrame) -> Peer:
+def attached(interface: BusEnd, vocabulary: BusVocabulary, record: OnFrame) -> Peer:
     """A peer there; Unusable where there is no such bus."""
     try:
         return joined(interface, vocabulary.codec, record)

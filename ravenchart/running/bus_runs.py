@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.hw_can.bench.interfaces import Interface
+from ravenchart.hw_can.bench.interfaces import BusEnd
 from ravenchart.hw_can.bench.runner import Progress, ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Scenario, load_scenario
 
@@ -25,7 +25,7 @@ GOES_ON = Ended(exit_code=0, killed=False, real_time=True, warnings=())
 """Of a controller that is neither started nor stopped here."""
 
 
-def run_on_bus(interface: Interface, request: RunRequest, progress: Progress) -> RunOutcome:
+def run_on_bus(interface: BusEnd, request: RunRequest, progress: Progress) -> RunOutcome:
     """Play the scenario, and leave the controller as it is then; Unusable where there is no bus."""
     assert request.scenario is not None
     plan = load_scenario(request.scenario)
@@ -55,9 +55,7 @@ def run_on_bus(interface: Interface, request: RunRequest, progress: Progress) ->
     )
 
 
-def _silence(
-    vocabulary: BusVocabulary, interface: Interface, played: ScenarioResult
-) -> Iterator[str]:
+def _silence(vocabulary: BusVocabulary, interface: BusEnd, played: ScenarioResult) -> Iterator[str]:
     """Nothing that the controller sends came: most likely it is on another bus, or on none."""
     own = vocabulary.messages.keys() - vocabulary.outside()
     if own and not own & played.received.keys():

@@ -24,7 +24,7 @@ GCOV = "gcov"
 _NO_CONTRACTS = "pragma Assertion_Policy (Ignore);\n"
 
 
-class Origin(Enum):
+class SourceOwner(Enum):
     """Whose sources they are; the value names them in a report."""
 
     GENERATED = "generated"
@@ -37,7 +37,7 @@ class SourceCoverage:
     """How often the lines and branches of a body were executed."""
 
     path: Path
-    origin: Origin
+    origin: SourceOwner
     lines: dict[int, int] = field(default_factory=dict)
     """Executions by line number; only lines with code."""
     branches: dict[tuple[int, int], int] = field(default_factory=dict)
@@ -80,14 +80,14 @@ def measured(home: Path, user: Sequence[Path]) -> list[SourceCoverage]:
     given = ["--branch-probabilities", "--branch-counts", "--json-format", "--stdout"]
     said = toolchain.filtered(GCOV, [*given, *counts], "")
     places = {
-        (home / "source").resolve(): Origin.GENERATED,
-        **{folder.resolve(): Origin.USER for folder in user},
-        (ROOT / "spark_runtime" / "src").resolve(): Origin.RUNTIME,
+        (home / "source").resolve(): SourceOwner.GENERATED,
+        **{folder.resolve(): SourceOwner.USER for folder in user},
+        (ROOT / "spark_runtime" / "src").resolve(): SourceOwner.RUNTIME,
     }
     return read(said, places)
 
 
-def read(said: str, places: Mapping[Path, Origin]) -> list[SourceCoverage]:
+def read(said: str, places: Mapping[Path, SourceOwner]) -> list[SourceCoverage]:
     """What gcov says of the bodies in some folders, in order of place and name.
 
     A line of a generic counts for all of its instances together.
@@ -107,7 +107,7 @@ def read(said: str, places: Mapping[Path, Origin]) -> list[SourceCoverage]:
                 for index, branch in enumerate(kept):
                     key = number, index
                     coverage.branches[key] = coverage.branches.get(key, 0) + branch["count"]
-    order = list(Origin)
+    order = list(SourceOwner)
     return sorted(found.values(), key=lambda one: (order.index(one.origin), one.path.name))
 
 

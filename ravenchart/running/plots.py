@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ravenchart.analysis.present.plots import INK
-from ravenchart.hw_can.bench.drives import Track
+from ravenchart.hw_can.bench.drives import AxisTrack
 
 PALETTE = (
     "#8aa4bf",
@@ -46,7 +46,7 @@ class Stay:
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class OperatorMark:
     """Something that the operator did, in s from the bench's start."""
 
     at: float
@@ -54,7 +54,9 @@ class Mark:
 
 
 def positions(
-    tracks: Mapping[str, Track], states: Mapping[str, Sequence[Stay]], marks: Sequence[Mark]
+    tracks: Mapping[str, AxisTrack],
+    states: Mapping[str, Sequence[Stay]],
+    marks: Sequence[OperatorMark],
 ) -> Figure:
     """Target and true position of every axis over time, in mm from its low hard stop."""
     figure = Figure(figsize=(11, 0.9 + 2.25 * len(tracks)), layout="constrained")
@@ -87,7 +89,7 @@ def png(figure: Figure) -> bytes:
     return out.getvalue()
 
 
-def _panel(panel: Axes, name: str, track: Track) -> None:
+def _panel(panel: Axes, name: str, track: AxisTrack) -> None:
     """The curves of one axis."""
     target = [math.nan if t is None else t / 1e3 for t in track.target]
     true = [p / 1e3 for p in track.position]
@@ -135,7 +137,7 @@ def _bands(panel: Axes, spans: Sequence[Stay], colours: Mapping[str, str], end: 
             )
 
 
-def _label_marks(panel: Axes, marks: Sequence[Mark]) -> None:
+def _label_marks(panel: Axes, marks: Sequence[OperatorMark]) -> None:
     """What the operator did, above the first panel."""
     for mark in marks:
         panel.text(

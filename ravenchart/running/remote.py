@@ -28,7 +28,7 @@ from typing import Literal, TypeVar
 from ravenchart.building import checking
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.drives import Bench, Station, press
-from ravenchart.hw_can.bench.interfaces import Interface
+from ravenchart.hw_can.bench.interfaces import BusEnd
 from ravenchart.hw_can.bench.peer import BenchError, FrameValues, MalformedFrameError, Peer, Value
 from ravenchart.hw_can.bench.replay import from_outside, read_log
 from ravenchart.hw_can.bench.scenario import DriveForm
@@ -349,7 +349,7 @@ def connect(
 
 
 def connected(
-    system: System, end: Interface, drives: Mapping[str, DriveForm], log: Path | None = None
+    system: System, end: BusEnd, drives: Mapping[str, DriveForm], log: Path | None = None
 ) -> RemoteSystem:
     """The same of a model that was read, at an interface; Unusable where there is no such bus."""
     with ExitStack() as stack:

@@ -14,7 +14,7 @@ from ravenchart.hw_can.bench.runner import ScenarioResult
 from ravenchart.hw_can.bench.scenario import Scenario
 
 from .expected import DEADLINE_MISS
-from .plots import Mark, Stay
+from .plots import OperatorMark, Stay
 from .process import ERROR, Ended
 
 
@@ -123,14 +123,14 @@ def spans(result: RunOutcome) -> Mapping[str, tuple[Stay, ...]]:
     }
 
 
-def marks(result: ScenarioResult) -> tuple[Mark, ...]:
+def marks(result: ScenarioResult) -> tuple[OperatorMark, ...]:
     """What the operator did, as marks in the picture."""
     found = [
-        Mark(s.at, next((v for v in s.values.values() if isinstance(v, str)), s.message))
+        OperatorMark(s.at, next((v for v in s.values.values() if isinstance(v, str)), s.message))
         for s in result.sendings
     ]
     found += [
-        Mark(s.began, s.text.replace("the ", "").replace(" limit switch of", ""))
+        OperatorMark(s.began, s.text.replace("the ", "").replace(" limit switch of", ""))
         for s in result.steps
         if s.text.startswith(("pull", "kill", "stop"))
     ]

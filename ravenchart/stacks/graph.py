@@ -8,7 +8,7 @@ is of this unit, a node of the form of an ellipse is called and lies elsewhere.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -121,16 +121,3 @@ def ada_name(name: str) -> str:
     if len(parts) < 2:
         return name
     return ".".join("_".join(w.capitalize() for w in p.split("_")) for p in parts)
-
-
-def reachable(graph: Mapping[str, Function], roots: Iterable[str]) -> set[str]:
-    """The titles of all that the roots can call, they included, known or not."""
-    found: set[str] = set()
-    waiting = list(roots)
-    while waiting:
-        title = waiting.pop()
-        if title not in found:
-            found.add(title)
-            if title in graph:
-                waiting += graph[title].calls
-    return found

@@ -19,7 +19,7 @@ from typing import Any
 from ravenchart.allocation.proposals import Proposal, propose, tables
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.findings.growth import largest_wcet
-from ravenchart.analysis.present.words import binding_lines, growth_line, verdict_line
+from ravenchart.analysis.present.sentences import binding_lines, growth_line, verdict_line
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import duration
 from ravenchart.editing.evaluation import evaluate

@@ -11,7 +11,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ravenchart.analysis.present.bars import row_of
-from ravenchart.analysis.present.words import overload_lines, verdict_line
+from ravenchart.analysis.present.sentences import overload_lines, verdict_line
 from ravenchart.analysis.system.latencies import Latency
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import microseconds, percent

@@ -18,7 +18,6 @@ from pathlib import Path
 import can
 
 from ravenchart.hw_can.bench.bus_records import FD_LENGTHS
-from ravenchart.hw_can.bench.echo import Echo, Standing
 from ravenchart.hw_can.conformance.cases import (
     SETTLING,
     ConformanceCase,
@@ -28,6 +27,7 @@ from ravenchart.hw_can.conformance.cases import (
     frame,
 )
 from ravenchart.hw_can.conformance.ends import Ends, Setup, opened
+from tests.support.echo import Echo, Standing
 
 INTERFACES = Path("/sys/class/net")
 FD_UNIT = "72"

@@ -9,18 +9,18 @@ import pytest
 
 from ravenchart.behaviour.interpreter.expressions import View
 from ravenchart.behaviour.interpreter.machine import Machine
-from ravenchart.behaviour.interpreter.observed import ObservedRegion, Reason
+from ravenchart.behaviour.interpreter.observed import FiringReason, ObservedRegion
 from ravenchart.behaviour.interpreter.region import RegionRun, Step, Stuck
 from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
-from ravenchart.workbench.play.words import occurrence, reason
+from ravenchart.workbench.play.explained import occurrence, reason
 from tests.support.interpreted import stimuli_of, system_of
 from tests.support.random_charts import events_of, model_of
 
 SEEDS = range(40)
 
-seen: Counter[Reason] = Counter()
+seen: Counter[FiringReason] = Counter()
 """The reasons that the charts have shown so far."""
 
 
@@ -34,7 +34,7 @@ class Compared(ObservedRegion):
         said = self.steps[-1]
         from_states = {t.name for t in self.region.transitions if t.source in before}
         taken = {one.removesuffix(".effect") for one in found.behaviours if ".effect" in one}
-        fired = {v.transition.name for v in said.verdicts if v.reason is Reason.FIRED}
+        fired = {v.transition.name for v in said.verdicts if v.reason is FiringReason.FIRED}
         assert fired == taken & from_states
         if said.occurrence is not None:
             assert {v.transition.name for v in said.verdicts} == from_states
@@ -42,8 +42,8 @@ class Compared(ObservedRegion):
             seen[one.reason] += 1
             text = reason(one, Ns(10_000_000))
             assert text and text != "the step was for something else"
-            assert (one.reason is Reason.GUARD_FALSE) <= bool(one.failed)
-            assert (one.reason is Reason.NOT_DUE) == (one.executions > 0)
+            assert (one.reason is FiringReason.GUARD_FALSE) <= bool(one.failed)
+            assert (one.reason is FiringReason.NOT_DUE) == (one.executions > 0)
         assert occurrence(said)
         return found
 
@@ -65,4 +65,4 @@ def test_a_transition_is_said_to_fire_exactly_where_it_does(seed: int) -> None:
 def test_the_charts_have_shown_every_reason() -> None:
     for seed in SEEDS:
         list(_played(system_of(model_of([seed])), seed, Compared))
-    assert set(Reason) - set(seen) == set()
+    assert set(FiringReason) - set(seen) == set()

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ravenchart.hw_can.bench.echo import Echo, Standing
+from tests.support.echo import Echo, Standing
 
 JOINED = "can: joined the bus at 127.0.0.1:"
 LIMIT = 20.0

@@ -21,8 +21,8 @@ from ravenchart.analysis.present.report import (
     executions,
     render,
 )
+from ravenchart.analysis.present.sentences import binding_lines
 from ravenchart.analysis.present.table import LEGEND, show
-from ravenchart.analysis.present.words import binding_lines
 from ravenchart.analysis.system.critical import schedule
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
 from ravenchart.analysis.system.timing import analyse

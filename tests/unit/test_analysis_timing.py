@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.responses import Reason
-from ravenchart.analysis.present.words import growth_line
+from ravenchart.analysis.present.sentences import growth_line
 from ravenchart.analysis.system.timing import Analysis, Verdict, analyse
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import BusErrors

@@ -6,10 +6,10 @@ import hashlib
 import json
 from pathlib import Path
 
-from ravenchart.running.coverage import Origin, read, spans, tracefile
+from ravenchart.running.coverage import SourceOwner, read, spans, tracefile
 
 GENERATED, RUNTIME = Path("/home/model/source"), Path("/runtime/src")
-PLACES = {GENERATED: Origin.GENERATED, RUNTIME: Origin.RUNTIME}
+PLACES = {GENERATED: SourceOwner.GENERATED, RUNTIME: SourceOwner.RUNTIME}
 
 
 def _line(number: int, count: int, *branches: int, throw: bool = False) -> dict[str, object]:
@@ -28,7 +28,7 @@ def test_lines_and_branches_are_counted_by_body() -> None:
         (GENERATED / "a.adb", [_line(3, 2, 2, 0), _line(4, 0), _line(9, 1, 1, throw=True)])
     )
     (body,) = read(said, PLACES)
-    assert (body.path, body.origin) == (GENERATED / "a.adb", Origin.GENERATED)
+    assert (body.path, body.origin) == (GENERATED / "a.adb", SourceOwner.GENERATED)
     assert (len(body.lines), body.executed(), body.left()) == (3, 2, [4])
     assert (len(body.branches), body.taken()) == (2, 1)
 
@@ -55,7 +55,7 @@ def test_the_tracefile_is_that_of_lcov(tmp_path: Path) -> None:
     body = tmp_path / "a.adb"
     body.write_bytes(b"body")
     said = _said((body, [_line(3, 2, 2, 0), _line(4, 0, 0, 0)]))
-    assert tracefile(read(said, {tmp_path: Origin.GENERATED})).splitlines() == [
+    assert tracefile(read(said, {tmp_path: SourceOwner.GENERATED})).splitlines() == [
         "TN:",
         f"SF:{body}",
         f"VER:{hashlib.sha256(b'body').hexdigest()}",

@@ -10,7 +10,6 @@ from pathlib import Path
 import can
 import pytest
 
-from ravenchart.hw_can.bench.echo import Echo, Standing
 from ravenchart.hw_can.conformance.ends import Ends, Setup, open_ends
 from ravenchart.hw_can.conformance.suite import CaseVerdict, SuiteResult, run
 from ravenchart.tools import toolchain
@@ -18,6 +17,7 @@ from tests.hardware import __main__ as hw_test
 from tests.hardware.__main__ import Step, Total, load_order, missing, script, steps, total
 from tests.hardware.driver_cases import Driver, cases
 from tests.hardware.fact import facts, junit
+from tests.support.echo import Echo, Standing
 
 DEPENDENCIES = """\
 kernel/drivers/net/can/sja1000/kvaser_pci.ko: kernel/sja1000.ko kernel/can-dev.ko

@@ -61,7 +61,7 @@ def test_random_charts_stay_sound(observed: list[tuple[Machine, list[str]]]) -> 
 def test_random_charts_do_something(observed: list[tuple[Machine, list[str]]]) -> None:
     runs = [run for machine, _ in observed for own in machine.instances.values()
             for run in own.regions.values()]  # fmt: skip
-    moved = [run for run in runs if run.configuration() != run.tree.default()]
+    moved = [run for run in runs if run.configuration() != frozenset(run.tree.default)]
     assert len(moved) > len(runs) / 2
     assert any(run.history for run in runs)
     assert any(run.deferred for run in runs)
@@ -79,7 +79,7 @@ def test_entering_by_default_makes_the_default_configuration(systems: list[Syste
         for run in own.regions.values():
             run.begin()
             run.step(own.view())
-            assert run.configuration() == run.tree.default()
+            assert run.configuration() == frozenset(run.tree.default)
 
 
 # --- What is checked after every step ---------------------------------------------------
@@ -97,7 +97,7 @@ def replayed(run: RegionRun, active: set[str], behaviours: tuple[str, ...]) -> l
             active.discard(name)
         elif what == "entry":
             missing = set(run.tree.around(name)) - active
-            beside = {one for one in active if run.tree.place(one) == run.tree.place(name)}
+            beside = {one for one in active if run.tree.slots[one] == run.tree.slots[name]}
             if name in active or missing or beside:
                 wrong.append(f"{name} is entered beside {beside} without {missing}")
             active.add(name)
@@ -112,11 +112,11 @@ def unsound(run: RegionRun) -> list[str]:
     tree, wrong = run.tree, []
     wanted = {TOP}
     for state in run.configuration():
-        wanted.update(tree.nested(state))
+        wanted.update(tree.regions_of(state))
     if set(run.active) != wanted:
         wrong.append(f"the places {set(run.active) ^ wanted} are active without reason, or not")
     for vertex in run.active.values():
-        if tree.kind(vertex) not in (None, PseudoKind.TERMINATE):
+        if tree.kinds.get(vertex) not in (None, PseudoKind.TERMINATE):
             wrong.append(f"it rests in {vertex}")
     timed = {
         t.name

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ravenchart.behaviour.interpreter.machine import Machine
-from ravenchart.behaviour.interpreter.observed import ObservedRegion, ObservedStep, Reason
+from ravenchart.behaviour.interpreter.observed import FiringReason, ObservedRegion, ObservedStep
 from tests.support.interpreted import chart_system, events_text, stimuli_of
 
 Found = dict[str, tuple[str, tuple[str, ...]]]
@@ -177,4 +177,4 @@ def test_a_junction_without_a_way_on_names_its_guards() -> None:
     step = last_step(JUNCTION, "10 Go", until=10)
     assert reasons(step) == {"first": ("NO_WAY_ON", ()), "second": ("FIRED", ())}
     assert len(step.verdicts[0].failed) == 2
-    assert step.verdicts[0].reason is Reason.NO_WAY_ON
+    assert step.verdicts[0].reason is FiringReason.NO_WAY_ON

@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 import can
 import pytest
 
+from ravenchart import terminal
 from ravenchart.command_line import main
 from ravenchart.commands import loopback_files
 from ravenchart.commands.loopback import verdict_line
@@ -49,6 +50,21 @@ def test_virtual_passes_and_says_what_it_cannot(capsys: pytest.CaptureFixture[st
     assert "PASS: 16 passed, 0 failed, 4 skipped" in printed
     assert "skipped 0.00 the bus was opened without --fd" in printed
     assert "python-can's virtual tells no state" in printed
+
+
+def test_the_case_that_runs_is_told_while_it_runs(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(terminal, "SILENCE", 0.01)
+    monkeypatch.setattr(terminal, "SHORTEST", 0.01)
+    terminal.LINES.set()
+    try:
+        main(["loopback", "--interface", "virtual", "--channel", "told"])
+    finally:
+        terminal.LINES.clear()
+    lines = capsys.readouterr().err.splitlines()
+    told = {line.removeprefix("loopback: ").rpartition(" (")[0] for line in lines}
+    assert len(told & {case.name for case in CASES}) > 1
 
 
 def test_one_object_with_echo_is_both_ends(capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
+from ravenchart.analysis.core.offsets import OffsetSearch
+from ravenchart.analysis.findings import claims as analysis_claims
 from ravenchart.analysis.findings.claims import by_offsets, claims_of, uncertified
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.present.figures import figures
@@ -167,7 +169,7 @@ def test_what_the_certificate_cannot_show_is_not_generated(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tight = analysed(LOOPS, TIGHT)
-    monkeypatch.setattr(instants, "MOST", 0)
+    monkeypatch.setattr(analysis_claims, "MOST_INSTANTS", 0)
     (gap,) = uncertified(tight)
     assert gap.code == "RV-0804"
     assert "seldom misses its deadline: R = " in gap.message
@@ -212,6 +214,33 @@ def shorter(whole: System, names: list[str]) -> System:
         for task in whole.tasks
     )
     return replace(whole, tasks=tuple(tasks))
+
+
+def test_analysis_and_certificate_find_the_same_instants(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each by itself: in order, with the time from an instant to the next arrival of the task."""
+    told: list[tuple[str, int, list[tuple[int, int]], int]] = []
+    followed = OffsetSearch.followed
+
+    def noted(self: OffsetSearch, reach: int) -> list[tuple[int, int]]:
+        found = followed(self, reach)
+        told.append((self.plain.task.name, reach, found, self.rivals.cycle))
+        return found
+
+    monkeypatch.setattr(OffsetSearch, "followed", noted)
+    compared = 0
+    for seed in range(40):
+        system = phased_system(seed)
+        told.clear()
+        by_offsets(analyse(system))
+        for name, reach, found, cycle in told:
+            (task,) = (one for one in system.tasks if one.element == name)
+            listed = instants.instants(system, task, reach) or ()
+            due = [task.offset + one.release * task.period for one in listed]
+            assert found == [
+                (one.time % cycle, at - one.time) for one, at in zip(listed, due, strict=True)
+            ]
+            compared += len(found)
+    assert compared > 50
 
 
 @pytest.mark.slow

@@ -26,10 +26,13 @@ from ravenchart.running.monitored import (
     NodeMonitor,
     WatchedNode,
 )
-from ravenchart.running.snapshots import RECENT, parsed
+from ravenchart.running.snapshots import parsed
 from tests.support.answers import answered
 from tests.support.recorded import MODEL
 from tests.support.snapshot_files import PUMP, held, number, processors, snapshot, trace_map
+
+RECENT = 32
+"""So many transitions and faults a snapshot lists at the most."""
 
 PRINTED = pytest.CaptureFixture[str]
 EXAMPLES = [

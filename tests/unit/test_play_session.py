@@ -19,7 +19,14 @@ from ravenchart.gen.language.terms import Ns, Value
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
 from ravenchart.workbench.play import session as play_session
-from ravenchart.workbench.play.requests import Advance, Given, PlayRequest, Put, Raise, Wait
+from ravenchart.workbench.play.requests import (
+    AdvanceWish,
+    Given,
+    PlayRequest,
+    PutWish,
+    RaiseWish,
+    WaitWish,
+)
 from ravenchart.workbench.play.session import Play
 from ravenchart.workbench.play.view import arrows, view
 from ravenchart.workbench.publishing import RefusedRequestError
@@ -46,12 +53,12 @@ def small(chart: str) -> Play:
 
 def go(play: Play, kind: str = "execution", chart: str = "unit.Main") -> None:
     """Let time go on."""
-    play.do(Advance.model_validate({"kind": kind, "chart": chart, "number": 0}))
+    play.do(AdvanceWish.model_validate({"kind": kind, "chart": chart, "number": 0}))
 
 
 def give(play: Play, event: str, value: Given | None = None) -> None:
     """Raise an event of ``unit``."""
-    play.do(Raise(kind="raise", instance="unit", event=event, value=value, number=0))
+    play.do(RaiseWish(kind="raise", instance="unit", event=event, value=value, number=0))
 
 
 def back(play: Play, kind: str = "undo") -> None:
@@ -77,18 +84,20 @@ def wishes(
             instance, what = entry.place
             if isinstance(entry, Raised):
                 found.append(
-                    Raise(kind="raise", instance=instance, event=what, value=value, number=0)
+                    RaiseWish(kind="raise", instance=instance, event=what, value=value, number=0)
                 )
             else:
                 assert value is not None
-                found.append(Put(kind="put", instance=instance, port=what, value=value, number=0))
+                found.append(
+                    PutWish(kind="put", instance=instance, port=what, value=value, number=0)
+                )
         elif chance.random() < 0.15:
             found.append(Rewind(kind=chance.choice(("undo", "redo")), number=0))
         elif chance.random() < 0.3:
-            found.append(Wait(kind="wait", duration=f"{chance.randint(1, 700)} ms", number=0))
+            found.append(WaitWish(kind="wait", duration=f"{chance.randint(1, 700)} ms", number=0))
         else:
             kind = chance.choice(KINDS)
-            found.append(Advance(kind=kind, chart=chance.choice(charts), number=0))
+            found.append(AdvanceWish(kind=kind, chart=chance.choice(charts), number=0))
     return found
 
 
@@ -102,7 +111,7 @@ def test_the_event_file_gives_the_same_trace(name: str, monkeypatch: pytest.Monk
         try:
             play.do(wish)
         except RefusedRequestError as problem:  # no time-out runs, or the next release is later
-            assert isinstance(wish, Advance | Wait), problem
+            assert isinstance(wish, AdvanceWish | WaitWish), problem
         text = play.event_file()
         if text is not None and chance.random() < 0.3:
             stimuli = stimuli_of(text, play.system)
@@ -220,19 +229,21 @@ def test_time_that_does_not_reach_what_was_wished_says_where_it_stopped(
     go(play)
     go(play, "firing")
     assert play.now.remark == "unit.Main has not fired up to 50 ms: repeat to go on"
-    play.do(Wait(kind="wait", duration="1 s", number=0))
+    play.do(WaitWish(kind="wait", duration="1 s", number=0))
     assert play.now.remark == "stopped at 100 ms: repeat to go on"
 
 
 @pytest.mark.parametrize(("wish", "text"), [
-    (Raise(kind="raise", instance="unit", event="Nope", number=0), "unit has no event `Nope`"),
-    (Raise(kind="raise", instance="none", event="Go", number=0), "there is no instance `none`"),
-    (Raise(kind="raise", instance="unit", event="Go", value=1, number=0),
+    (RaiseWish(kind="raise", instance="unit", event="Nope", number=0), "unit has no event `Nope`"),
+    (RaiseWish(kind="raise", instance="none", event="Go", number=0), "there is no instance `none`"),
+    (RaiseWish(kind="raise", instance="unit", event="Go", value=1, number=0),
      "the event Go carries no value"),
-    (Put(kind="put", instance="unit", port="x", value="a: b", number=0), "no input port `x`"),
-    (Advance(kind="execution", chart="unit.None", number=0), "the model has no chart unit.None"),
-    (Wait(kind="wait", duration="soon", number=0), "`soon` is not a duration up to one hour"),
-    (Wait(kind="wait", duration="2 ns", number=0), "the next release is at 10 ms: wait longer"),
+    (PutWish(kind="put", instance="unit", port="x", value="a: b", number=0), "no input port `x`"),
+    (AdvanceWish(kind="execution", chart="unit.None", number=0),
+     "the model has no chart unit.None"),
+    (WaitWish(kind="wait", duration="soon", number=0), "`soon` is not a duration up to one hour"),
+    (WaitWish(kind="wait", duration="2 ns", number=0),
+     "the next release is at 10 ms: wait longer"),
 ])  # fmt: skip
 def test_what_cannot_be_done_is_refused_in_words(wish: PlayRequest, text: str) -> None:
     play = small(SWITCH)
@@ -245,7 +256,7 @@ def test_what_cannot_be_done_is_refused_in_words(wish: PlayRequest, text: str) -
 
 def test_a_value_out_of_range_is_refused_with_the_range() -> None:
     play = play_of("pump")
-    wish = Put(kind="put", instance="bed", port="line", value="Wine", number=0)
+    wish = PutWish(kind="put", instance="bed", port="line", value="Wine", number=0)
     with pytest.raises(RefusedRequestError, match="is one of Clear"):
         play.do(wish)
 

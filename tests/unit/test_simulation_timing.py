@@ -17,7 +17,12 @@ from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.core.tasks import TableRow, Task
 from ravenchart.analysis.simulation import worst
 from ravenchart.analysis.simulation.engine import simulate
-from ravenchart.analysis.simulation.phases import Inside, Phase, PhaseScenario, chance_scenario
+from ravenchart.analysis.simulation.phases import (
+    InsideSection,
+    Phase,
+    PhaseScenario,
+    chance_scenario,
+)
 from tests.support.random_networks import random_network, with_epochs, with_offsets
 
 SYSTEMS = 1_000
@@ -45,7 +50,7 @@ def test_a_more_urgent_task_preempts_and_every_stretch_is_recorded() -> None:
 def test_a_section_runs_at_its_ceiling_from_its_first_tick_on() -> None:
     tasks = (Task("low", 1, 100, 100, 10), Task("high", 2, 100, 100, 3))
     sections = (Section("o", "low", 5), Section("o", "high", 1))
-    inside = {"low": Phase(inside=(Inside(2, sections[0]),))}
+    inside = {"low": Phase(inside=(InsideSection(2, sections[0]),))}
     for first, response in ((2, 3), (3, 7), (6, 4), (7, 3)):
         phases = inside | {"high": Phase(first=first)}
         seen = simulate(Network(tasks, sections=sections), PhaseScenario(phases), 50)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.findings.deadlines import findings
-from ravenchart.analysis.present.words import verdict_line
+from ravenchart.analysis.present.sentences import verdict_line
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.pipeline import load
 from tests.support.certificates import certificate, compiled

@@ -67,7 +67,7 @@ def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
                 continue
             if what not in ("entry", "exit") or name not in tree.states:
                 raise TraceError(f"{file}:{number}: error: {chart} has no behaviour {behaviour}")
-            key = (record.instance, record.region, tree.place(name))
+            key = (record.instance, record.region, tree.slots[name])
             before = active.pop(key, None)
             if what == "entry":
                 active[key] = (name, now)
@@ -122,7 +122,7 @@ def _places(system: str, charts: Charts) -> Iterator[Track]:
         chart = f"{instance}.{region}"
         yield _named(system, chart, TOP)
         for state in tree.states:
-            yield from (_named(system, chart, place) for place in tree.nested(state))
+            yield from (_named(system, chart, place) for place in tree.regions_of(state))
 
 
 def _records(lines: Iterable[str], file: str) -> Iterator[tuple[int, StepRecord | ValueRecord]]:

@@ -13,7 +13,7 @@ Given = StrictBool | StrictInt | Text | dict[Name, StrictBool | StrictInt | Text
 """A value as an event file has it."""
 
 
-class Raise(PageRequest):
+class RaiseWish(PageRequest):
     """Raise an event of an instance; without ``value`` where it carries none."""
 
     kind: Literal["raise"]
@@ -22,7 +22,7 @@ class Raise(PageRequest):
     value: Given | None = None
 
 
-class Put(PageRequest):
+class PutWish(PageRequest):
     """Give a value to an input port."""
 
     kind: Literal["put"]
@@ -31,22 +31,22 @@ class Put(PageRequest):
     value: Given
 
 
-class Advance(PageRequest):
+class AdvanceWish(PageRequest):
     """Let time go on: by one execution of a chart, until it fires, or until a time-out of it."""
 
     kind: Literal["execution", "firing", "time_out"]
     chart: Name
 
 
-class Wait(PageRequest):
+class WaitWish(PageRequest):
     """Let time go on for a duration."""
 
     kind: Literal["wait"]
     duration: Duration
 
 
-PLAY_REQUESTS = (Raise, Put, Advance, Wait, Rewind)
-PlayRequest = Raise | Put | Advance | Wait | Rewind
+PLAY_REQUESTS = (RaiseWish, PutWish, AdvanceWish, WaitWish, Rewind)
+PlayRequest = RaiseWish | PutWish | AdvanceWish | WaitWish | Rewind
 _READER: TypeAdapter[PlayRequest] = TypeAdapter(Annotated[PlayRequest, Field(discriminator="kind")])
 
 

@@ -25,7 +25,7 @@ from ravenchart.gen.model.system import Slot, System, Work
 
 from ..publishing import RefusedRequestError
 from ..requests import Rewind
-from .requests import Advance, PlayRequest, Put, Raise, Wait
+from .requests import AdvanceWish, PlayRequest, PutWish, RaiseWish, WaitWish
 
 MOST_STATES = 1_000
 """Acts that can be undone."""
@@ -46,7 +46,7 @@ class Executed:
 
 
 @dataclass(frozen=True, slots=True)
-class Situation:
+class PlayedSituation:
     """The system after an act. Its machine is branched before it goes on."""
 
     machine: Machine
@@ -81,7 +81,7 @@ class Play:
             for one in whole.instances
             for region in one.component.regions
         }
-        self._states = [Situation(Machine(whole, ObservedRegion), None)]
+        self._states = [PlayedSituation(Machine(whole, ObservedRegion), None)]
         self._at = 0
         if stimuli is not None:
             self._play(stimuli)
@@ -89,7 +89,7 @@ class Play:
     # --- What there is
 
     @property
-    def now(self) -> Situation:
+    def now(self) -> PlayedSituation:
         """The situation that is shown."""
         return self._states[self._at]
 
@@ -143,11 +143,11 @@ class Play:
         """Do what a message asks for; `RefusedRequestError` where it cannot be done."""
         try:
             match wish:
-                case Raise() | Put():
+                case RaiseWish() | PutWish():
                     self._offer(wish)
-                case Advance():
+                case AdvanceWish():
                     self._advance(wish)
-                case Wait(duration=text):
+                case WaitWish(duration=text):
                     self._wait(text)
                 case Rewind(kind=kind):
                     self._step(-1 if kind == "undo" else 1)
@@ -159,10 +159,10 @@ class Play:
             self._at += by
             self.number += 1
 
-    def _offer(self, wish: Raise | Put) -> None:
+    def _offer(self, wish: RaiseWish | PutWish) -> None:
         """Offer an event or a value for the next release."""
         at = self.next_release
-        if isinstance(wish, Raise):
+        if isinstance(wish, RaiseWish):
             place = f"{wish.instance}.{wish.event}"
             item: dict[str, object] = {"at": shown(at), "raise": place}
             item |= {} if wish.value is None else {"with": wish.value}
@@ -186,7 +186,7 @@ class Play:
             )
         )
 
-    def _advance(self, wish: Advance) -> None:
+    def _advance(self, wish: AdvanceWish) -> None:
         """Execute releases until a chart has done what is wished."""
         chart = self._charts.get(wish.chart)
         if chart is None:
@@ -241,7 +241,7 @@ class Play:
 
     # --- Executing
 
-    def _following(self, state: Situation | _Executing) -> tuple[Ns, list[Slot]]:
+    def _following(self, state: PlayedSituation | _Executing) -> tuple[Ns, list[Slot]]:
         found = state.machine.following(-1 if state.at is None else state.at)
         assert found is not None, "a chart is in the table of a periodic processor"
         return found
@@ -262,7 +262,7 @@ class Play:
         run.executed |= {chart: Executed(now, steps) for chart, steps in found.items()}
         return found
 
-    def _take(self, state: Situation) -> None:
+    def _take(self, state: PlayedSituation) -> None:
         """Go on to a new situation; what was taken back is forgotten."""
         self._states[self._at + 1 :] = [state]
         if len(self._states) > MOST_STATES + 1:
@@ -275,7 +275,7 @@ class Play:
 class _Executing:
     """A situation that is gone on from."""
 
-    def __init__(self, start: Situation) -> None:
+    def __init__(self, start: PlayedSituation) -> None:
         self.machine = branched(start.machine)
         self.at = start.at
         self.entries = list(start.entries)
@@ -283,9 +283,9 @@ class _Executing:
         self.records: list[StepRecord] = []
         self.remark = ""
 
-    def situation(self, label: str) -> Situation:
+    def situation(self, label: str) -> PlayedSituation:
         """What it has come to."""
-        return Situation(
+        return PlayedSituation(
             self.machine,
             self.at,
             tuple(self.entries),

@@ -7,7 +7,7 @@ from itertools import islice
 from typing import Any
 
 from ravenchart.behaviour.interpreter.machine import InstanceRun
-from ravenchart.behaviour.interpreter.observed import ObservedStep, Reason
+from ravenchart.behaviour.interpreter.observed import FiringReason, ObservedStep
 from ravenchart.behaviour.interpreter.region import RegionRun
 from ravenchart.behaviour.interpreter.traces import seconds
 from ravenchart.behaviour.rules.outside import external_events
@@ -18,8 +18,8 @@ from ravenchart.gen.language.terms import IntegerType, Ns, RecordType, Type, Val
 from ravenchart.gen.model.instances import End
 
 from ..pictures import arrow
+from .explained import occurrence, reason, value_text, with_value
 from .session import Executed, Play
-from .words import occurrence, reason, value_text, with_value
 
 Json = dict[str, Any]
 
@@ -67,7 +67,7 @@ def _charts(play: Play) -> Iterator[Json]:
             "instance": chart[0],
             "drawing": f"{own.component.name}.{chart[1]}",
             "period": shown(run.region.timing.period),
-            "active": [one for one in (*run.tree.states, *run.tree.pseudo) if run.is_active(one)],
+            "active": [one for one in (*run.tree.states, *run.tree.kinds) if run.is_active(one)],
             "stopped": run.stopped,
             "queue": [with_value(one.event, one.value) for one in run.queue],
             "depth": run.region.queue_depth,
@@ -112,7 +112,7 @@ def _step(step: ObservedStep, run: RegionRun) -> Json:
                 "source": one.transition.source,
                 "target": one.transition.target,
                 "label": label(one.transition).text,
-                "fired": one.reason is Reason.FIRED,
+                "fired": one.reason is FiringReason.FIRED,
                 "reason": reason(one, run.region.timing.period),
             }
             for one in step.verdicts

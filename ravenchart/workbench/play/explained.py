@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from ravenchart.behaviour.interpreter.observed import FalseGuard, ObservedStep, Reason, Verdict
+from ravenchart.behaviour.interpreter.observed import (
+    FalseGuard,
+    FiringReason,
+    Judgement,
+    ObservedStep,
+)
 from ravenchart.behaviour.interpreter.region import Completed, Happened, TimeOut
 from ravenchart.gen.draw.words import expression, trigger
 from ravenchart.gen.language.quantities import shown
@@ -38,36 +43,36 @@ def occurrence(step: ObservedStep) -> str:
     return "no occurrence: `when` conditions are read"
 
 
-def reason(verdict: Verdict, period: Ns) -> str:
+def reason(verdict: Judgement, period: Ns) -> str:
     """Why a transition fired or did not; ``period`` is that of its region."""
     names = ", ".join(verdict.because)
     match verdict.reason:
-        case Reason.FIRED:
+        case FiringReason.FIRED:
             return "fired"
-        case Reason.NOT_DUE:
+        case FiringReason.NOT_DUE:
             count = verdict.executions
             many = f"{count} executions" if count > 1 else "1 execution"
             return f"not yet due: {shown(count * period)} left ({many})"
-        case Reason.NOT_COMPLETE:
+        case FiringReason.NOT_COMPLETE:
             return f"{names} has not completed"
-        case Reason.COMPLETION_OVER:
+        case FiringReason.COMPLETION_OVER:
             return f"the completion of {verdict.transition.source} has had its step"
-        case Reason.TIME_OUT_OVER:
+        case FiringReason.TIME_OUT_OVER:
             return "its time-out has had its step"
-        case Reason.CONDITION_FALSE | Reason.GUARD_FALSE:
-            what = "condition" if verdict.reason is Reason.CONDITION_FALSE else "guard"
+        case FiringReason.CONDITION_FALSE | FiringReason.GUARD_FALSE:
+            what = "condition" if verdict.reason is FiringReason.CONDITION_FALSE else "guard"
             return f"its {what} {' and '.join(map(_false, verdict.failed))}"
-        case Reason.NO_WAY_ON:
+        case FiringReason.NO_WAY_ON:
             failed = [f"the guard {_false(one)}" for one in verdict.failed]
             failed += [f"{state} has not completed" for state in verdict.because]
             return "; ".join((f"no way on from {verdict.transition.target}", *failed))
-        case Reason.INSIDE:
+        case FiringReason.INSIDE:
             return f"a transition inside {verdict.transition.source} goes first: {names}"
-        case Reason.EARLIER:
+        case FiringReason.EARLIER:
             return f"an earlier transition of {verdict.transition.source} is taken: {names}"
-        case Reason.DEFERRED:
+        case FiringReason.DEFERRED:
             return f"the event is deferred by {names}"
-        case Reason.CONFLICT:
+        case FiringReason.CONFLICT:
             return f"conflicts with what was taken before it: {names}"
     return _another(verdict)
 
@@ -78,9 +83,9 @@ def _false(found: FalseGuard) -> str:
     return f"`{expression(found.expression)}` is false{': ' if values else ''}{values}"
 
 
-def _another(verdict: Verdict) -> str:
+def _another(verdict: Judgement) -> str:
     """Of a transition that the occurrence of the step does not trigger."""
-    later = verdict.reason is Reason.LATER
+    later = verdict.reason is FiringReason.LATER
     match verdict.transition.trigger:
         case OnEvent(event) if later:
             return f"{event} is queued: it has a later step"

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import z3
 
+from ravenchart.behaviour.tree import ChartTree
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.statechart import After, Every
 
@@ -15,13 +16,12 @@ from .outcomes import Outcome
 from .reach import Reachable
 from .stepping import Configuration
 from .threads import Edge, Thread
-from .tree import RegionTree
 
 LONGEST = 12
 """Steps of a trace that are shown; of a longer one, the last of them."""
 
 
-def where(tree: RegionTree, configuration: Configuration) -> str:
+def where(tree: ChartTree, configuration: Configuration) -> str:
     """The active leaves of a configuration."""
     if configuration.stopped:
         return "the end"
@@ -29,7 +29,7 @@ def where(tree: RegionTree, configuration: Configuration) -> str:
     return " + ".join(leaves) if leaves else "the start"
 
 
-def label(tree: RegionTree, outcome: Outcome) -> str:
+def label(tree: ChartTree, outcome: Outcome) -> str:
     """What a step is made for: an event, a time, or the transition that nothing triggers."""
     kind, subject = outcome.occurrence.kind, outcome.occurrence.subject
     if kind == "event":
@@ -44,7 +44,7 @@ def label(tree: RegionTree, outcome: Outcome) -> str:
     return ", ".join(outcome.fired[:1]) or "completion"
 
 
-def trace(tree: RegionTree, steps: Sequence[Edge]) -> str:
+def trace(tree: ChartTree, steps: Sequence[Edge]) -> str:
     """A way of a region: ``Idle -go-> Moving -done-> Idle``."""
     if not steps:
         return "the start"
