@@ -6,7 +6,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from itertools import pairwise
+from itertools import groupby, pairwise
+from operator import itemgetter
 
 from ravenchart.analysis.system.observed import VALUE, Observation
 from ravenchart.gen.language.terms import Ns
@@ -35,6 +36,10 @@ class Quantity:
     def text(self, number: int) -> str:
         """The literal, or the exact value in the unit."""
         return self.literals[number] if self.literals else f"{self.count * number:f}"
+
+    def number(self, text: str) -> int:
+        """The number of a ``text``, as above."""
+        return self.literals.index(text) if self.literals else round(Decimal(text) / self.count)
 
     def value(self, number: int) -> int | float:
         """The value in the unit: an integer where that is exact."""
@@ -78,3 +83,15 @@ def series_of(seen: Observation, process: str, late: int = 0) -> Iterator[Series
     for element in seen.map.of_kind(VALUE):
         quantity = Quantity.of(element.literals, element.unit)
         yield Series(process, element.name, quantity, tuple(points[element.number]))
+
+
+def thinned(points: Sequence[Point], intervals: int) -> Iterator[Point]:
+    """The points; of too many the first, last, least and greatest of each interval, in order."""
+    if len(points) <= 4 * intervals:
+        yield from points
+        return
+    first, span = points[0][0], points[-1][0] - points[0][0] + 1
+    for _, group in groupby(points, lambda one: (one[0] - first) * intervals // span):
+        inside = list(group)
+        least, greatest = min(inside, key=itemgetter(1)), max(inside, key=itemgetter(1))
+        yield from sorted({inside[0], least, greatest, inside[-1]})
