@@ -31,9 +31,6 @@ from .snapshots import RECENT, Snapshot, Tally
 from .traces.files import NodeTrace
 from .traces.values import Point, Quantity
 
-SHOWN = 8
-"""So many of the records of one instant are listed."""
-
 KINDS = (
     "sent", "arrived", "handled", "raised", "activity", "transition", "state", "fault", VALUE,
 )  # fmt: skip
@@ -80,6 +77,7 @@ class ReplayedController:
         }
         self._reports = [_report(trace.seen, lines) for lines in trace.reports]
         self._end = max((trace.seen.end, *(one.at for one in self._reports)))
+        self.gaps = tuple(self._gaps())
 
     @property
     def end(self) -> Ns:
@@ -134,10 +132,9 @@ class ReplayedController:
         """The records of an instant: kind, element, and what is said of it."""
         records, now = self._steps["record"], at - self.late
         faults = tuple(self._seen.faults)
-        first = bisect_left(records, now, key=_time)
-        for one in records[first : first + SHOWN]:
-            if one.time == now:
-                yield one.kind, one.element.name, _said(one, faults)
+        first, end = bisect_left(records, now, key=_time), bisect_right(records, now, key=_time)
+        for one in records[first:end]:
+            yield one.kind, one.element.name, _said(one, faults)
 
     def step(self, at: int, what: str, *, back: bool) -> Ns | None:
         """The next instant that has such a record, or the one before; None where there is none."""
@@ -153,7 +150,7 @@ class ReplayedController:
         """How many records a step of that kind can lead to."""
         return len(self._steps[what])
 
-    def gaps(self) -> Iterator[Gap]:
+    def _gaps(self) -> Iterator[Gap]:
         """When trace records and recorded values were lost, and how many."""
         reports = [_Report(NO_TIME, Observation(self._seen.map)), *self._reports]
         for before, after in pairwise(reports):

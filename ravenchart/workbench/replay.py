@@ -10,11 +10,12 @@ from typing import Any
 
 from ravenchart.analysis.system.observed import TraceError
 from ravenchart.building import checking
-from ravenchart.failures import Refused
-from ravenchart.gen.language.terms import NO_TIME, Ns
+from ravenchart.failures import Refused, Unusable
+from ravenchart.gen.language.terms import Ns
 from ravenchart.running.monitoring import KEPT
 from ravenchart.running.replaying import STEPS, Replay, ReplayedController
 from ravenchart.running.traces.files import read_traces
+from ravenchart.running.traces.simulated import is_simulated
 
 from .motion import WINDOW, plotted, shown
 from .publishing import RefusedRequestError
@@ -32,6 +33,13 @@ class ReplayView:
     def __init__(self, path: Path, traces: Sequence[Path]) -> None:
         """For the model at ``path``. Refused where a trace is not of it, or cannot be read."""
         self._checked = checking.check(path, deadlines=False)
+        for trace in traces:
+            with trace.open(encoding="utf-8", errors="replace") as lines:
+                if is_simulated(next((line.strip() for line in lines if line.strip()), "")):
+                    raise Unusable(
+                        f"{trace} is of a simulation, and a replay shows a run: `ravenchart "
+                        "simulate MODEL --open` steps through the charts of a simulation"
+                    )
         try:
             found = read_traces(self._checked, traces)
         except TraceError as fault:
@@ -76,7 +84,7 @@ class ReplayView:
                 "speed": speed,
                 "steps": {what: sum(one.count(what) for one in controllers) for what in STEPS},
                 "gaps": [
-                    {"node": one.name} | asdict(gap) for one in controllers for gap in one.gaps()
+                    {"node": one.name} | asdict(gap) for one in controllers for gap in one.gaps
                 ],
                 "cut": [one.name for one in controllers if not one.is_whole],
             },
@@ -85,13 +93,14 @@ class ReplayView:
     def _node(self, controller: ReplayedController, at: Ns) -> Json:
         node = controller.node(at)
         values = {one.name for one in node.values}
-        first = Ns(max(NO_TIME, node.now - WINDOW))
+        window = min(WINDOW, self._replay.end)
         lines = {
-            name: controller.points(name, first, Ns(node.now))
+            name: controller.points(name, Ns(node.now - window), Ns(node.now))
             for name in plotted(self._checked.system)
             if name in values
         }
         return shown(self._checked.system, node, node.events[-KEPT:], lines) | {
+            "window": window,
             "starts": controller.late if at < controller.late else None,
             "counted": controller.counted(at),
             "records": [

@@ -179,7 +179,7 @@ def test_lost_records_are_said_with_the_times_between_which_they_were_lost(
     checked: Checked, tmp_path: Path, clock: HandClock
 ) -> None:
     (controller,) = opened(checked, tmp_path, RUN, clock).controllers
-    (gap,) = controller.gaps()
+    (gap,) = controller.gaps
     assert (gap.after, gap.until, gap.what, gap.count) == (2 * SECOND, 4 * SECOND, "trace", 5)
 
 

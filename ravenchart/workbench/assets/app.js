@@ -74,6 +74,7 @@ function App() {
 
   if (!state) return html`<main class="waiting"><h1>Ravenchart workbench</h1>
     <p role="status">${reached ? "The model is being analysed." : "The workbench cannot be reached."}</p></main>`;
+  const shown = tab ?? (state.replay ? "live" : "findings");
   const send = (message) => link.current.act(message); // whoever asks shows what is refused
   const bench = { state, act, send, show, selected, select: setSelected, drawing, setDrawing, running, setRunning };
   return html`<${Bench.Provider} value=${bench}>
@@ -93,7 +94,7 @@ function App() {
     </div>
     <main class="panes">
       <${Components} />
-      <div class="middle"><${Drawing} /><${Outcomes} tab=${tab ?? (state.replay ? "live" : "findings")} setTab=${setTab} at=${at} /></div>
+      <div class="middle ${shown === "live" ? "moving" : ""}"><${Drawing} /><${Outcomes} tab=${shown} setTab=${setTab} at=${at} /></div>
       <${Processors} />
     </main>
     ${saving && html`<${SaveDialog} close=${() => setSaving(false)} act=${link.current} />`}

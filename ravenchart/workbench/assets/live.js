@@ -57,7 +57,7 @@ function Node({ of, replay }) {
       ${late && html`<span class="error">no news for ${of.age.toFixed(1)} s</span>`}</h3>
     ${of.real_time === false && html`<p class="remark">No real-time priorities: responses are not comparable with bounds.</p>`}
     ${!replay && (state.dirty || state.stale) && html`<p class="remark">Bounds are those of the saved model.</p>`}
-    ${replay && html`<p role="status">${instant(of)}</p>`}
+    ${replay && !replay.playing && html`<p role="status">${instant(of)}</p>`}
     <${Table} names=${["processor", "due>", "completed>", "misses>", "worst>", "R>", "verdict"]} rows=${of.processors.map((one) => [
       one.name, one.due ?? "-", one.completed, one.misses, time(one.worst_response), time(one.bound),
       html`<${Word} met=${one.word === "ok"} text=${one.word} />`])} />
@@ -68,7 +68,7 @@ function Node({ of, replay }) {
       one.since === null ? "-" : `${((of.now - one.since) / 1e9).toFixed(1)} s`, one.transitions])} />
     <${Table} names=${["last transitions and faults", "", "at>"]} rows=${of.last.map((one) => [
       one.element, one.kind === "fault" ? `FAULT ${one.what}` : one.what, `${seconds(one.at)} s`])} />
-    <${Table} names=${["recorded value", "last>", "", "recorded>", "at>", `last ${of.window / 1e9} s`]} rows=${of.values.map((one) => [
+    <${Table} names=${["recorded value", "last>", "", "recorded>", "at>", `last ${Number((of.window / 1e9).toFixed(1))} s`]} rows=${of.values.map((one) => [
       one.name, one.value, one.unit, one.count, `${((of.now - one.last) / 1e9).toFixed(1)} s ago`,
       html`<${Plot} of=${of.plots[one.name]} now=${of.now} span=${of.window} name=${one.name} />`])} />
     <${Table} names=${["queue", "waiting>"]} rows=${of.queues.map((one) => [one.name, `${one.waiting ?? "?"} of ${one.depth}`])} />

@@ -67,15 +67,17 @@ export function Player({ of, nodes, look }) {
       <label><span class="unseen">Step to</span><select value=${what} onChange=${(e) => setChosen(e.target.value)}>${STEPS.map(
         ([name, text]) => html`<option key=${name} value=${name}>${text} (${of.steps[name]})</option>`)}</select></label>
       <button onClick=${() => act({ kind: "next", what })}>Next</button>
-      <form onSubmit=${go}><label>Go to <input type="text" size="7" value=${typed} inputmode="decimal" spellcheck="false"
-        autocomplete="off" onInput=${(e) => setTyped(e.target.value)} /> s</label><button>Go</button></form>
-      <span class="gap"></span>
-      <span class="clock number">${seconds(at)} s of ${seconds(of.end)} s</span>
     </div>
-    <div class="track"><input type="range" aria-label="Instant" min="0" max=${of.end / 1e6} step="any"
-      value=${at / 1e6} aria-valuetext="${seconds(at)} s" onInput=${slide} onKeyDown=${key} />
-      ${of.gaps.map((gap, index) => html`<i key=${index} style=${{ left: `${100 * gap.after / of.end}%`,
-        width: `${100 * (gap.until - gap.after) / of.end}%` }}></i>`)}</div>
+    <div class="bar-of-tools">
+      <div class="track"><input type="range" aria-label="Instant" min="0" max=${of.end / 1e6} step="any" value=${at / 1e6}
+        aria-valuetext="${seconds(at)} s" onInput=${slide} onKeyDown=${key} />
+        ${of.gaps.map((gap, index) => html`<i key=${index} style=${{ left: `${100 * gap.after / of.end}%`,
+          width: `${100 * (gap.until - gap.after) / of.end}%` }}></i>`)}</div>
+      <span class="clock number">${seconds(at)} s of ${seconds(of.end)} s</span>
+      <form onSubmit=${go}><label><span class="unseen">Go to, in s</span><input type="text" size="4" value=${typed} placeholder="s"
+        inputmode="decimal" spellcheck="false" autocomplete="off" onInput=${(e) => setTyped(e.target.value)} /></label>
+        <button>Go</button></form>
+    </div>
     ${problem && html`<p class="error" role="alert">${problem}</p>`}
     ${of.gaps.length > 0 && html`<${Gaps} of=${of} nodes=${nodes} />`}
     ${of.cut.map((node) => html`<p key=${node} class="error">The trace of ${node} was cut off: the counts of its end are missing.</p>`)}
