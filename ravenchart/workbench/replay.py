@@ -93,7 +93,7 @@ class ReplayView:
     def _node(self, controller: ReplayedController, at: Ns) -> Json:
         node = controller.node(at)
         values = {one.name for one in node.values}
-        window = min(WINDOW, self._replay.end)
+        window = max(1, min(WINDOW, self._replay.end))
         lines = {
             name: controller.points(name, Ns(node.now - window), Ns(node.now))
             for name in plotted(self._checked.system)
