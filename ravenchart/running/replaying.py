@@ -29,7 +29,13 @@ from ravenchart.gen.language.terms import NO_TIME, Ns
 from .monitored import LISTED, NO_COUNTS, NodeMonitor, WatchedNode, event_of
 from .snapshots import RECENT, Snapshot, Tally
 from .traces.files import NodeTrace
-from .traces.values import Point, Quantity
+from .traces.values import Point, Quantity, extremes
+
+MOST_POINTS = 480
+"""Of more points of a value some are left out."""
+
+MOST_KEPT = 100_000
+"""So many times are kept of which the extremes are known."""
 
 KINDS = (
     "sent", "arrived", "handled", "raised", "activity", "transition", "state", "fault", VALUE,
@@ -77,6 +83,7 @@ class ReplayedController:
         }
         self._reports = [_report(trace.seen, lines) for lines in trace.reports]
         self._end = max((trace.seen.end, *(one.at for one in self._reports)))
+        self._kept: dict[tuple[int, int, int], list[Point]] = {}
         self.gaps = tuple(self._gaps())
 
     @property
@@ -161,13 +168,35 @@ class ReplayedController:
                     yield Gap(*times, what, count)
 
     def points(self, value: str, first: Ns, last: Ns) -> tuple[Quantity, Sequence[Point]]:
-        """What a value was in a time, with the point before it that holds on into it."""
+        """What a value was in a time, with the point before it that holds on into it.
+
+        Of very many points there are those that show their extremes.
+        """
         element = self._seen.map.named(value, VALUE)
+        quantity = Quantity.of(element.literals, element.unit)
         records = self._of[element.number, KINDS.index(VALUE)]
         start = max(0, bisect_right(records, first, key=_time) - 1)
-        inside = records[start : bisect_right(records, last, key=_time)]
-        quantity = Quantity.of(element.literals, element.unit)
-        return quantity, [(one.time, one.value) for one in inside]
+        end = bisect_right(records, last, key=_time)
+        if end - start <= MOST_POINTS:
+            return quantity, [(one.time, one.value) for one in records[start:end]]
+        grain = 4 * (last - first) // MOST_POINTS
+        points: list[Point] = []
+        while start < end:
+            place = records[start].time // grain
+            later = bisect_left(records, (place + 1) * grain, lo=start, key=_time)
+            points += self._extremes(element.number, start, min(later, end))
+            start = later
+        return quantity, points
+
+    def _extremes(self, number: int, start: int, end: int) -> list[Point]:
+        """Those of some records of a value; kept, since a plot that moves asks again for most."""
+        key = number, start, end
+        if key not in self._kept:
+            if len(self._kept) >= MOST_KEPT:
+                self._kept.clear()
+            records = self._of[number, KINDS.index(VALUE)][start:end]
+            self._kept[key] = extremes([(one.time, one.value) for one in records])
+        return self._kept[key]
 
 
 def _report(trace: Observation, lines: Sequence[str]) -> _Report:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,7 +12,7 @@ from ravenchart.analysis.present.plots import INK, svg
 from ravenchart.analysis.system.observed import Observation
 
 from .plots import TRUE_COLOUR
-from .traces.values import Series, series_of, thinned
+from .traces.values import Point, Series, extremes, series_of
 
 MOST_PANELS = 24
 """Values that are drawn: the first ones of the model."""
@@ -41,7 +42,7 @@ def values(series: Sequence[Series]) -> Figure:
 
 
 def _panel(panel: Axes, series: Series) -> None:
-    quantity, points = series.quantity, list(thinned(series.points, MOST_INTERVALS))
+    quantity, points = series.quantity, list(thinned(series.points))
     times = [at / 1e9 for at, _ in points]
     heights = [number if quantity.literals else quantity.value(number) for _, number in points]
     panel.plot(times, heights, color=TRUE_COLOUR, linewidth=1.4, drawstyle="steps-post")
@@ -55,3 +56,13 @@ def _panel(panel: Axes, series: Series) -> None:
     for side, spine in panel.spines.items():
         spine.set_visible(side in ("left", "bottom"))
         spine.set_color(INK)
+
+
+def thinned(points: Sequence[Point]) -> Iterator[Point]:
+    """The points, or of too many what still shows their extremes, in order of time."""
+    if len(points) <= 4 * MOST_INTERVALS:
+        yield from points
+        return
+    first, span = points[0][0], points[-1][0] - points[0][0] + 1
+    for _, group in groupby(points, lambda one: (one[0] - first) * MOST_INTERVALS // span):
+        yield from extremes(list(group))

@@ -10,7 +10,7 @@ from typing import Any
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
 from ravenchart.running.monitored import WatchedEvent, WatchedNode
-from ravenchart.running.traces.values import Point, Quantity, thinned
+from ravenchart.running.traces.values import Point, Quantity
 
 Json = dict[str, Any]
 
@@ -19,9 +19,6 @@ WINDOW = Ns(30_000_000_000)
 
 MOST_PLOTS = 24
 """Values that are plotted: the first ones of the model."""
-
-INTERVALS = 60
-"""Of more points the first and last, the least and greatest of each interval are drawn."""
 
 Lines = Mapping[str, tuple[Quantity, Sequence[Point]]]
 """Of each value what its numbers mean, and what it was when."""
@@ -43,11 +40,9 @@ def plotted(system: System) -> Sequence[str]:
 
 
 def _plot(quantity: Quantity, points: Sequence[Point]) -> Json:
-    drawn = thinned(points, INTERVALS)
-    numbers = [
-        (at, number if quantity.literals else quantity.value(number)) for at, number in drawn
-    ]
-    return {"literals": list(quantity.literals), "points": numbers}
+    value = int if quantity.literals else quantity.value
+    drawn = [(at, value(number)) for at, number in points]
+    return {"literals": list(quantity.literals), "points": drawn}
 
 
 class LastValues:

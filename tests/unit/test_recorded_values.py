@@ -26,8 +26,7 @@ from ravenchart.running import value_plots
 from ravenchart.running.judge import failures
 from ravenchart.running.process import Ended
 from ravenchart.running.traces.timeline import Slice, Timeline, Track
-from ravenchart.running.traces.values import Quantity, spans, thinned
-from ravenchart.running.value_plots import MOST_INTERVALS
+from ravenchart.running.traces.values import Quantity, spans
 from tests.support.pump import loaded
 from tests.support.recorded import MODEL, asammdf, read_back
 from tests.support.trace_events import events_of, well_formed
@@ -341,10 +340,10 @@ def test_of_very_many_values_the_extremes_are_drawn() -> None:
     points = [(Ns(n * 1000), n % 7) for n in range(100_000)]
     points[51_234] = (points[51_234][0], 99)
     points[77_777] = (points[77_777][0], -99)
-    found = list(thinned(points, MOST_INTERVALS))
-    assert len(found) <= 4 * MOST_INTERVALS and found == sorted(set(found))
+    found = list(value_plots.thinned(points))
+    assert len(found) <= 4 * value_plots.MOST_INTERVALS and found == sorted(set(found))
     assert {points[0], points[-1], points[51_234], points[77_777]} <= set(found) <= set(points)
-    assert list(thinned(points[:2000], MOST_INTERVALS)) == points[:2000]
+    assert list(value_plots.thinned(points[:2000])) == points[:2000]
 
 
 def test_states_inside_others_are_values_with_gaps() -> None:

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import random
+import shutil
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from ravenchart.analysis.system.observed import TraceError
+from ravenchart.analysis.system.observed import TraceError, read_map
 from ravenchart.building import checking
 from ravenchart.building.checking import Checked
-from ravenchart.running.replaying import Replay
+from ravenchart.command_line import main
+from ravenchart.gen.language.terms import Ns
+from ravenchart.running.replaying import MOST_POINTS, Replay
 from ravenchart.running.traces.files import read_traces
+from tests.support import recorded
 from tests.support.recordings import monitored, random_trace, report, write
 from tests.support.snapshot_files import PUMP, number, trace_map
 
@@ -203,3 +207,25 @@ def test_a_trace_of_another_model_or_a_broken_one_is_refused_with_its_place(
     broken = write(tmp_path / "broken.txt", trace_map(), [*RUN[:2], "T 5 State 9999 0"])
     with pytest.raises(TraceError, match=r"broken\.txt:5: error: the map has no element 9999"):
         read_traces(checked, [broken])
+
+
+def test_of_very_many_values_the_extremes_are_left_at_every_instant(tmp_path: Path) -> None:
+    model = Path(shutil.copytree(recorded.FOLDER, tmp_path / "recorded")) / "model.yaml"
+    assert main(["generate", str(model)]) == 0
+    names = read_map((model.parent / "generated" / "trace.json").read_text(encoding="utf-8"))
+    heat = names.named("taker.heat", "value").number
+    chance = random.Random(5)
+    values = [(n * 1_000_000, chance.randrange(100)) for n in range(20_000)]
+    values[7_123], values[9_999] = (values[7_123][0], 900), (values[9_999][0], -300)
+    lines = [f"V {at} {heat} {value}" for at, value in values]
+    trace = write(tmp_path / "trace.txt", names, [*lines, "END"])
+    checked = checking.check(model)
+    (controller,) = Replay(checked.analysis, read_traces(checked, [trace])).controllers
+    for last in (*range(10_000_500_000, 12_000_000_000, 77_000_000), 10_000_500_000):
+        first = last - 8_000_000_000
+        _, points = controller.points("taker.heat", Ns(first), Ns(last))
+        inside = [one for one in values if first - 1_000_000 <= one[0] <= last]
+        assert points == sorted(set(points)) and set(points) <= set(inside)
+        assert len(points) <= MOST_POINTS + 8, "a part of an interval at either end"
+        assert {values[7_123], values[9_999], inside[-1]} <= set(points)
+        assert points[0][0] <= first < points[1][0]

@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from itertools import groupby, pairwise
+from itertools import pairwise
 from operator import itemgetter
 
 from ravenchart.analysis.system.observed import VALUE, Observation
@@ -85,13 +85,7 @@ def series_of(seen: Observation, process: str, late: int = 0) -> Iterator[Series
         yield Series(process, element.name, quantity, tuple(points[element.number]))
 
 
-def thinned(points: Sequence[Point], intervals: int) -> Iterator[Point]:
-    """The points; of too many the first, last, least and greatest of each interval, in order."""
-    if len(points) <= 4 * intervals:
-        yield from points
-        return
-    first, span = points[0][0], points[-1][0] - points[0][0] + 1
-    for _, group in groupby(points, lambda one: (one[0] - first) * intervals // span):
-        inside = list(group)
-        least, greatest = min(inside, key=itemgetter(1)), max(inside, key=itemgetter(1))
-        yield from sorted({inside[0], least, greatest, inside[-1]})
+def extremes(points: Sequence[Point]) -> list[Point]:
+    """The first, last, least and greatest of some points, in order of time."""
+    least, greatest = min(points, key=itemgetter(1)), max(points, key=itemgetter(1))
+    return sorted({points[0], least, greatest, points[-1]})
