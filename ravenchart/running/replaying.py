@@ -118,8 +118,7 @@ class ReplayedController:
     def _snapshot(self, now: Ns, number: int) -> Snapshot:
         """What the controller had to report: records until now, and the counts before them."""
         listed = bisect_right(self._listed, now, key=_time)
-        unknown = Observation(self._seen.map, faults=dict.fromkeys(self._seen.faults, 0))
-        counts = self._reports[number - 1].seen if number else unknown
+        counts = self._reports[number - 1].seen if number else self._before_reports()
         seen = replace(
             counts,
             records=self._listed[max(0, listed - RECENT) : listed],
@@ -134,6 +133,12 @@ class ReplayedController:
             if count:
                 tallies.append(Tally(count, records[count - 1]))
         return Snapshot(number, seen, tuple(tallies))
+
+    def _before_reports(self) -> Observation:
+        """No counts. Where the first report has lost trace records, those before it have gaps."""
+        lost = {TRACE: self._reports[0].seen.trace_lost} if self._reports else {}
+        faults = dict.fromkeys(self._seen.faults, 0)  # their names
+        return Observation(self._seen.map, faults=faults, counts=lost)
 
     def records(self, at: int) -> Iterator[tuple[str, str, str]]:
         """The records of an instant: kind, element, and what is said of it."""

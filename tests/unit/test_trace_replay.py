@@ -172,6 +172,7 @@ def test_counts_are_those_of_the_last_report_and_what_has_none_is_said(
                            (SECOND, 3 * SECOND, 4 * SECOND))  # fmt: skip
     assert before.processors == []
     assert any("the trace has none before 2.000 s" in text for text in before.not_seen)
+    assert any(one.waiting is not None for one in before.queues)
     assert {one.completed for one in during.processors} == {40}
     assert controller.counted(3 * SECOND) == 2 * SECOND
     assert {one.completed for one in end.processors} == {80}
@@ -229,3 +230,11 @@ def test_of_very_many_values_the_extremes_are_left_at_every_instant(tmp_path: Pa
         assert len(points) <= MOST_POINTS + 8, "a part of an interval at either end"
         assert {values[7_123], values[9_999], inside[-1]} <= set(points)
         assert points[0][0] <= first < points[1][0]
+
+
+def test_queues_are_not_known_where_records_were_lost_before_the_first_report(
+    checked: Checked, tmp_path: Path, clock: HandClock
+) -> None:
+    lossy = [*RUN[:3], *report(trace_map(), 4 * SECOND, 80, 5), "END"]
+    (controller,) = opened(checked, tmp_path, lossy, clock).controllers
+    assert {one.waiting for one in controller.node(SECOND).queues} == {None}

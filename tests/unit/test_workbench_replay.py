@@ -143,6 +143,16 @@ def test_a_simulation_is_no_run_and_the_message_says_what_shows_it(tmp_path: Pat
         ReplayView(PUMP, [path])
 
 
+def test_a_model_without_its_program_has_no_names_and_the_command_in_the_message_writes_them(
+    trace: Path, tmp_path: Path
+) -> None:
+    model = Path(shutil.copy(PUMP, tmp_path))
+    with pytest.raises(Unusable, match=f"missing: .*; `ravenchart generate {model}` writes them"):
+        ReplayView(model, [trace])
+    assert main(["generate", str(model)]) == 0
+    assert ReplayView(model, [trace]).look(None)["nodes"]
+
+
 # --- The server
 
 

@@ -25,7 +25,10 @@ class NodeTrace:
 
 
 def read_traces(checked: Checked, paths: Sequence[Path]) -> dict[str, NodeTrace]:
-    """The traces by node. TraceError where one does not fit the model, Unusable without a node."""
+    """The traces by node. TraceError where one does not fit the model.
+
+    Unusable where a file does not name its node, or the program is not generated.
+    """
     programs = {one.node: one for one in programs_of(checked)}
     found: dict[str, NodeTrace] = {}
     for path in paths:
@@ -34,6 +37,9 @@ def read_traces(checked: Checked, paths: Sequence[Path]) -> dict[str, NodeTrace]
             names = ", ".join(f"trace-{one}.txt" for one in programs)
             raise Unusable(f"{path} does not name its node: {checked.system.name} has {names}")
         names_of = programs[node].generated / TRACE_MAP
+        if not names_of.exists():
+            text = f"the names of its elements are missing: {names_of}; `ravenchart generate"
+            raise Unusable(f"{path}: {text} {checked.path}` writes them")
         trace_map = read_map(names_of.read_text(encoding="utf-8"), str(names_of))
         reports: list[list[str]] = []
         with path.open(encoding="ascii", errors="replace") as lines:

@@ -46,14 +46,14 @@ export function Live() {
   if (!found) return html`<p role="status">Running controllers are being looked for …</p>`;
   return html`${found.replay && html`<${Player} of=${found.replay} nodes=${found.nodes.length} look=${() => look.current()} />`}
     ${found.text && html`<p>${found.text}</p>`}
-    ${found.nodes.map((node) => html`<${Node} key=${node.node} of=${node} replay=${found.replay} />`)}`;
+    ${found.nodes.map((node) => html`<${Node} key=${node.node} of=${node} replay=${found.replay} nodes=${found.nodes.length} />`)}`;
 }
 
-function Node({ of, replay }) {
+function Node({ of, replay, nodes }) {
   const { state } = useBench();
   const late = !replay && of.process !== null && of.age > LATE;
   return html`<section class="live" aria-label="Controller of ${of.node}">
-    <h3>${of.node}: ${replay ? recorded(of) : running(of)}
+    <h3>${of.node}: ${replay ? recorded(of, nodes) : running(of)}
       ${late && html`<span class="error">no news for ${of.age.toFixed(1)} s</span>`}</h3>
     ${of.real_time === false && html`<p class="remark">No real-time priorities: responses are not comparable with bounds.</p>`}
     ${!replay && (state.dirty || state.stale) && html`<p class="remark">Bounds are those of the saved model.</p>`}
@@ -61,8 +61,8 @@ function Node({ of, replay }) {
     <${Table} names=${["processor", "due>", "completed>", "misses>", "worst>", "R>", "verdict"]} rows=${of.processors.map((one) => [
       one.name, one.due ?? "-", one.completed, one.misses, time(one.worst_response), time(one.bound),
       html`<${Word} met=${one.word === "ok"} text=${one.word} />`])} />
-    <p class=${any(of.faults) ? "error" : ""}>faults: ${counts(of.faults)}</p>
-    <p class=${any(of.lost) ? "error" : ""}>lost: ${counts(of.lost)}</p>
+    ${!(replay && of.counted === null) && html`<p class=${any(of.faults) ? "error" : ""}>faults: ${counts(of.faults)}</p>
+    <p class=${any(of.lost) ? "error" : ""}>lost: ${counts(of.lost)}</p>`}
     <${Table} names=${["chart", "state", "for>", "transitions>"]} rows=${of.charts.map((one) => [
       html`<${Chart} name=${one.name} of=${of.drawn} />`, one.state ?? "-",
       one.since === null ? "-" : `${((of.now - one.since) / 1e9).toFixed(1)} s`, one.transitions])} />
@@ -82,11 +82,11 @@ function running(of) {
   return `${doing}, ${seconds(of.now)} s, snapshot ${of.sequence}`;
 }
 
-function recorded(of) {
+function recorded(of, nodes) {
   if (of.starts !== null) return `starts at ${seconds(of.starts)} s`;
   const end = of.process !== null ? "" : of.ended ? ", ended in order" : ", the trace was cut off here";
   const counted = of.counted === null ? "" : `, counts of ${seconds(of.counted)} s`;
-  return `${seconds(of.now)} s${counted}${end}`;
+  return `${seconds(of.now)} s${nodes > 1 ? " after its start" : ""}${counted}${end}`;
 }
 
 /** The records of the instant that a replay shows. */
