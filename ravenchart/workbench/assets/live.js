@@ -58,8 +58,9 @@ function Node({ of, replay, nodes }) {
     ${of.real_time === false && html`<p class="remark">No real-time priorities: responses are not comparable with bounds.</p>`}
     ${!replay && (state.dirty || state.stale) && html`<p class="remark">Bounds are those of the saved model.</p>`}
     ${replay && !replay.playing && html`<p role="status">${instant(of)}</p>`}
-    <${Table} names=${["processor", "due>", "completed>", "misses>", "worst>", "R>", "verdict"]} rows=${of.processors.map((one) => [
+    <${Table} names=${["processor", "due>", "completed>", "misses>", "worst>", "R>", "worst of R", "verdict"]} rows=${of.processors.map((one) => [
       one.name, one.due ?? "-", one.completed, one.misses, time(one.worst_response), time(one.bound),
+      one.bound && html`<${Share} of=${one.worst_response / one.bound} />`,
       html`<${Word} met=${one.word === "ok"} text=${one.word} />`])} />
     ${!(replay && of.counted === null) && html`<p class=${any(of.faults) ? "error" : ""}>faults: ${counts(of.faults)}</p>
     <p class=${any(of.lost) ? "error" : ""}>lost: ${counts(of.lost)}</p>`}
@@ -87,6 +88,13 @@ function recorded(of, nodes) {
   const end = of.process !== null ? "" : of.ended ? ", ended in order" : ", the trace was cut off here";
   const counted = of.counted === null ? "" : `, counts of ${seconds(of.counted)} s`;
   return `${seconds(of.now)} s${nodes > 1 ? " after its start" : ""}${counted}${end}`;
+}
+
+/** A response as a share of its bound. */
+function Share({ of }) {
+  const width = `${Math.min(100, 100 * of)}%`;
+  return html`<span class="bar" role="img" aria-label="${Math.round(100 * of)} % of R"><span
+    class="part ${of > 1 ? "late" : "own"}" style=${{ width }}></span></span>`;
 }
 
 /** The records of the instant that a replay shows. */
