@@ -5,8 +5,9 @@ The file holds one record a line, times in nanoseconds from the controller's sta
 generated from, ``T time kind element value``, ``V time element value`` of recorded values, then
 the counts ``P processor releases misses worst_response``, ``A row worst_execution``,
 ``H fault count``, ``L what count``, ``W host_latency``, ``N now`` before the counts that
-were read then, ``F feeds``, and ``END``. Without ``END`` the run was cut off. The map tells
-what each element number stands for.
+were read then, ``F feeds``, and ``END``. Counts come at the end, and ten times a second where
+a monitor can watch: the last ones are those of the run. Without ``END`` the run was cut off.
+The map tells what each element number stands for.
 """
 
 from __future__ import annotations

@@ -6,16 +6,10 @@ import argparse
 from itertools import chain
 from pathlib import Path
 
-from ravenchart.analysis.system.observed import (
-    Observation,
-    TraceError,
-    of_model,
-    read_map,
-    read_trace,
-)
+from ravenchart.analysis.system.observed import TraceError
 from ravenchart.building.checking import Checked
-from ravenchart.building.programs import TRACE_MAP, programs_of
 from ravenchart.failures import OK, Refused, Unusable
+from ravenchart.running.traces.files import read_traces
 from ravenchart.running.traces.formats import FORMATS
 from ravenchart.running.traces.simulated import is_simulated, of_simulation
 from ravenchart.running.traces.timeline import Timeline, of_run
@@ -82,21 +76,5 @@ def _timeline(checked: Checked, paths: list[Path]) -> Timeline:
             if len(paths) > 1:
                 raise Unusable("a simulation has one trace for all nodes: give one file")
             return of_simulation(checked.system, chain([first], lines), str(paths[0]))
-    return of_run(checked.system, _observed(checked, paths))
-
-
-def _observed(checked: Checked, paths: list[Path]) -> dict[str, Observation]:
-    """The traces of the nodes, by node."""
-    programs = {one.node: one for one in programs_of(checked)}
-    found: dict[str, Observation] = {}
-    for path in paths:
-        node = path.stem.removeprefix("trace-") if len(programs) > 1 else next(iter(programs))
-        if node not in programs:
-            names = ", ".join(f"trace-{one}.txt" for one in programs)
-            raise Unusable(f"{path} does not name its node: {checked.system.name} has {names}")
-        names_of = programs[node].generated / TRACE_MAP
-        trace_map = read_map(names_of.read_text(encoding="utf-8"), str(names_of))
-        with path.open(encoding="ascii", errors="replace") as lines:
-            found[node] = read_trace(lines, trace_map, str(path))
-        of_model(found[node], checked.system.digest, str(path))
-    return found
+    traces = read_traces(checked, paths)
+    return of_run(checked.system, {node: one.seen for node, one in traces.items()})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from ravenchart.failures import OK
 from ravenchart.terminal import progress
@@ -14,18 +15,28 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
     common.add_port(sub)
+    sub.add_argument(
+        "--replay", type=Path, action="append", default=[], metavar="FILE",
+        help="show a recorded run in place of running controllers: trace.txt; once for each of "
+        "several nodes, trace-NODE.txt",
+    )  # fmt: skip
     sub.add_argument("--no-open", action="store_true", help="print the address, open no browser")
 
 
 def execute(options: argparse.Namespace) -> int:
     """Serve until it is stopped; the exit status."""
     from ravenchart.workbench.hub import Hub
+    from ravenchart.workbench.replay import ReplayView
     from ravenchart.workbench.server import WorkbenchPages
     from ravenchart.workbench.session import Session
 
     def made() -> WorkbenchPages:
         with progress(f"read and analyse {options.model}"):
-            return WorkbenchPages(Hub(Session(options.model)))
+            session = Session(options.model)
+        if not options.replay:
+            return WorkbenchPages(Hub(session))
+        with progress("read the trace"):
+            return WorkbenchPages(Hub(session, ReplayView(options.model, options.replay)))
 
     common.serve(
         options,

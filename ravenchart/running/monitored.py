@@ -31,6 +31,9 @@ NEVER_SEEN = (
 )
 """What no controller reports."""
 
+NO_COUNTS = "processors: they are reported by a program that `ravenchart build` has linked"
+"""What is said where a snapshot has none."""
+
 
 @dataclass(slots=True)
 class WatchedProcessor(Described):
@@ -76,6 +79,8 @@ class WatchedChart(Described):
     """When it was entered, in ns; null as `state`."""
     transitions: int
     """How many transitions were taken, those of its orthogonal states included."""
+    taken: str | None
+    """The transition that was taken last; null before the first."""
 
 
 @dataclass(slots=True)
@@ -216,7 +221,7 @@ class NodeMonitor:
                 for name, longest in seen.executions.items()
             ],
             charts=list(self._charts(snapshot, tallies)),
-            events=[_event(one, tuple(seen.faults)) for one in events],
+            events=[event_of(one, tuple(seen.faults)) for one in events],
             unlisted=unlisted,
             traffic=[
                 WatchedTraffic(
@@ -258,11 +263,13 @@ class NodeMonitor:
         states = {name: t.last for (name, kind), t in tallies.items() if kind == "state"}
         for element in snapshot.seen.map.of_kind("region"):
             last = states.get(element.name) if self._active(element.name, states) else None
+            taken = tallies.get((element.name, "transition"))
             yield WatchedChart(
                 element.name,
                 None if last is None else last.text,
                 None if last is None else last.time,
-                _count(tallies.get((element.name, "transition"))),
+                _count(taken),
+                None if taken is None else taken.last.text,
             )
 
     def _active(self, region: str, states: Mapping[str, TraceRecord]) -> bool:
@@ -299,7 +306,7 @@ class NodeMonitor:
         if snapshot.seen.losses.get("snapshot"):
             yield "what found no room in a snapshot: `lost` counts it"
         if not snapshot.seen.processors:
-            yield "processors: they are reported by a program that `ravenchart build` has linked"
+            yield NO_COUNTS
 
 
 def _count(tally: Tally | None) -> int:
@@ -313,7 +320,7 @@ def _value(tally: Tally) -> WatchedValue:
     return WatchedValue(last.element.name, text, quantity.unit, tally.count, last.time)
 
 
-def _event(record: TraceRecord, faults: Sequence[str]) -> WatchedEvent:
+def event_of(record: TraceRecord, faults: Sequence[str]) -> WatchedEvent:
     """``faults`` are the names of faults, in the order of their numbers."""
     what = record.text
     if record.kind == "fault" and 0 <= record.value < len(faults):

@@ -34,6 +34,9 @@ MARK = ".live-"
 FIRST_LINE = 22
 """Bytes of the first line."""
 
+RECENT = 32
+"""So many transitions and faults a snapshot lists at the most."""
+
 TRIES = 20
 """So often a snapshot is read that is being written."""
 

@@ -12,7 +12,7 @@ from ravenchart.analysis.present.plots import INK, svg
 from ravenchart.analysis.system.observed import Observation
 
 from .plots import TRUE_COLOUR
-from .traces.values import Point, Series, series_of
+from .traces.values import Point, Series, extremes, series_of
 
 MOST_PANELS = 24
 """Values that are drawn: the first ones of the model."""
@@ -65,10 +65,4 @@ def thinned(points: Sequence[Point]) -> Iterator[Point]:
         return
     first, span = points[0][0], points[-1][0] - points[0][0] + 1
     for _, group in groupby(points, lambda one: (one[0] - first) * MOST_INTERVALS // span):
-        inside = list(group)
-        least, greatest = min(inside, key=_number), max(inside, key=_number)
-        yield from sorted({inside[0], least, greatest, inside[-1]})
-
-
-def _number(point: Point) -> int:
-    return point[1]
+        yield from extremes(list(group))

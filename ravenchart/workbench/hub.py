@@ -10,18 +10,24 @@ from typing import Any, TypeVar
 from ravenchart.building import drawings
 from ravenchart.editing.evaluation import Evaluation
 
+from . import pictures
 from .aside import Aside
 from .changes import ChangeRefusedError
 from .publishing import Publisher
+from .replay import ReplayView
 from .requests import (
     Move,
     PageRequest,
+    Play,
     Rewind,
     Save,
     SearchTables,
+    Seek,
     SetProcessor,
+    SetSpeed,
     SetTime,
     Settle,
+    StepTo,
     TakeTables,
 )
 from .searching import Search
@@ -40,9 +46,10 @@ PAUSE = 0.4
 class Hub(Publisher):
     """Publishes a session, looks at its files; processes aside find advice and tables."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, replay: ReplayView | None = None) -> None:
         """For one session; to be made before the event loop runs."""
         self.session = session
+        self.replay = replay
         self._room: tuple[int, list[str]] = (-1, [])
         self._search: Search | None = None
         super().__init__(session)
@@ -90,6 +97,10 @@ class Hub(Publisher):
                 if kind == "adopt":
                     self._search.adopt(self.session)
                     self._search = None
+            case Play() | SetSpeed() | Seek() | StepTo():
+                if self.replay is None:
+                    raise ChangeRefusedError("nothing is replayed: start with --replay FILE")
+                self.replay.do(wish)
 
     async def act(self, wish: PageRequest) -> bytes:
         """Do what a message asks for; what a search does goes on by itself."""
@@ -106,7 +117,8 @@ class Hub(Publisher):
         number, lines = self._room
         room = lines if number == self.session.number else None
         search = None if self._search is None else self._search.told(self.session)
-        return json.dumps(view(self.session) | {"room": room, "search": search}).encode()
+        more = {"room": room, "search": search, "replay": self.replay is not None}
+        return json.dumps(view(self.session) | more).encode()
 
     def _published(self) -> None:
         """Look for advice on the state that is shown now."""
@@ -152,7 +164,11 @@ class Hub(Publisher):
     def _drawing(self, name: str) -> tuple[str, dict[str, Any]] | None:
         analysis = self.session.good.analysis
         dot = None if analysis is None else drawings.text(analysis.system, name)
-        return None if dot is None else (dot, {"places": located(self.session, name)})
+        if analysis is None or dot is None:
+            return None
+        chart = drawings.charts(analysis.system).get(name)
+        arrows = {} if chart is None else pictures.arrows(chart[1])
+        return dot, {"places": located(self.session, name), "arrows": arrows}
 
 
 def _alike(now: Evaluation, row: str) -> list[str]:

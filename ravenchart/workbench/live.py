@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import asdict
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -13,6 +13,8 @@ from ravenchart.building.checking import Checked
 from ravenchart.failures import Failure
 from ravenchart.running import monitoring
 from ravenchart.running.monitoring import WatchedController
+
+from .motion import LastValues, shown
 
 
 class LiveView:
@@ -26,6 +28,7 @@ class LiveView:
         self._digest: str | None = None
         self._stack = ExitStack()
         self._watched: list[WatchedController] = []
+        self._values: list[LastValues] = []
 
     def look(self, digest: str | None) -> dict[str, Any]:
         """The nodes as they are now; ``text`` says why there is none, or no other.
@@ -40,17 +43,20 @@ class LiveView:
                 text = "The saved model has errors: its controllers are not looked for."
             elif all(one.node.process is None for one in self._watched) or digest != self._digest:
                 text = self._attached(digest)
-            nodes = [
-                asdict(one.node) | {"last": [asdict(e) for e in one.last], "age": one.age}
-                for one in self._watched
-            ]
-            return {"text": text, "nodes": nodes}
+            return {"text": text, "nodes": list(self._nodes())}
+
+    def _nodes(self) -> Iterator[dict[str, Any]]:
+        for one, values in zip(self._watched, self._values, strict=True):
+            assert self._checked is not None
+            lines = values.look(one.node)
+            yield shown(self._checked.system, one.node, one.last, lines) | {"age": one.age}
 
     def _attached(self, digest: str) -> str:
         """Watch what runs now, in place of what has ended; why there is nothing to watch."""
         try:
             if self._checked is None or digest != self._digest:
-                self._checked, self._digest, self._watched = None, digest, []
+                self._checked, self._digest = None, digest
+                self._watched, self._values = [], []
                 self._stack.close()
                 self._checked = checking.check(self._path, deadlines=False)
             files = monitoring.found(self._checked, lambda text: None)
@@ -61,6 +67,7 @@ class LiveView:
                 watched = made.enter_context(monitoring.watching(self._checked, files))
                 self._stack.close()
                 self._stack, self._watched = made.pop_all(), watched
+                self._values = [LastValues(self._checked.system) for _ in watched]
         except (Failure, OSError) as problem:
             return str(problem).removeprefix("ravenchart: error: ")
         return ""

@@ -62,6 +62,11 @@ def _of_chart(component: Component, region: Region) -> Iterator[Located]:
             yield title, line, transition.origin
 
 
+def arrows(region: Region) -> dict[str, list[tuple[str, str]]]:
+    """Of each transition of a chart, which groups of its drawing show it, with their lines."""
+    return {one.name: list(arrow(one)) for one in region.transitions}
+
+
 def arrow(transition: Transition) -> Iterator[tuple[str, str]]:
     """The titles of the groups that draw a transition, with each line of its label.
 

@@ -79,7 +79,38 @@ class TakeTables(PageRequest):
     kind: Literal["stop", "adopt"]
 
 
-AnyRequest = Move | SetTime | SetProcessor | Rewind | Save | Settle | SearchTables | TakeTables
+class Play(PageRequest):
+    """Let the time of a replay go on, or rest."""
+
+    kind: Literal["play", "pause"]
+
+
+class SetSpeed(PageRequest):
+    """Let the time of a replay go on so many times as fast as it did."""
+
+    kind: Literal["speed"]
+    speed: float = Field(ge=0.01, le=100)
+
+
+class Seek(PageRequest):
+    """Go to an instant of a replay, in ns."""
+
+    kind: Literal["seek"]
+    at: int = Field(ge=0)
+
+
+class StepTo(PageRequest):
+    """Go to the next instant of a replay that has such a record, or to the one before."""
+
+    kind: Literal["next", "previous"]
+    what: Literal["event", "value", "record"]
+
+
+ReplayRequest = Play | SetSpeed | Seek | StepTo
+AnyRequest = (
+    Move | SetTime | SetProcessor | Rewind | Save | Settle | SearchTables | TakeTables
+    | Play | SetSpeed | Seek | StepTo
+)  # fmt: skip
 _READER: TypeAdapter[AnyRequest] = TypeAdapter(Annotated[AnyRequest, Field(discriminator="kind")])
 
 

@@ -12,6 +12,7 @@ from . import requests
 from .hub import Hub
 from .live import LiveView
 from .pages import Pages, error
+from .replay import ReplayView
 from .view import source
 
 
@@ -24,7 +25,7 @@ class WorkbenchPages(Pages):
         """For one session."""
         super().__init__(hub)
         self.hub = hub
-        self.live_view = LiveView(hub.session.path)
+        self.live_view: LiveView | ReplayView = hub.replay or LiveView(hub.session.path)
 
     def read(self, body: bytes) -> requests.PageRequest:
         """The message of a request, or `MalformedError`."""
@@ -40,7 +41,7 @@ class WorkbenchPages(Pages):
         ]
 
     async def live(self, request: Request) -> Response:
-        """The controllers of the saved model that run now."""
+        """The controllers of the saved model that run now, or those of the replay."""
         digest = await self.hub.ask(lambda session: session.saved_digest)
         return JSONResponse(await asyncio.to_thread(self.live_view.look, digest))
 

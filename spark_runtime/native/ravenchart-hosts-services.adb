@@ -135,7 +135,7 @@ is
    procedure Put (Text : String) is
    begin
       Snapshots.Note (Text);
-      if Report_File /= No_File and then not Snapshots.Is_Gathering then
+      if Report_File /= No_File then
          if Text'Length > Buffer'Last - Filled then
             Flush;
          end if;

@@ -108,14 +108,13 @@ is
 
    --  State
 
-   File      : C_Int := No_File;
-   Gathering : Boolean := False;
-   Ended     : Boolean := False;
-   Sequence  : Event_Count := 0;
-   Dropped   : Event_Count := 0;
+   File     : C_Int := No_File;
+   Ended    : Boolean := False;
+   Sequence : Event_Count := 0;
+   Dropped  : Event_Count := 0;
    --  Records of elements behind the last Kept_Element.
 
-   Next      : Ada.Real_Time.Time := Ada.Real_Time.Time_First;
+   Next     : Ada.Real_Time.Time := Ada.Real_Time.Time_First;
 
    Period : constant Ada.Real_Time.Time_Span :=
      Ada.Real_Time.Milliseconds (100);
@@ -226,13 +225,6 @@ is
             & " no monitor can watch this run");
       end if;
    end Open;
-
-   ------------------
-   -- Is_Gathering --
-   ------------------
-
-   function Is_Gathering return Boolean
-   is (Gathering);
 
    -----------------
    -- Note_Record --
@@ -425,13 +417,11 @@ is
    begin
       if File /= No_File and then Now >= Next then
          Next := Now + Period;
-         Gathering := True;
          if Put_All'Address /= System.Null_Address then
             Put_All;
          else
             Put_Now;
          end if;
-         Gathering := False;
          Write_Snapshot;
       end if;
    end Refresh;

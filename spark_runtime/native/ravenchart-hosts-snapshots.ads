@@ -25,14 +25,12 @@ is
    procedure Open;
    --  Open and lock the file, if one is named.
 
-   function Is_Gathering return Boolean;
-   --  Do lines come for a snapshot alone, and not for the report?
-
    procedure Note (Text : String);
    --  Text is a line of the report, with its LF.
 
    procedure Refresh;
-   --  Write a snapshot, if the last one is a tenth of a second old.
+   --  Write a snapshot, if the last one is a tenth of a second old. Its counts
+   --  are in the report as well: a replay shows them at their time.
 
    procedure Close;
    --  Write the last snapshot: with the counts of the end of the report.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -11,6 +13,7 @@ from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
 from ravenchart.running.process import ControllerProcess
 from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
+from tests.support.recorded import FOLDER
 from tests.support.workbench import running
 
 pytestmark = [*IN_BROWSER, pytest.mark.live]
@@ -35,9 +38,34 @@ def test_the_live_tab_follows_a_controller_to_its_end(tmp_path: Path) -> None:
             expect(live).to_contain_text("Not seen: ")
             first = live.locator("h3").text_content() or ""
             expect(live.locator("h3")).not_to_have_text(first)
+            live.get_by_role("button", name="bed.Infusion", exact=True).click()
+            active = pane.page.locator(".paper g.active > title")
+            expect(active).to_contain_text(["Self_Test"])
             assert serious(pane.page) == []
         finally:
             ended = process.stop(0.0)
         assert ended.exit_code == 0, ended.warnings
         expect(live.locator("h3")).to_contain_text("ended in order")
+        pane.closed(bench.address)
+
+
+def test_recorded_values_move_in_the_live_tab(tmp_path: Path) -> None:
+    model = Path(shutil.copytree(FOLDER, tmp_path / "recorded")) / "model.yaml"
+    checked = checking.check(model)
+    generation.write_program(checked)
+    executable = programs.programs_of(checked)[0].build()
+    with running(model) as bench, launched() as browser:
+        pane = BrowserPage(browser, bench.address)
+        pane.page.get_by_role("tab", name="Live").click()
+        process = ControllerProcess(executable, tmp_path / "trace.txt", 0)
+        try:
+            plot = pane.page.get_by_role("img", name="giver.height over time")
+            line = plot.locator("path")
+            expect(line).to_have_attribute("d", re.compile(r"^M(\S+ ?)+H\S+V\S+H300$"))
+            first = line.get_attribute("d") or ""
+            expect(line).not_to_have_attribute("d", first)
+            assert serious(pane.page) == []
+        finally:
+            ended = process.stop(0.0)
+        assert ended.exit_code == 0, ended.warnings
         pane.closed(bench.address)

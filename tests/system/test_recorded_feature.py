@@ -15,7 +15,12 @@ from ravenchart.analysis.system.observed import Observation, read_map, read_trac
 from ravenchart.building import checking, generation, programs
 from ravenchart.command_line import main
 from ravenchart.commands.simulate import build_simulation, executed, interpreted
+from ravenchart.running import monitoring
+from ravenchart.running.monitored import WatchedNode
+from ravenchart.running.process import ControllerProcess
+from ravenchart.running.replaying import Replay
 from ravenchart.running.snapshots import SnapshotFile, parsed
+from ravenchart.running.traces.files import read_traces
 from ravenchart.running.traces.formats import FORMATS
 from ravenchart.running.traces.timeline import Timeline, of_run
 from tests.support import recorded
@@ -50,6 +55,41 @@ def _values(timeline: Timeline) -> Values:
     """What was recorded, by element, as the CSV has it."""
     rows = [(row.element, row.detail) for row in timeline.rows if row.kind == "value"]
     return recorded.grouped(rows)
+
+
+@pytest.mark.slow
+@pytest.mark.live
+def test_a_replay_shows_at_each_instant_what_a_monitor_had_seen(tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(FOLDER, tmp_path / "recorded"))
+    checked = checking.check(folder / "model.yaml")
+    generation.write_program(checked)
+    (program,) = programs.programs_of(checked)
+    trace, executable = folder / "trace.txt", program.build()
+    process = ControllerProcess(executable, trace, 0)
+    seen: list[WatchedNode] = []
+    try:
+        while not (files := monitoring.found(checked, lambda _: None)):
+            time.sleep(monitoring.PERIOD / 4)
+        with monitoring.watching(checked, files) as (controller,):
+            while len(seen) < 6:
+                if controller.is_new and controller.node.now > 0:  # several wait for the start
+                    seen.append(controller.node)
+                time.sleep(monitoring.PERIOD / 4)
+                controller.look()
+    finally:
+        ended = process.stop(0.0)
+    assert ended.exit_code == 0, ended.warnings
+    (replayed,) = Replay(checked.analysis, read_traces(checked, [trace])).controllers
+    for was in seen:
+        now = replayed.node(was.now)
+        assert (now.sequence, now.processors) == (was.sequence, was.processors)
+        assert (now.rows[0].longest_execution, now.faults, now.lost) == (
+            was.rows[0].longest_execution, was.faults, was.lost,
+        )  # fmt: skip
+        for mine, theirs in zip(now.values, was.values, strict=True):
+            assert mine.name == theirs.name
+            assert mine.count >= theirs.count, "a record may come between two snapshots"
+            assert mine.count > theirs.count or mine == theirs
 
 
 @pytest.mark.slow

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from ravenchart.building import programs
+from ravenchart.building.checking import check
+from ravenchart.running.monitored import WatchedValue
 from ravenchart.workbench.live import LiveView
+from ravenchart.workbench.motion import LastValues
+from tests.support.recorded import MODEL
 from tests.support.snapshot_files import (
     GENERATED,
     PUMP,
@@ -17,6 +22,8 @@ from tests.support.snapshot_files import (
     snapshot,
     trace_map,
 )
+
+SECOND = 1_000_000_000
 
 
 @pytest.fixture
@@ -36,8 +43,6 @@ def file(tmp_path: Path, model: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def _home(work: Path, model: Path) -> Path:
-    from ravenchart.building.checking import check
-
     home = programs.build_home(check(model), "slcan")
     assert home.is_relative_to(work)
     return home
@@ -79,3 +84,20 @@ def test_the_controllers_of_a_model_with_errors_are_not_looked_for(model: Path) 
     assert found == {
         "text": "The saved model has errors: its controllers are not looked for.", "nodes": [],
     }  # fmt: skip
+
+
+def test_the_values_of_the_time_of_a_plot_are_kept_with_the_one_that_holds_on_into_it() -> None:
+    last = LastValues(check(MODEL).system)
+    for second in range(100):
+        warm = WatchedValue("giver.reading.warm", str(second % 2 == 1), "", 1, second * SECOND)
+        heat = WatchedValue("taker.heat", f"{second - 50}.5", "degC", 1, second * SECOND)
+        other = WatchedValue("nothing", "1", "", 1, second * SECOND)
+        node = SimpleNamespace(now=second * SECOND + 1, values=[warm, heat, other])
+        for _ in range(2):  # a value that was there at the look before is no new point
+            lines = last.look(node)  # type: ignore[arg-type]
+    assert set(lines) == {"giver.reading.warm", "taker.heat"}
+    quantity, points = lines["taker.heat"]
+    assert (quantity.value(points[0][1]), quantity.value(points[-1][1])) == (19.5, 49.5)
+    assert [at for at, _ in points] == [second * SECOND for second in range(69, 100)]
+    quantity, points = lines["giver.reading.warm"]
+    assert quantity.text(points[-1][1]) == "True"

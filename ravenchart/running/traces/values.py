@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from itertools import pairwise
+from operator import itemgetter
 
 from ravenchart.analysis.system.observed import VALUE, Observation
 from ravenchart.gen.language.terms import Ns
@@ -35,6 +36,10 @@ class Quantity:
     def text(self, number: int) -> str:
         """The literal, or the exact value in the unit."""
         return self.literals[number] if self.literals else f"{self.count * number:f}"
+
+    def number(self, text: str) -> int:
+        """The number of a ``text``, as above."""
+        return self.literals.index(text) if self.literals else round(Decimal(text) / self.count)
 
     def value(self, number: int) -> int | float:
         """The value in the unit: an integer where that is exact."""
@@ -78,3 +83,9 @@ def series_of(seen: Observation, process: str, late: int = 0) -> Iterator[Series
     for element in seen.map.of_kind(VALUE):
         quantity = Quantity.of(element.literals, element.unit)
         yield Series(process, element.name, quantity, tuple(points[element.number]))
+
+
+def extremes(points: Sequence[Point]) -> list[Point]:
+    """The first, last, least and greatest of some points, in order of time."""
+    least, greatest = min(points, key=itemgetter(1)), max(points, key=itemgetter(1))
+    return sorted({points[0], least, greatest, points[-1]})

@@ -13,7 +13,9 @@ function App() {
   const [reached, setReached] = useState(true);
   const [problem, setProblem] = useState("");
   const [selected, setSelected] = useState(null);
-  const [tab, setTab] = useState("findings");
+  const [tab, setTab] = useState(null); // null: none was chosen
+  const [drawing, setDrawing] = useState({ name: "structure", chart: null }); // chart: of which instance
+  const [running, setRunning] = useState([]); // the charts that Live shows, with what is active
   const [at, setAt] = useState(null);
   const [saving, setSaving] = useState(false);
   const link = useRef(null);
@@ -72,8 +74,9 @@ function App() {
 
   if (!state) return html`<main class="waiting"><h1>Ravenchart workbench</h1>
     <p role="status">${reached ? "The model is being analysed." : "The workbench cannot be reached."}</p></main>`;
+  const shown = tab ?? (state.replay ? "live" : "findings");
   const send = (message) => link.current.act(message); // whoever asks shows what is refused
-  const bench = { state, act, send, show, selected, select: setSelected };
+  const bench = { state, act, send, show, selected, select: setSelected, drawing, setDrawing, running, setRunning };
   return html`<${Bench.Provider} value=${bench}>
     <${Header} quietly=${quietly} save=${() => setSaving(true)} setTab=${setTab} />
     <div class="banners">
@@ -91,7 +94,7 @@ function App() {
     </div>
     <main class="panes">
       <${Components} />
-      <div class="middle"><${Drawing} /><${Outcomes} tab=${tab} setTab=${setTab} at=${at} /></div>
+      <div class="middle ${shown === "live" ? "moving" : ""}"><${Drawing} /><${Outcomes} tab=${shown} setTab=${setTab} at=${at} /></div>
       <${Processors} />
     </main>
     ${saving && html`<${SaveDialog} close=${() => setSaving(false)} act=${link.current} />`}

@@ -1,16 +1,28 @@
 // Middle: the structure and the charts. A click on an element shows where it stands in the source.
 
-import { html, useState } from "./preact.js";
+import { html } from "./preact.js";
 import { useBench } from "./parts.js";
 import { Canvas, plain } from "./canvas.js";
+import { highlight } from "./highlight.js";
+
+const AT_REST = { active: [], last: null };
 
 export function Drawing() {
-  const { state, show } = useBench();
-  const [name, setName] = useState("structure");
-  const chosen = state.drawings.includes(name) ? name : "structure";
+  const { state, show, drawing, setDrawing, running } = useBench();
+  const chosen = state.drawings.includes(drawing.name) ? drawing.name : "structure";
   const names = state.drawings.map((one) => ({ key: one, text: one }));
-  return html`<${Canvas} names=${names} chosen=${chosen} choose=${setName} version=${state.number}
-    finish=${(paper, made) => connect(paper, made.places, show)} />`;
+  const charts = running.filter((one) => one.drawing === chosen);
+  const chart = charts.find((one) => one.name === drawing.chart) ?? charts[0];
+  function finish(paper, made) {
+    connect(paper, made.places, show);
+    highlight(paper, made.arrows, chart ?? AT_REST);
+  }
+  return html`<${Canvas} names=${names} chosen=${chosen} choose=${(name) => setDrawing({ name, chart: null })}
+    version=${state.number} marks=${JSON.stringify(chart ?? null)} finish=${finish}>
+    ${chart && html`<p class="bar-of-tools"><label>Active in <select value=${chart.name}
+      onChange=${(e) => setDrawing({ name: chosen, chart: e.target.value })}>${charts.map((one) => html`<option
+        key=${one.name} value=${one.name}>${one.name}</option>`)}</select></label>
+      <span class="remark">${chart.last.taken.length ? `last transition: ${chart.last.taken[0]}` : "no transition yet"}</span></p>`}<//>`;
 }
 
 /** Makes buttons of the elements whose location is known. */

@@ -1,65 +1,115 @@
-// The running controllers, as `ravenchart monitor` shows them: ten times a second while this tab is open.
+// The running controllers, as `ravenchart monitor` shows them, or those of a replay: ten times a second
+// while this tab is open.
 
-import { html, useEffect, useState } from "./preact.js";
+import { html, useEffect, useRef, useState } from "./preact.js";
 import { Word, useBench } from "./parts.js";
 import { get, time } from "./link.js";
+import { Plot } from "./plot.js";
+import { Player, seconds } from "./player.js";
 
 const PERIOD = 100; // ms, as between two snapshots
 const PATIENCE = 1000; // ms until the next look where nothing runs
 const LATE = 1; // s
 
 export function Live() {
+  const { setRunning } = useBench();
   const [found, setFound] = useState(null);
   const [problem, setProblem] = useState("");
+  const look = useRef(null); // at once
   useEffect(() => {
     let next = 0;
+    let asked = 0;
     let wanted = true;
-    async function look() {
+    let shown = "[]";
+    look.current = async () => {
+      clearTimeout(next);
+      const mine = asked += 1;
       let pause = PATIENCE;
       try {
         const live = await get("live");
-        if (!wanted) return;
+        if (!wanted || mine !== asked) return;
         setFound(live);
         setProblem("");
-        if (live.nodes.some((node) => node.process !== null)) pause = PERIOD;
+        const charts = live.nodes.flatMap((node) => node.drawn);
+        if (JSON.stringify(charts) !== shown) setRunning(charts);
+        shown = JSON.stringify(charts);
+        if (live.replay ? live.replay.playing : live.nodes.some((node) => node.process !== null)) pause = PERIOD;
       } catch (error) {
         if (wanted) setProblem(error.message);
       }
-      if (wanted) next = setTimeout(look, pause);
-    }
-    look();
-    return () => { wanted = false; clearTimeout(next); };
+      if (wanted && mine === asked) next = setTimeout(look.current, pause);
+    };
+    look.current();
+    return () => { wanted = false; clearTimeout(next); setRunning([]); };
   }, []);
   if (problem) return html`<p class="error" role="alert">${problem}</p>`;
   if (!found) return html`<p role="status">Running controllers are being looked for …</p>`;
-  return html`${found.text && html`<p>${found.text}</p>`}
-    ${found.nodes.map((node) => html`<${Node} key=${node.node} of=${node} />`)}`;
+  return html`${found.replay && html`<${Player} of=${found.replay} nodes=${found.nodes.length} look=${() => look.current()} />`}
+    ${found.text && html`<p>${found.text}</p>`}
+    ${found.nodes.map((node) => html`<${Node} key=${node.node} of=${node} replay=${found.replay} nodes=${found.nodes.length} />`)}`;
 }
 
-function Node({ of }) {
+function Node({ of, replay, nodes }) {
   const { state } = useBench();
-  const doing = of.process !== null ? `process ${of.process}` : of.ended ? "ended in order" : "ENDED WITHOUT ITS REPORT";
-  const late = of.process !== null && of.age > LATE;
+  const late = !replay && of.process !== null && of.age > LATE;
   return html`<section class="live" aria-label="Controller of ${of.node}">
-    <h3>${of.node}: ${doing}, ${seconds(of.now)} s, snapshot ${of.sequence}
+    <h3>${of.node}: ${replay ? recorded(of, nodes) : running(of)}
       ${late && html`<span class="error">no news for ${of.age.toFixed(1)} s</span>`}</h3>
     ${of.real_time === false && html`<p class="remark">No real-time priorities: responses are not comparable with bounds.</p>`}
-    ${(state.dirty || state.stale) && html`<p class="remark">Bounds are those of the saved model.</p>`}
-    <${Table} names=${["processor", "due>", "completed>", "misses>", "worst>", "R>", "verdict"]} rows=${of.processors.map((one) => [
+    ${!replay && (state.dirty || state.stale) && html`<p class="remark">Bounds are those of the saved model.</p>`}
+    ${replay && !replay.playing && html`<p role="status">${instant(of)}</p>`}
+    <${Table} names=${["processor", "due>", "completed>", "misses>", "worst>", "R>", "worst of R", "verdict"]} rows=${of.processors.map((one) => [
       one.name, one.due ?? "-", one.completed, one.misses, time(one.worst_response), time(one.bound),
+      one.bound && html`<${Share} of=${one.worst_response / one.bound} />`,
       html`<${Word} met=${one.word === "ok"} text=${one.word} />`])} />
-    <p class=${any(of.faults) ? "error" : ""}>faults: ${counts(of.faults)}</p>
-    <p class=${any(of.lost) ? "error" : ""}>lost: ${counts(of.lost)}</p>
+    ${!(replay && of.counted === null) && html`<p class=${any(of.faults) ? "error" : ""}>faults: ${counts(of.faults)}</p>
+    <p class=${any(of.lost) ? "error" : ""}>lost: ${counts(of.lost)}</p>`}
     <${Table} names=${["chart", "state", "for>", "transitions>"]} rows=${of.charts.map((one) => [
-      one.name, one.state ?? "-", one.since === null ? "-" : `${((of.now - one.since) / 1e9).toFixed(1)} s`, one.transitions])} />
+      html`<${Chart} name=${one.name} of=${of.drawn} />`, one.state ?? "-",
+      one.since === null ? "-" : `${((of.now - one.since) / 1e9).toFixed(1)} s`, one.transitions])} />
     <${Table} names=${["last transitions and faults", "", "at>"]} rows=${of.last.map((one) => [
       one.element, one.kind === "fault" ? `FAULT ${one.what}` : one.what, `${seconds(one.at)} s`])} />
+    <${Table} names=${["recorded value", "last>", "", "recorded>", "at>", `last ${Number((of.window / 1e9).toFixed(1))} s`]} rows=${of.values.map((one) => [
+      one.name, one.value, one.unit, one.count, `${((of.now - one.last) / 1e9).toFixed(1)} s ago`,
+      html`<${Plot} of=${of.plots[one.name]} now=${of.now} span=${of.window} name=${one.name} />`])} />
     <${Table} names=${["queue", "waiting>"]} rows=${of.queues.map((one) => [one.name, `${one.waiting ?? "?"} of ${one.depth}`])} />
     <${Table} names=${["port, event, message", "", "count>", "last>"]} rows=${of.traffic.map((one) => [
       one.name, one.state ?? one.what, one.count, `${((of.now - one.last) / 1e9).toFixed(1)} s ago`])} />
-    <${Table} names=${["recorded value", "last>", "", "recorded>", "at>"]} rows=${of.values.map((one) => [
-      one.name, one.value, one.unit, one.count, `${((of.now - one.last) / 1e9).toFixed(1)} s ago`])} />
     <p class="remark">Not seen: ${of.not_seen.join("; ")}.</p></section>`;
+}
+
+function running(of) {
+  const doing = of.process !== null ? `process ${of.process}` : of.ended ? "ended in order" : "ENDED WITHOUT ITS REPORT";
+  return `${doing}, ${seconds(of.now)} s, snapshot ${of.sequence}`;
+}
+
+function recorded(of, nodes) {
+  if (of.starts !== null) return `starts at ${seconds(of.starts)} s`;
+  const end = of.process !== null ? "" : of.ended ? ", ended in order" : ", the trace was cut off here";
+  const counted = of.counted === null ? "" : `, counts of ${seconds(of.counted)} s`;
+  return `${seconds(of.now)} s${nodes > 1 ? " after its start" : ""}${counted}${end}`;
+}
+
+/** A response as a share of its bound. */
+function Share({ of }) {
+  const width = `${Math.min(100, 100 * of)}%`;
+  return html`<span class="bar" role="img" aria-label="${Math.round(100 * of)} % of R"><span
+    class="part ${of > 1 ? "late" : "own"}" style=${{ width }}></span></span>`;
+}
+
+/** The records of the instant that a replay shows. */
+function instant(of) {
+  const records = of.records.map((one) => `${one.kind} ${one.element} ${one.what}`.trim()).join("; ");
+  return records ? `At this instant: ${records}` : "No record at this instant.";
+}
+
+/** The name of a region: it shows the drawing of its chart. */
+function Chart({ name, of }) {
+  const { setDrawing } = useBench();
+  const chart = of.find((one) => name === one.name || name.startsWith(`${one.name}.`));
+  if (!chart) return name;
+  return html`<button class="place" title="show in the drawing ${chart.drawing}"
+    onClick=${() => setDrawing({ name: chart.drawing, chart: chart.name })}>${name}</button>`;
 }
 
 /** A table; a column whose name ends in ">" is set to the right. */
@@ -71,6 +121,5 @@ function Table({ names, rows }) {
       key=${index} class=${side(index)}>${cell}</td>`)}</tr>`)}</tbody></table>`;
 }
 
-const seconds = (ns) => (ns / 1e9).toFixed(3);
 const any = (found) => Object.keys(found).length > 0;
 const counts = (found) => Object.entries(found).map(([what, number]) => `${what} ${number}`).join(", ") || "none";

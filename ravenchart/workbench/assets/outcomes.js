@@ -14,7 +14,7 @@ export function Outcomes({ tab, setTab, at }) {
   const tabs = [
     ["findings", "Findings", errors, Findings], ["chains", "Chains", late, Chains],
     ["buses", "Buses", missed, Buses], ["advice", "Room and advice", 0, Advice],
-    ["allocation", "Allocation", 0, Allocation], ["live", "Live", 0, Live],
+    ["allocation", "Allocation", 0, Allocation], ["live", state.replay ? "Replay" : "Live", 0, Live],
     ["source", "Source", 0, () => html`<${Source} at=${at} />`],
   ];
   function key(event) {

@@ -3,7 +3,7 @@
 import { createContext, html, useContext, useEffect, useRef, useState } from "./preact.js";
 
 /** What every pane can use: the state, `act` (a refusal is shown above), `send` (it is thrown),
-    `show` (a location), the selected row. */
+    `show` (a location), the selected row, the drawing, and the charts that run. */
 export const Bench = createContext(null);
 export const useBench = () => useContext(Bench);
 

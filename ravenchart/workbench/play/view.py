@@ -17,7 +17,7 @@ from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import IntegerType, Ns, RecordType, Type, Value
 from ravenchart.gen.model.instances import End
 
-from ..pictures import arrow
+from .. import pictures
 from .explained import occurrence, reason, value_text, with_value
 from .session import Executed, Play
 
@@ -125,8 +125,7 @@ def arrows(play: Play, drawing: str) -> Json:
     for name, region in play.charts.values():
         own = play.now.machine.instances[name]
         if f"{own.component.name}.{region}" == drawing:
-            chart = own.regions[region].region
-            return {one.name: list(arrow(one)) for one in chart.transitions}
+            return pictures.arrows(own.regions[region].region)
     return {}
 
 

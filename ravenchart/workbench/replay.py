@@ -1,0 +1,110 @@
+"""A recorded run, for the page: as the running controllers are shown, at the instant chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from ravenchart.analysis.system.observed import TraceError
+from ravenchart.building import checking
+from ravenchart.failures import Refused, Unusable
+from ravenchart.gen.language.terms import Ns
+from ravenchart.running.monitoring import KEPT
+from ravenchart.running.replaying import STEPS, Replay, ReplayedController
+from ravenchart.running.traces.files import read_traces
+from ravenchart.running.traces.simulated import is_simulated
+
+from .motion import WINDOW, plotted, shown
+from .publishing import RefusedRequestError
+from .requests import Play, ReplayRequest, Seek, SetSpeed, StepTo
+
+Json = dict[str, Any]
+
+NAMES = {"event": "transition or fault", "value": "recorded value", "record": "record"}
+"""What a step leads to, in words."""
+
+
+class ReplayView:
+    """What pages see of the replay; any thread may look or act."""
+
+    def __init__(self, path: Path, traces: Sequence[Path]) -> None:
+        """For the model at ``path``. Refused where a trace is not of it, or cannot be read."""
+        self._checked = checking.check(path, deadlines=False)
+        for trace in traces:
+            with trace.open(encoding="utf-8", errors="replace") as lines:
+                if is_simulated(next((line.strip() for line in lines if line.strip()), "")):
+                    raise Unusable(
+                        f"{trace} is of a simulation, and a replay shows a run: `ravenchart "
+                        "simulate MODEL --open` steps through the charts of a simulation"
+                    )
+        try:
+            found = read_traces(self._checked, traces)
+        except TraceError as fault:
+            raise Refused(str(fault)) from None
+        self._replay = Replay(self._checked.analysis, found)
+        self._files = [str(one) for one in traces]
+        self._lock = Lock()
+
+    def do(self, wish: ReplayRequest) -> None:
+        """Do what a page asks for; RefusedRequestError where no record is left to step to."""
+        with self._lock:
+            match wish:
+                case Play(kind="play"):
+                    self._replay.play()
+                case Play():
+                    self._replay.pause()
+                case SetSpeed(speed=speed):
+                    self._replay.set_speed(speed)
+                case Seek(at=at):
+                    self._replay.seek(at)
+                case StepTo(kind=kind, what=what):
+                    if not self._replay.step(what, back=kind == "previous"):
+                        where = "earlier" if kind == "previous" else "later"
+                        raise RefusedRequestError(f"the trace has no {where} {NAMES[what]}")
+
+    def look(self, digest: str | None) -> Json:
+        """The nodes at the instant that is shown; ``digest`` is that of the saved model."""
+        with self._lock:
+            at, playing, speed = self._replay.at, self._replay.playing, self._replay.speed
+        text = ""
+        if digest != self._checked.system.digest:
+            text = "The saved model has changed: bounds are those of the model that was recorded."
+        controllers = self._replay.controllers
+        return {
+            "text": text,
+            "nodes": [self._node(one, at) for one in controllers],
+            "replay": {
+                "files": self._files,
+                "at": at,
+                "end": self._replay.end,
+                "playing": playing,
+                "speed": speed,
+                "steps": {what: sum(one.count(what) for one in controllers) for what in STEPS},
+                "gaps": [
+                    {"node": one.name} | asdict(gap) for one in controllers for gap in one.gaps
+                ],
+                "cut": [one.name for one in controllers if not one.is_whole],
+            },
+        }
+
+    def _node(self, controller: ReplayedController, at: Ns) -> Json:
+        node = controller.node(at)
+        values = {one.name for one in node.values}
+        window = max(1, min(WINDOW, self._replay.end))
+        lines = {
+            name: controller.points(name, Ns(node.now - window), Ns(node.now))
+            for name in plotted(self._checked.system)
+            if name in values
+        }
+        return shown(self._checked.system, node, node.events[-KEPT:], lines) | {
+            "window": window,
+            "starts": controller.late if at < controller.late else None,
+            "counted": controller.counted(at),
+            "records": [
+                {"kind": kind, "element": element, "what": what}
+                for kind, element, what in controller.records(at)
+            ],
+        }

@@ -1,0 +1,119 @@
+"""A recorded run in a real browser: played, stepped and moved by a slider, by keys alone too."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Locator, expect
+
+from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
+from tests.support.recordings import report, write
+from tests.support.snapshot_files import PUMP, number, trace_map
+from tests.support.workbench import Running, running
+
+pytestmark = IN_BROWSER
+
+SECOND = 1_000_000_000
+REGION = number("bed.Infusion", "region")
+
+
+def _lines() -> Iterator[str]:
+    """Twenty seconds: the self-test ends after five, and three records are lost in the last two."""
+    element = trace_map().elements[REGION]
+    yield from report(trace_map(), 0, 0, 0)
+    yield f"T 1000 State {REGION} {element.leaves.index('Self_Test')}"
+    yield f"T {5 * SECOND} Transition {REGION} {element.transitions.index('ready')}"
+    yield f"T {5 * SECOND} State {REGION} {element.leaves.index('Programming')}"
+    yield from report(trace_map(), 18 * SECOND, 360, 0)
+    yield from report(trace_map(), 20 * SECOND, 400, 3)
+    yield "END"
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
+    folder = tmp_path_factory.mktemp("replay")
+    trace = write(folder / "trace.txt", trace_map(), list(_lines()))
+    with running(PUMP, "--replay", str(trace)) as found:
+        yield found
+
+
+@pytest.fixture
+def pane(bench: Running) -> Iterator[BrowserPage]:
+    """A page at the first instant; nothing may go wrong in it."""
+    bench.act(kind="pause")
+    bench.act(kind="seek", at=0)
+    with launched() as browser:
+        found = BrowserPage(browser, bench.address)
+        yield found
+        found.closed(bench.address)
+
+
+def active(pane: BrowserPage) -> Locator:
+    """The states that the drawing shows as active."""
+    return pane.page.locator(".paper g.active > title")
+
+
+def test_a_run_is_stepped_played_and_moved_and_its_states_are_in_the_chart(
+    pane: BrowserPage,
+) -> None:
+    page = pane.page
+    expect(page.get_by_role("tab", name="Replay")).to_have_attribute("aria-selected", "true")
+    live = page.get_by_role("region", name="Controller of board")
+    clock = page.locator(".player .clock")
+    expect(clock).to_have_text("0.000 s of 20.000 s")
+    page.get_by_label("Go to, in s").fill("4.5")
+    page.get_by_role("button", name="Go", exact=True).click()
+    expect(clock).to_have_text("4.500 s of 20.000 s")
+    live.get_by_role("button", name="bed.Infusion", exact=True).click()
+    expect(active(pane)).to_contain_text(["Self_Test"])
+    expect(page.locator(".paper g.taken")).to_have_count(0)
+    page.get_by_role("button", name="Next", exact=True).click()
+    expect(clock).to_have_text("5.000 s of 20.000 s")
+    expect(live).to_contain_text("At this instant: transition bed.Infusion ready")
+    expect(live.get_by_role("row", name="bed.Infusion Programming 0.0 s 1")).to_be_visible()
+    expect(active(pane)).to_have_text(["Programming"])
+    expect(page.locator(".paper g.taken")).not_to_have_count(0)
+    page.get_by_role("button", name="Next", exact=True).click()
+    expect(page.get_by_role("alert")).to_have_text("the trace has no later transition or fault")
+    page.get_by_role("button", name="Play", exact=True).click()
+    expect(clock).not_to_have_text("5.000 s of 20.000 s")
+    page.get_by_role("button", name="Pause", exact=True).click()
+    expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()
+    slider = page.get_by_role("slider", name="Instant")
+    slider.fill("19000")
+    expect(clock).to_have_text("19.000 s of 20.000 s")
+    expect(live.get_by_role("row", name="control")).to_contain_text("360")
+    expect(page.locator(".player")).to_contain_text("Here 3 trace records, between 18.000 s and")
+    slider.fill("2000")
+    expect(live.get_by_role("row", name="bed.Infusion Self_Test 2.0 s 0")).to_be_visible()
+    expect(active(pane)).to_contain_text(["Self_Test"])
+    assert serious(page) == []
+    page.get_by_role("tab", name="Findings").click()
+    expect(active(pane)).to_have_count(0)
+
+
+def test_a_run_is_replayed_by_keys_alone(pane: BrowserPage) -> None:
+    page = pane.page
+    clock = page.locator(".player .clock")
+    page.get_by_role("slider", name="Instant").focus()
+    page.keyboard.press("End")
+    expect(clock).to_have_text("20.000 s of 20.000 s")
+    expect(page.locator("#outcome")).to_contain_text("ended in order")
+    page.keyboard.press("Home")
+    expect(clock).to_have_text("0.000 s of 20.000 s")
+    page.keyboard.press("ArrowRight")
+    expect(clock).not_to_have_text("0.000 s of 20.000 s")
+    page.keyboard.press("Space")
+    expect(page.get_by_role("button", name="Pause", exact=True)).to_be_visible()
+    page.keyboard.press("Space")
+    expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()
+    page.get_by_role("button", name="Play", exact=True).focus()
+    page.keyboard.press("Tab")
+    page.keyboard.press("Tab")
+    expect(page.get_by_role("button", name="Previous", exact=True)).to_be_focused()
+
+
+def test_two_pages_show_one_instant(pane: BrowserPage, bench: Running) -> None:
+    bench.act(kind="seek", at=7 * SECOND)  # as another page asks
+    expect(pane.page.locator(".player .clock")).to_have_text("7.000 s of 20.000 s")
