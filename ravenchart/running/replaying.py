@@ -49,7 +49,7 @@ _time = attrgetter("time")
 
 
 @dataclass(frozen=True, slots=True)
-class Gap:
+class LostRecords:
     """Records that the trace lost between two reports of counts; the times are instants."""
 
     after: Ns
@@ -162,7 +162,7 @@ class ReplayedController:
         """How many records a step of that kind can lead to."""
         return len(self._steps[what])
 
-    def _gaps(self) -> Iterator[Gap]:
+    def _gaps(self) -> Iterator[LostRecords]:
         """When trace records and recorded values were lost, and how many."""
         reports = [_Report(NO_TIME, Observation(self._seen.map)), *self._reports]
         for before, after in pairwise(reports):
@@ -170,7 +170,7 @@ class ReplayedController:
                 count = after.seen.counts.get(what, 0) - before.seen.counts.get(what, 0)
                 if count:
                     times = Ns(before.at + self.late), Ns(after.at + self.late)
-                    yield Gap(*times, what, count)
+                    yield LostRecords(*times, what, count)
 
     def points(self, value: str, first: Ns, last: Ns) -> tuple[Quantity, Sequence[Point]]:
         """What a value was in a time, with the point before it that holds on into it.
@@ -218,7 +218,7 @@ def _said(record: TraceRecord, faults: Sequence[str]) -> str:
     return "" if record.kind == "activity" else event_of(record, faults).what
 
 
-class Replay:
+class ReplayedRun:
     """The controllers of a run, and where the replay of it is: it moves by a clock of its own."""
 
     def __init__(

@@ -18,7 +18,7 @@ from .replay import ReplayView
 from .requests import (
     Move,
     PageRequest,
-    Play,
+    PlayOrPause,
     Rewind,
     Save,
     SearchTables,
@@ -97,7 +97,7 @@ class Hub(Publisher):
                 if kind == "adopt":
                     self._search.adopt(self.session)
                     self._search = None
-            case Play() | SetSpeed() | Seek() | StepTo():
+            case PlayOrPause() | SetSpeed() | Seek() | StepTo():
                 if self.replay is None:
                     raise ChangeRefusedError("nothing is replayed: start with --replay FILE")
                 self.replay.do(wish)

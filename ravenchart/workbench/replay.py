@@ -13,13 +13,13 @@ from ravenchart.building import checking
 from ravenchart.failures import Refused, Unusable
 from ravenchart.gen.language.terms import Ns
 from ravenchart.running.monitoring import KEPT
-from ravenchart.running.replaying import STEPS, Replay, ReplayedController
+from ravenchart.running.replaying import STEPS, ReplayedController, ReplayedRun
 from ravenchart.running.traces.files import read_traces
 from ravenchart.running.traces.simulated import is_simulated
 
 from .motion import WINDOW, plotted, shown
 from .publishing import RefusedRequestError
-from .requests import Play, ReplayRequest, Seek, SetSpeed, StepTo
+from .requests import PlayOrPause, ReplayRequest, Seek, SetSpeed, StepTo
 
 Json = dict[str, Any]
 
@@ -44,7 +44,7 @@ class ReplayView:
             found = read_traces(self._checked, traces)
         except TraceError as fault:
             raise Refused(str(fault)) from None
-        self._replay = Replay(self._checked.analysis, found)
+        self._replay = ReplayedRun(self._checked.analysis, found)
         self._files = [str(one) for one in traces]
         self._lock = Lock()
 
@@ -52,9 +52,9 @@ class ReplayView:
         """Do what a page asks for; RefusedRequestError where no record is left to step to."""
         with self._lock:
             match wish:
-                case Play(kind="play"):
+                case PlayOrPause(kind="play"):
                     self._replay.play()
-                case Play():
+                case PlayOrPause():
                     self._replay.pause()
                 case SetSpeed(speed=speed):
                     self._replay.set_speed(speed)

@@ -79,7 +79,7 @@ class TakeTables(PageRequest):
     kind: Literal["stop", "adopt"]
 
 
-class Play(PageRequest):
+class PlayOrPause(PageRequest):
     """Let the time of a replay go on, or rest."""
 
     kind: Literal["play", "pause"]
@@ -106,10 +106,10 @@ class StepTo(PageRequest):
     what: Literal["event", "value", "record"]
 
 
-ReplayRequest = Play | SetSpeed | Seek | StepTo
+ReplayRequest = PlayOrPause | SetSpeed | Seek | StepTo
 AnyRequest = (
     Move | SetTime | SetProcessor | Rewind | Save | Settle | SearchTables | TakeTables
-    | Play | SetSpeed | Seek | StepTo
+    | PlayOrPause | SetSpeed | Seek | StepTo
 )  # fmt: skip
 _READER: TypeAdapter[AnyRequest] = TypeAdapter(Annotated[AnyRequest, Field(discriminator="kind")])
 

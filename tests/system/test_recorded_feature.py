@@ -18,7 +18,7 @@ from ravenchart.commands.simulate import build_simulation, executed, interpreted
 from ravenchart.running import monitoring
 from ravenchart.running.monitored import WatchedNode
 from ravenchart.running.process import ControllerProcess
-from ravenchart.running.replaying import Replay
+from ravenchart.running.replaying import ReplayedRun
 from ravenchart.running.snapshots import SnapshotFile, parsed
 from ravenchart.running.traces.files import read_traces
 from ravenchart.running.traces.formats import FORMATS
@@ -79,7 +79,7 @@ def test_a_replay_shows_at_each_instant_what_a_monitor_had_seen(tmp_path: Path) 
     finally:
         ended = process.stop(0.0)
     assert ended.exit_code == 0, ended.warnings
-    (replayed,) = Replay(checked.analysis, read_traces(checked, [trace])).controllers
+    (replayed,) = ReplayedRun(checked.analysis, read_traces(checked, [trace])).controllers
     for was in seen:
         now = replayed.node(was.now)
         assert (now.sequence, now.processors) == (was.sequence, was.processors)

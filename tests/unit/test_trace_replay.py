@@ -15,7 +15,7 @@ from ravenchart.building import checking
 from ravenchart.building.checking import Checked
 from ravenchart.command_line import main
 from ravenchart.gen.language.terms import Ns
-from ravenchart.running.replaying import MOST_POINTS, Replay
+from ravenchart.running.replaying import MOST_POINTS, ReplayedRun
 from ravenchart.running.traces.files import read_traces
 from tests.support import recorded
 from tests.support.recordings import monitored, random_trace, report, write
@@ -44,10 +44,10 @@ def clock() -> HandClock:
     return HandClock()
 
 
-def opened(checked: Checked, folder: Path, lines: list[str], clock: HandClock) -> Replay:
+def opened(checked: Checked, folder: Path, lines: list[str], clock: HandClock) -> ReplayedRun:
     """A replay of the pump's trace with these lines."""
     path = write(folder / "trace.txt", trace_map(), lines)
-    return Replay(checked.analysis, read_traces(checked, [path]), clock)
+    return ReplayedRun(checked.analysis, read_traces(checked, [path]), clock)
 
 
 def plain(node: Any, *others: str) -> dict[str, Any]:
@@ -221,7 +221,7 @@ def test_of_very_many_values_the_extremes_are_left_at_every_instant(tmp_path: Pa
     lines = [f"V {at} {heat} {value}" for at, value in values]
     trace = write(tmp_path / "trace.txt", names, [*lines, "END"])
     checked = checking.check(model)
-    (controller,) = Replay(checked.analysis, read_traces(checked, [trace])).controllers
+    (controller,) = ReplayedRun(checked.analysis, read_traces(checked, [trace])).controllers
     for last in (*range(10_000_500_000, 12_000_000_000, 77_000_000), 10_000_500_000):
         first = last - 8_000_000_000
         _, points = controller.points("taker.heat", Ns(first), Ns(last))
