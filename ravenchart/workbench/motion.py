@@ -8,6 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.recording import RecordedValue
 from ravenchart.gen.model.system import System
 from ravenchart.running.monitored import WatchedEvent, WatchedNode
 from ravenchart.running.traces.values import Point, Quantity
@@ -34,9 +35,9 @@ def shown(system: System, node: WatchedNode, last: Sequence[WatchedEvent], lines
     }
 
 
-def plotted(system: System) -> Sequence[str]:
+def plotted(system: System) -> Sequence[RecordedValue]:
     """The values that have a plot."""
-    return [one.element for one in system.recorded_values[:MOST_PLOTS]]
+    return system.recorded_values[:MOST_PLOTS]
 
 
 def _plot(quantity: Quantity, points: Sequence[Point]) -> Json:
@@ -50,8 +51,7 @@ class LastValues:
 
     def __init__(self, system: System) -> None:
         self._quantities = {
-            one.element: Quantity.of(one.literals, one.unit)
-            for one in system.recorded_values[:MOST_PLOTS]
+            one.element: Quantity.of(one.literals, one.unit) for one in plotted(system)
         }
         self._points: defaultdict[str, deque[Point]] = defaultdict(deque)
 

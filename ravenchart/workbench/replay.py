@@ -45,7 +45,14 @@ class ReplayView:
         except TraceError as fault:
             raise Refused(str(fault)) from None
         self._replay = ReplayedRun(self._checked.analysis, found)
-        self._files = [str(one) for one in traces]
+        controllers = self._replay.controllers
+        self._whole: Json = {
+            "files": [str(one) for one in traces],
+            "end": self._replay.end,
+            "steps": {what: sum(one.count(what) for one in controllers) for what in STEPS},
+            "gaps": [{"node": one.name} | asdict(gap) for one in controllers for gap in one.gaps],
+            "cut": [one.name for one in controllers if not one.is_whole],
+        }  # the same at each instant
         self._lock = Lock()
 
     def do(self, wish: ReplayRequest) -> None:
@@ -72,22 +79,10 @@ class ReplayView:
         text = ""
         if digest != self._checked.system.digest:
             text = "The saved model has changed: bounds are those of the model that was recorded."
-        controllers = self._replay.controllers
         return {
             "text": text,
-            "nodes": [self._node(one, at) for one in controllers],
-            "replay": {
-                "files": self._files,
-                "at": at,
-                "end": self._replay.end,
-                "playing": playing,
-                "speed": speed,
-                "steps": {what: sum(one.count(what) for one in controllers) for what in STEPS},
-                "gaps": [
-                    {"node": one.name} | asdict(gap) for one in controllers for gap in one.gaps
-                ],
-                "cut": [one.name for one in controllers if not one.is_whole],
-            },
+            "nodes": [self._node(one, at) for one in self._replay.controllers],
+            "replay": self._whole | {"at": at, "playing": playing, "speed": speed},
         }
 
     def _node(self, controller: ReplayedController, at: Ns) -> Json:
@@ -95,9 +90,9 @@ class ReplayView:
         values = {one.name for one in node.values}
         window = max(1, min(WINDOW, self._replay.end))
         lines = {
-            name: controller.points(name, Ns(node.now - window), Ns(node.now))
-            for name in plotted(self._checked.system)
-            if name in values
+            one.element: controller.points(one.element, Ns(node.now - window), Ns(node.now))
+            for one in plotted(self._checked.system)
+            if one.element in values
         }
         return shown(self._checked.system, node, node.events[-KEPT:], lines) | {
             "window": window,

@@ -109,7 +109,7 @@ class StepTo(PageRequest):
 ReplayRequest = PlayOrPause | SetSpeed | Seek | StepTo
 AnyRequest = (
     Move | SetTime | SetProcessor | Rewind | Save | Settle | SearchTables | TakeTables
-    | PlayOrPause | SetSpeed | Seek | StepTo
+    | ReplayRequest
 )  # fmt: skip
 _READER: TypeAdapter[AnyRequest] = TypeAdapter(Annotated[AnyRequest, Field(discriminator="kind")])
 

@@ -21,10 +21,15 @@ pytestmark = [*IN_BROWSER, pytest.mark.live]
 PUMP = ROOT / "examples" / "pump" / "model.yaml"
 
 
-def test_the_live_tab_follows_a_controller_to_its_end(tmp_path: Path) -> None:
-    checked = checking.check(PUMP)
+def built(model: Path) -> Path:
+    """The executable of the only node of a model, which is generated."""
+    checked = checking.check(model)
     generation.write_program(checked)
-    executable = programs.programs_of(checked)[0].build()
+    return programs.programs_of(checked)[0].build()
+
+
+def test_the_live_tab_follows_a_controller_to_its_end(tmp_path: Path) -> None:
+    executable = built(PUMP)
     with running(PUMP) as bench, launched() as browser:
         pane = BrowserPage(browser, bench.address)
         pane.page.get_by_role("tab", name="Live").click()
@@ -51,9 +56,7 @@ def test_the_live_tab_follows_a_controller_to_its_end(tmp_path: Path) -> None:
 
 def test_recorded_values_move_in_the_live_tab(tmp_path: Path) -> None:
     model = Path(shutil.copytree(FOLDER, tmp_path / "recorded")) / "model.yaml"
-    checked = checking.check(model)
-    generation.write_program(checked)
-    executable = programs.programs_of(checked)[0].build()
+    executable = built(model)
     with running(model) as bench, launched() as browser:
         pane = BrowserPage(browser, bench.address)
         pane.page.get_by_role("tab", name="Live").click()
