@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from ravenchart.building import variants
 from ravenchart.building.garbage import without_collector
 from ravenchart.failures import Unusable
+from ravenchart.grammar import AS_LISTED
 from ravenchart.terminal import progress
 
 from .answer import Answer, say
@@ -32,6 +33,13 @@ def add_model(sub: argparse.ArgumentParser) -> None:
         "model", type=Path, metavar="MODEL",
         help="the model's YAML file, or MODEL@NAME: a deployment of it",
     )  # fmt: skip
+
+
+def add_driver(sub: argparse.ArgumentParser) -> None:
+    """What the CAN layer of the program talks to."""
+    sub.add_argument(
+        "--driver", choices=variants.DRIVERS, metavar="NAME", help=f"the CAN driver{AS_LISTED}"
+    )
 
 
 def add_target(sub: argparse.ArgumentParser) -> None:

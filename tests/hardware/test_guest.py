@@ -24,9 +24,10 @@ def booted(request: pytest.FixtureRequest) -> Guest:
     reasons = tuple(guest.missing(guest.KERNEL, platform.machine()))
     if reasons:
         pytest.skip("; ".join(reasons))
-    chosen = [one.callspec for one in request.session.items if isinstance(one, pytest.Function)]
+    tests = [one for one in request.session.items if isinstance(one, pytest.Function)]
+    chosen = [step for one in tests for step in one.callspec.params.values()]
     try:
-        return guest.run({one.params["step"].name for one in chosen if "step" in one.params})
+        return guest.run({step.name for step in chosen if isinstance(step, Step)})
     except ToolMissing as tool:
         pytest.skip(str(tool))
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 import shlex
+from argparse import ArgumentParser, _SubParsersAction
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from ravenchart import failures, start
-from ravenchart.command_line import whole_parser
+from ravenchart.command_line import COMMANDS, whole_parser
 from ravenchart.failures import MEANINGS, STATUSES
 from ravenchart.paths import ROOT
 from ravenchart.reference import pages
@@ -37,15 +39,35 @@ def test_every_status_of_the_program_has_a_meaning() -> None:
     assert {int(one) for words in MEANINGS for one in words.split(", ")} == named
 
 
-def test_the_help_fits_a_terminal(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def parsers(parser: ArgumentParser) -> Iterator[ArgumentParser]:
+    """A parser and those of all its commands, however deep."""
+    yield parser
+    for action in parser._actions:
+        if isinstance(action, _SubParsersAction):
+            for sub in dict.fromkeys(action.choices.values()):
+                yield from parsers(sub)
+
+
+PARSERS = tuple(parsers(whole_parser()))
+
+
+@pytest.mark.parametrize("parser", PARSERS, ids=lambda parser: parser.prog)
+def test_usage_and_help_of_every_command_fit_a_terminal(
+    parser: ArgumentParser, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "80")
-    with pytest.raises(SystemExit):
-        whole_parser().parse_args(["--help"])
-    told = capsys.readouterr().out
-    assert max(map(len, told.splitlines())) <= 80
-    read = " ".join(told.split())
+    told = parser.format_usage() + parser.format_help()
+    assert [line for line in told.splitlines() if len(line) > 80] == []
+
+
+def test_the_help_of_every_command_is_measured() -> None:
+    names = {parser.prog.removeprefix("ravenchart").strip() for parser in PARSERS}
+    assert names == {"", *COMMANDS}
+
+
+def test_the_help_has_the_exit_statuses(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    read = " ".join(whole_parser().format_help().split())
     for status, meaning in MEANINGS.items():
         assert f" {status} {meaning}" in read
 
