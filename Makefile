@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 # Four words do the work: check, test, prove, demo. Each installs what it needs.
 
 RAVENCHART := .venv/bin/ravenchart

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The commands and their options as data, read from the parsers that read them.
 
 Shell completion and the manual page are made of it, so neither is written by hand.

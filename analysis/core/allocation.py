@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Which activities share a task: strategies, each result checked by the analysis of tasks.
 
 A task runs a table of activities (rows): its period is the shortest of theirs, and the

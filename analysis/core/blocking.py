@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How long less urgent tasks can hold a task up, under immediate ceilings.
 
 Inside a protected object a task runs at the object's ceiling (Ada RM D.3,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The jobs of one task's busy period, one after another, against given rivals."""
 
 from __future__ import annotations

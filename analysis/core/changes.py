@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What would meet all deadlines: single changes, and as little of each as suffices.
 
 Every candidate is judged by the analysis itself (`holistic`, or a stricter ``met``), so

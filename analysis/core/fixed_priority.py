@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Worst-case response times of preemptive tasks under fixed priorities.
 
 For job q (from 0) of a busy period of the task's level, ending in frame f:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How much room is left: factors of all execution times, and slack of single tasks.
 
 Whether all deadlines are met is monotone in each execution time, so the last value

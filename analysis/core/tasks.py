@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Tasks of fixed priority on one core each, and the tables that they execute."""
 
 from __future__ import annotations

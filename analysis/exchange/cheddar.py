@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Cheddar models (XML, version 3): each core and each bus checked on its own.
 
 What is released by something else has, as jitter, what this analysis found it inherits;

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """MAST models (1.7), for `mast_analysis holistic`. The unit of time is the nanosecond.
 
 What MAST does not have is put so that its bounds are no smaller: a table of rows becomes

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Scripts for pyCPA: the same system, built and analysed by its Python interface.
 
 pyCPA counts a response from the release: its figures are smaller, by up to the own jitter.

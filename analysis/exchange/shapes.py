@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the exports share: names that every tool accepts, dense priorities, trees of releases."""
 
 from __future__ import annotations

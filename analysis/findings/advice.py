@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What to change: single changes that suffice, those of least effect on the design first.
 
 Where deadlines are missed, the aim is to meet them; where they are met with little room,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Failed deadlines and overloaded buses as diagnostics, in the words of a compiler."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What changed between two versions of a system, and for the better or the worse.
 
 Both are the objects that `analyse --json` prints, so that a version that was kept as such an

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """From rows to the records of `analysis.core`; what does not fit together is told by line."""
 
 from __future__ import annotations

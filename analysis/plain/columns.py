@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The kinds of rows, their columns, and how the text in them becomes exact integers."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Longest execution times that were seen, as plain rows: `task`, `row` or `message` with a cost."""
 
 from __future__ import annotations

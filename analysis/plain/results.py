@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The analysis of a plain system, and all of it as one JSON object. Times are whole ns."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A response against its deadline: a row of a report, with what its bar is made of."""
 
 from __future__ import annotations

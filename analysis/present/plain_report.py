@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The report of a plain file: what the report of a model says, as far as the file tells it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The report: one HTML file that needs nothing else, for the screen and for paper."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The outcome of an analysis in sentences: verdict, loads, room left, and what limits it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The terminal table: the verdict first, then one row a task or message, worst first.
 
 It fits 80 columns and never says anything by colour alone.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """When things arrive and how late they are released: what the analysis leaves open."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One core: preemptive fixed priorities, first-in first-out among equals, immediate ceilings."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What each required command costs: in its caller's budget, or until somebody else has done it.
 
 A direct call is part of its caller's execution. A queued one waits for the row that serves

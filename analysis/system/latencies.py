@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Latencies from end to end through the rows of a system.
 
 A way of values through messages, ports, rows and data is taken hop by hop. A row

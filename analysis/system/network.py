@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A `System` as the records of `analysis.core`: the one place that knows both.
 
 A processor is a task whose rows are those of its table; its context switches

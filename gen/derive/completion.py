@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What follows from a valid model: tables, priorities, tasks and shared objects.
 
 All times in ns, every figure on the safe side.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the MACs of authenticated messages add to the execution times of rows."""
 
 from __future__ import annotations

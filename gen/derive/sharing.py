@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The protected objects of a program: who calls them, and their ceilings."""
 
 from __future__ import annotations

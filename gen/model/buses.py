@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Buses, the messages on them, and what a node receives of them."""
 
 from __future__ import annotations

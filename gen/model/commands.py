@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Commands, interfaces and devices, as the system holds them; vocabulary of the cisst papers.
 
 A *device* has no task: its commands are procedures of a driver, called directly. A *task*

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The one intermediate representation: a `System`, frozen, typed and located.
 
 The loader builds it, `rules` checks it, `derive` completes it (priorities,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What provides each required command, and what of the system follows from that.
 
 Everything is decided here: the program has no test for what is there. A stand-in that

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules for the time inside protected objects, which is part of the tasks that call them."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart analyse`: response times against deadlines, of a model or of plain files."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`--bounds FILE`: bounds of execution times from a static WCET tool, held against the model."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart build`: generated and compiled."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What commands on a model share: how it is named, checked and written."""
 
 from __future__ import annotations

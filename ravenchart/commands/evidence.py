@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart evidence`: one folder that an assessor can follow."""
 
 from __future__ import annotations

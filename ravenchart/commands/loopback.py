@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart loopback`: one suite over any python-can interface with two ends on one bus."""
 
 from __future__ import annotations

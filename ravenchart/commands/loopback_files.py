@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The loopback test as JUnit XML and as one HTML file that needs nothing else."""
 
 from __future__ import annotations

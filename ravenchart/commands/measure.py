@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart measure`: longest execution times of a run, beside what the model claims."""
 
 from __future__ import annotations

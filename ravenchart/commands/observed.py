@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart analyse --observed`: recorded execution times against the model's budgets."""
 
 from __future__ import annotations

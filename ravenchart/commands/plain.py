@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart analyse` of a plain CSV or JSON file: the verdict, a table, JSON, exports."""
 
 from __future__ import annotations

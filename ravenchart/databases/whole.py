@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a model has besides the messages of a database: figures that no database knows.
 
 They are chosen so that the model passes `check` and a program can be made of it at once. The

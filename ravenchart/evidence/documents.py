@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """evidence.json: what the folder says, for programs. docs/evidence.schema.json is made of it."""
 
 from __future__ import annotations

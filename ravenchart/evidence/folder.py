@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The folder of evidence: pages for people, and the same for programs.
 
 Nothing in it has a date, the name of a machine or an absolute path: equal inputs give equal bytes.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is not shown about a controller: the first page of the folder."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a run lost, missed or overran, held against what its scenario expects.
 
 Nothing that was counted may go unsaid: of each count the scenario says how often it may be,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Longest execution times that a run showed, beside what the model and a static tool claim.
 
 They are measurements: a run executes some paths, and a longer one may be left.

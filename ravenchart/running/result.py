@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What came out of one run, and the rows and pictures that are made of it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The run in a terminal of 80 columns: verdict last, colour never alone."""
 
 from __future__ import annotations

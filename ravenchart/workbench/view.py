@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The state of a session as the page gets it: one JSON object, complete each time.
 
 Times are in ns beside a text for people. What is in the files comes from their text, so it is

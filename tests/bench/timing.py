@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How the response-time analysis grows, and how it stands beside a compiled one.
 
 The crate `response-time-analysis` gets the same sets of plain tasks and must give the same

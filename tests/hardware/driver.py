@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A driver, in a program that echoes, tried by python-can on an interface of Linux.
 
 Run as ``python -P -m tests.hardware.driver PROGRAM INTERFACE``, where PROGRAM is

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A guest of QEMU in which `make hw-test` tries the drivers of CAN controllers.
 
 The guest runs Debian's kernel, sees the root of this machine read-only, and has a virtual

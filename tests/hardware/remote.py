@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The shell and a scenario over SocketCAN, with the crossing's controller in a process beside them.
 
 Run as ``python -P -m tests.hardware.remote PROGRAM INTERFACE``; the program is built with the

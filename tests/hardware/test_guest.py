@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`make hw-test`: the steps that a guest of QEMU runs, with drivers of CAN controllers.
 
 A case of a step is a subtest: skipped with its reason, or failed with what was seen. The guest is

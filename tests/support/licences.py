@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The licence of each file: lines at its head, by the REUSE specification, or a row of REUSE.toml.
 
 `python -m tests.support.licences` writes the lines into the files that lack them. REUSE.toml has

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Random networks of tasks, sections, tables, frames and chains, small enough to simulate."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A brute-force schedule of small synchronous task sets, one unit of time after another."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Whole controllers on an emulated board, with a run-time library of the user.
 
 They need what RAVENCHART_RTS names, a cross compiler and QEMU: see docs/boards.md.

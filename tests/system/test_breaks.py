@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A transition, a ceiling, a queue bound and a budget, each broken by hand: each is refused.
 
 The proofs need gnatprove; without it those tests are skipped, and say so.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Contracts of activities: what breaks one is refused by gnatprove, and `prove` says which."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The examples of charts do what their READMEs say, step by step."""
 
 from __future__ import annotations

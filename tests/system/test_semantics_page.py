@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The chart fragments of docs/semantics.md do what the page says."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Files in the working folder are never taken for modules of ours; ends have their statuses."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What people read: findings, the terminal table, the HTML report."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The timing of a system: its tasks, frames and chains as the core sees them.
 
 What the core itself does with them is shown by the tests of the core.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Authentication in the model, the analysis and the bench."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """CAN FD in models: laid out, checked, analysed and generated."""
 
 from __future__ import annotations

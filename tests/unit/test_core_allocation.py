@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Allocation: every strategy's tables hold by the analysis, and search is near the best."""
 
 from __future__ import annotations

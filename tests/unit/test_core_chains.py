@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Networks and chains: jitter inherited, reaction and age hop by hop, and their limits."""
 
 from __future__ import annotations

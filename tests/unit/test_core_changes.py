@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What would meet all deadlines: each change that is told suffices, and a step less does not."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Assignment, scaling, growth and the binding constraint, against trying everything."""
 
 from __future__ import annotations

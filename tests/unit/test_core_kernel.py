@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The library gives what the integers give: small sets one after another, large ones at random."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Offsets in the analysis of tasks: what they shorten, where they are left out, what is refused."""
 
 from __future__ import annotations

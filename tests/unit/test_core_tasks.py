@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Tasks: parameters refused, overheads, blocking, tables, limits, and what always holds."""
 
 from __future__ import annotations

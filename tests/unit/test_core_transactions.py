@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Chains whose steps meet on a core or bus: shorter bounds, and never below what happens."""
 
 from __future__ import annotations

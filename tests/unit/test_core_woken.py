@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A queue that releases its reader: bounds of its wait and backlog, against every tick of runs."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is derived: priorities, tables, tasks, shared objects and their ceilings."""
 
 from __future__ import annotations

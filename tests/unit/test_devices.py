@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Commands bound to devices and tasks: what is generated, and what the analysis counts."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the docs name is there."""
 
 from __future__ import annotations

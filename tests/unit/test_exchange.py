@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Cheddar and pyCPA, and what no format can say: what is written is never unsafe."""
 
 from __future__ import annotations

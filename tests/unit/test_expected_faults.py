@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a run lost, missed or overran fails it, unless the scenario or the host accounts for it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a reader expects at the door of a project: licences, changelog, a build that runs."""
 
 from __future__ import annotations

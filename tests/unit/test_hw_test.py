@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What of `make hw-test` runs without a guest: its list of steps, its results, its cases."""
 
 from __future__ import annotations

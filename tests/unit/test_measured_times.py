@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Measured execution times and bounds of static tools, beside what a model claims."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`analyse --observed`: what a run recorded against the budgets of the model."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Plain files: units and rounding, errors by line and column, hostile numbers, large sets."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The words of the project keep the rules that a program can check."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Device types with registers, parameters, operations at start and end, and events."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Commands of tasks on other nodes: the messages that carry them, their chains and errors."""
 
 from __future__ import annotations

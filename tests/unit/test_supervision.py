@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Liveness supervision: its task and its objects, its certificate, and the verdict on releases."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Values in several frames: what the analysis says of them, and transfers played step by step."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The timing certificate: named numbers and static functions, every claim checked by the compiler.
 
 Both are exact and known before anything runs; what is too much for a function is longer than

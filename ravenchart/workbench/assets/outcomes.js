@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // Below the drawing: what is wrong, chains, buses, advice, tables, and the source of what was clicked.
 
 import { html, useEffect, useRef, useState } from "./preact.js";
