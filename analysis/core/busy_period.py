@@ -39,7 +39,7 @@ class Contender:
         jitter, demand = jitter_of(task, platform), demand_of(task, platform)
         goals = [(cost, frame, WHOLE) for frame, cost in enumerate(demand.costs)]
         if task.rows:
-            before = task.cost + switch_time(task, platform)
+            before = task.wcet + switch_time(task, platform)
             goals += _row_goals(task, before)
             goals.sort()
         item = source(task.period, jitter, demand)
@@ -58,7 +58,7 @@ def _row_goals(task: Task, before: int) -> list[Goal]:
     for frame, rows in enumerate(task.frames):
         done = before
         for row in rows:
-            done += row.cost
+            done += row.wcet
             goals.append((done, frame, number[row.name]))
     return goals
 

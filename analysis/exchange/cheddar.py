@@ -121,10 +121,11 @@ def _items(network: Network) -> Iterator[_Item]:
         deadline = item.deadline - found.best[name]
         if isinstance(item, Task):
             place, level = item.core, levels[item.core][item.priority]
+            longest, start = item.wcet, item.offset or 0
         else:
             place = next(bus for bus, some in network.frames.items() if item in some)
             level = urgency(network.frames[place])[name]
-        start = (item.offset or 0) if isinstance(item, Task) else 0
+            longest, start = item.cost, 0
         if level > PRIORITIES:
             raise Unfit(f"Cheddar has {PRIORITIES} priorities: {places[place]} needs {level}")
         yield _Item(
@@ -133,7 +134,7 @@ def _items(network: Network) -> Iterator[_Item]:
             level,
             item.period,
             deadline,
-            item.cost,
+            longest,
             late,
             blocked,
             start,

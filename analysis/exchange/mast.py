@@ -238,7 +238,7 @@ class _Writer:
                 _attributes(
                     Type="Enclosing" if parts else "Simple",
                     Name=f"{name}_job",
-                    Worst_Case_Execution_Time=task.plain_cost + self._further(task),
+                    Worst_Case_Execution_Time=task.plain_wcet + self._further(task),
                     Best_Case_Execution_Time=task.best or None,
                     Composite_Operation_List=tuple(parts) or None,
                 ),

@@ -75,7 +75,7 @@ KINDS: Kinds = {
         "priority": Column(Form.NUMBER, required=True, least=_ANY),
         "period": _PERIOD,
         "deadline": _DEADLINE,
-        "cost": Column(Form.TIME_UP, least=1),
+        "wcet": Column(Form.TIME_UP, least=1),
         "jitter": _LATE,
         "best": _BEST,
         "blocking": _LATE,
@@ -87,7 +87,7 @@ KINDS: Kinds = {
     },
     "row": {
         "task": NEEDED,
-        "cost": LONG,
+        "wcet": LONG,
         "every": _COUNT,
         "phase": Column(Form.NUMBER),
     },

@@ -20,7 +20,7 @@ from ravenchart.analysis.plain.results import (
     latency_figures,
 )
 from ravenchart.analysis.system.authentication import authenticated
-from ravenchart.analysis.system.commands import costs
+from ravenchart.analysis.system.commands import command_times
 from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import ratio
@@ -46,7 +46,7 @@ def figures(analysis: Analysis) -> Json:
                 "processor": processor.name,
                 "period": slot.timing.period,
                 "deadline": slot.timing.deadline,
-                "cost": slot.timing.wcet,
+                "wcet": slot.timing.wcet,
                 "every": slot.divisor,
                 "phase": slot.phase,
                 "response": rows.get(slot.element),
@@ -67,7 +67,7 @@ def figures(analysis: Analysis) -> Json:
             }
             for item in system.objects
         ],
-        "commands": [asdict(cost) for cost in costs(analysis)],
+        "commands": [asdict(one) for one in command_times(analysis)],
         "protected": [
             {
                 "message": row.message.name,

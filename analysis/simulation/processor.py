@@ -69,10 +69,10 @@ def segments_of(
 
 def _rows(task: Task, frame: int) -> Iterator[tuple[int, str]]:
     """Where each row ends within the job, the task's own work before all of them."""
-    at = task.cost
+    at = task.wcet
     yield at, ""
     for row in task.frames[frame]:
-        at += row.cost
+        at += row.wcet
         yield at, row.name
 
 

@@ -118,7 +118,7 @@ class Latencies:
             response = found.responses[task.name]
             bounds = {r.row.name: r.bound for r in getattr(response, "rows", ())}
             for row in task.rows:
-                item = _item(row.name, task.period * row.every, row.cost)
+                item = _item(row.name, task.period * row.every, row.wcet)
                 items.append((item, bounds.get(row.name)))
         released = {n: by for n, by in network.released_by.items() if n not in _sending(system)}
         periods = {task.name: task.period for task in network.tasks}  # others where those are tried

@@ -66,7 +66,7 @@ def _task(task: model.Task, system: System) -> Task:
         priority=task.priority,
         period=task.period,
         deadline=task.deadline,
-        cost=0 if rows else task.budget,
+        wcet=0 if rows else task.wcet,
         jitter=task.jitter,
         core=system.node(task.node).core_name(task.core),
         rows=rows,

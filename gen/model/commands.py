@@ -357,5 +357,5 @@ class Binding:
 
 
 def wcet_of(provider: Device | Server | Remote | RemoteRead | None, command: str) -> Ns:
-    """What a call adds to the budget of its caller; only a driver's work is counted apart."""
+    """What a call adds to the WCET of its caller; only a driver's work is counted apart."""
     return provider.command(command).wcet if isinstance(provider, Device) else Ns(0)

@@ -19,7 +19,7 @@ class Lack(Described):
     """Something that is not shown."""
 
     kind: str
-    """`claim`, `assumption`, `outside`, `budget`, `test` or `limit`."""
+    """`claim`, `assumption`, `outside`, `given`, `test` or `limit`."""
     what: str
     """What it is: the id of a claim or assumption, or an element."""
     why: str

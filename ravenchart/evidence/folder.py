@@ -51,7 +51,7 @@ WORDS = {
     "claim": "Claims that are not met, or only partly",
     "assumption": "Assumptions in use",
     "outside": "Parts outside SPARK",
-    "budget": "Bounds that rest on figures which are given, not measured",
+    "given": "Bounds that rest on figures which are given, not measured",
     "test": "Tests that did not pass",
     "limit": "What no such folder shows",
 }

@@ -31,7 +31,7 @@ def said(kind: str, name: str, count: int) -> str:
     if kind == "missed":
         return f"{name} missed {count} deadline{'' if count == 1 else 's'}"
     if kind == "overran":
-        return f"{name} {'ran' if count else 'never ran'} for longer than the model claims"
+        return f"{name} {'ran' if count else 'never ran'} for longer than its WCET"
     return f"{kind}: {name}, {'once' if count == 1 else f'{count} times'}"
 
 
@@ -49,7 +49,7 @@ def excused(
     long = frozenset(
         row.row
         for row in executed
-        if row.exceeded and (not ended.real_time or row.observed - row.claimed <= withheld)
+        if row.exceeded and (not ended.real_time or row.observed - row.wcet <= withheld)
     )
     return late, long
 

@@ -195,7 +195,7 @@ def _response(good: Analysis, saved: Analysis, name: str) -> Json:
         "limit": row["deadline"],
         "limit_text": microseconds(row["deadline"]),
         "slack_text": _us(row["slack"]),
-        "cost_text": microseconds(row["cost"] if task is None else task.budget),
+        "wcet_text": microseconds(row["longest"] if task is None else task.wcet),
         "word": row["word"],
         "met": row["met"],
         "reason": row["reason"],

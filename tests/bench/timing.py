@@ -110,7 +110,7 @@ def by_crate(sets: Sequence[Sequence[Task]]) -> list[CrateResult]:
     if built.returncode != 0:
         print(f"  the crate could not be built: {built.stderr.strip()[-300:]}")
         return []
-    lines = [" ".join(f"{task.period} {task.cost}" for task in tasks) for tasks in sets]
+    lines = [" ".join(f"{task.period} {task.wcet}" for task in tasks) for tasks in sets]
     done = subprocess.run(
         [target / "release" / "rta-crate"],
         input="\n".join(lines) + "\n",

@@ -70,7 +70,7 @@ def _pattern(path: str) -> re.Pattern[str]:
     return re.compile("".join(words.get(part, re.escape(part)) for part in parts))
 
 
-def annotations() -> tuple[Annotation, ...]:
+def annotated() -> tuple[Annotation, ...]:
     """Those of REUSE.toml."""
     read: dict[str, Any] = tomllib.loads((ROOT / "REUSE.toml").read_text(encoding="utf-8"))
     return tuple(
@@ -98,7 +98,7 @@ def comment(file: str) -> tuple[str, str] | None:
 
 def wanting() -> Iterator[str]:
     """The files whose licence stands in themselves: neither a text of one nor in REUSE.toml."""
-    own = annotations()
+    own = annotated()
     for file in tracked():
         if file not in TEXTS and not any(one.covers(file) for one in own):
             yield file

@@ -21,7 +21,7 @@ HERE = Origin("model.yaml", 1, 1)
 def task(
     name: str,
     priority: int,
-    budget: int,
+    wcet: int,
     period: int,
     deadline: int | None = None,
     jitter: int = 0,
@@ -35,7 +35,7 @@ def task(
         period=Ns(period),
         offset=Ns(0),
         deadline=Ns(period if deadline is None else deadline),
-        budget=Ns(budget),
+        wcet=Ns(wcet),
         priority=priority,
         jitter=Ns(jitter),
     )

@@ -275,7 +275,7 @@ def task_sets(draw: st.DrawFn) -> list[Task]:
 @example([task("a", 2, 3, 12), task("b", 1, 14, 19, 25)])
 def test_synchronous_sets_agree_with_simulation(tasks: list[Task]) -> None:
     assume(len({t.priority for t in tasks}) == len(tasks))
-    assume(sum(Fraction(t.budget, t.period) for t in tasks) <= 1)
+    assume(sum(Fraction(t.wcet, t.period) for t in tasks) <= 1)
     found = analyse(system(tasks))
     assert {r.task.name: r.bound for r in found.responses} == longest_responses(tasks)
 

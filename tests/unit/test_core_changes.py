@@ -119,7 +119,7 @@ def test_rows_shrink_alone_and_sections_with_their_job() -> None:
         sections=(Section("o", "a", 45),),
     )
     less = shrunk(network, [("a", "s")], Fraction(1, 4))
-    assert [row.cost for row in less.tasks[0].rows] == [10, 10]
+    assert [row.wcet for row in less.tasks[0].rows] == [10, 10]
     assert less.sections[0].length == 20
 
 

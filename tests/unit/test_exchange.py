@@ -167,7 +167,7 @@ def test_what_is_spelled_out_has_the_same_bounds() -> None:
         chance = random.Random(seed)
         network = random_network(chance)
         tasks = tuple(
-            replace(task, rows=(), cost=task.plain_cost, timed=chance.random() < 0.5)
+            replace(task, rows=(), wcet=task.plain_wcet, timed=chance.random() < 0.5)
             for task in network.tasks
         )
         platforms = {

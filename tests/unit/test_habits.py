@@ -78,7 +78,7 @@ def test_a_star_of_a_path_stays_in_a_folder() -> None:
 
 def test_no_annotation_names_what_is_not_there() -> None:
     files = tracked()
-    paths = [path for one in licences.annotations() for path in one.paths]
+    paths = [path for one in licences.annotated() for path in one.paths]
     single = [licences.Annotation((path,), "", False) for path in paths]
     assert [one.paths for one in single if not any(map(one.covers, files))] == []
 
@@ -87,7 +87,7 @@ def test_the_licence_is_one_text_and_one_identifier() -> None:
     first, second = ((ROOT / name).read_text(encoding="utf-8") for name in LICENCES)
     assert first == second
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    named = {one.licence for one in licences.annotations() if not one.foreign}
+    named = {one.licence for one in licences.annotated() if not one.foreign}
     assert named == {project["project"]["license"]} == {licences.LICENCE}
 
 
@@ -108,7 +108,7 @@ def test_files_of_others_tools_name_programs_that_are_here(file: str) -> None:
 
 
 def test_files_of_others_are_as_published_under_a_licence_that_is_here() -> None:
-    (foreign,) = [one for one in licences.annotations() if one.foreign]
+    (foreign,) = [one for one in licences.annotated() if one.foreign]
     names = foreign.licence.split(" AND ")
     assert {f"LICENSES/{name}.txt" for name in names} == {*LICENCES[1:], *OTHERS}
     assert set(OTHERS.values()) <= set(foreign.paths)
