@@ -32,7 +32,7 @@ class Example:
     @property
     def trace(self) -> str:
         """What the README expects of `simulate`."""
-        found = re.search(r"^## The trace\n.*?^```\n(.*?)^```\n", self.readme, re.S | re.M)
+        found = re.search(r"^## The trace\n.*?^```text\n(.*?)^```\n", self.readme, re.S | re.M)
         assert found is not None
         return found.group(1)
 

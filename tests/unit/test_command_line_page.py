@@ -6,10 +6,8 @@
 from __future__ import annotations
 
 import re
-import shlex
 from argparse import ArgumentParser, _SubParsersAction
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
@@ -73,36 +71,3 @@ def test_the_help_has_the_exit_statuses(monkeypatch: pytest.MonkeyPatch) -> None
     read = " ".join(whole_parser().format_help().split())
     for status, meaning in MEANINGS.items():
         assert f" {status} {meaning}" in read
-
-
-FENCE = re.compile(r"^```(?:sh|console|bash)?\n(.*?)^```$", re.M | re.S)
-"""A listing of commands: one without a language, or with that of a shell."""
-PAGES = (*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/**/*.md"))
-
-
-def calls(text: str) -> list[list[str]]:
-    """The words of each call of `ravenchart` in the listings, without what is the shell's."""
-    found = []
-    for block in FENCE.findall(text):
-        for line in block.replace("\\\n", " ").splitlines():
-            for part in re.split(r"\||&&|;", line):
-                call = re.match(r"\s*(?:\$ )?(?:[\w./]*/)?ravenchart (.*)", part)
-                if call:
-                    words = shlex.split(call[1], comments=True)
-                    ends = (n for n, word in enumerate(words) if re.match(r"\d?>", word))
-                    found.append(words[: next(ends, len(words))])
-    return found
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: f"{page.parent.name}-{page.stem}")
-def test_every_call_in_a_listing_is_one_that_the_program_takes(page: Path) -> None:
-    parser = whole_parser()
-    for words in calls(page.read_text(encoding="utf-8")):
-        assert parser.parse_args(words).command, words
-
-
-def test_a_call_with_an_option_that_is_not_there_is_refused() -> None:
-    told = calls("```\n$ .venv/bin/ravenchart check m.yaml --gone > out.txt  # why\n```\n")
-    assert told == [["check", "m.yaml", "--gone"]]
-    with pytest.raises(SystemExit):
-        whole_parser().parse_args(told[0])
