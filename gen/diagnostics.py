@@ -10,8 +10,10 @@ given a second meaning, and one that falls out of use is not given again.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
+
+from ravenchart.gen.frozen import frozen
 
 from .origins import Origin
 
@@ -249,7 +251,7 @@ CODES: Mapping[str, str] = {
 """Every code with what it says; docs/errors.md is written from this table."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Diagnostic:
     """One finding about a model.
 

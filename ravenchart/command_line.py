@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import NoReturn
 
+from .building.garbage import without_collector
 from .failures import INTERNAL, INTERNAL_TEXT, STATUSES, UNUSABLE, Failure
 from .paths import version
 
@@ -82,7 +83,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit status."""
     told = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        options = _parser(told).parse_args(told)
+        with without_collector():  # what is imported stays
+            options = _parser(told).parse_args(told)
     except _WrongCall as wrong:
         if JSON in told:
             _answer(told, wrong.message, UNUSABLE)

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
+
+from ravenchart.gen.frozen import frozen
 
 
 class ArgumentKind(Enum):
@@ -38,7 +39,7 @@ ENDINGS = ("yaml", "yml", "csv", "json")
 """How the names of models end, and of the plain files that `analyse` takes too."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Word:
     """An option, or an argument where there are no ``flags``."""
 
@@ -51,7 +52,7 @@ class Word:
     repeated: bool
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CommandWords:
     """A command; ``words`` are its options, then its arguments."""
 
@@ -77,7 +78,7 @@ class CommandWords:
         return (self.name, *self.aliases)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Grammar:
     """The whole command line."""
 

@@ -16,13 +16,14 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+
+from ravenchart.gen.frozen import frozen
 
 from .checks import positive
 from .tasks import Task
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Section:
     """The longest time (ticks, above 0) that one call of ``user`` spends inside ``resource``.
 

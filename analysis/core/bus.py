@@ -5,8 +5,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
+
+from ravenchart.gen.frozen import frozen
 
 from .checks import at_most, natural, positive
 
@@ -23,7 +24,7 @@ INTERMISSION = 3
 """Bits between two frames: they count as part of the first, and its receivers do not wait."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Frame:
     """A message as the bus sees it; all times in ticks.
 
@@ -66,7 +67,7 @@ class Frame:
         return Fraction(self.cost, self.period)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Errors:
     """At most ``burst`` errors at once, and one more every ``period`` ticks.
 
@@ -83,7 +84,7 @@ class Errors:
         positive("the error model", period=self.period, burst=self.burst, bits=self.bits)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Bus:
     """What delays frames apart from each other; times in ticks.
 

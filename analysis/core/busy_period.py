@@ -6,7 +6,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+from ravenchart.gen.frozen import frozen, slotted
 
 from .blocking import Section, held_up
 from .multiframe import Demand
@@ -22,7 +23,7 @@ Goal = tuple[int, int, int]
 """What a job has executed when something is complete: that cost, its frame, the row."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Contender:
     """One task with what its releases cost, overheads included, and its goals by cost."""
 
@@ -63,7 +64,7 @@ def _row_goals(task: Task, before: int) -> list[Goal]:
     return goals
 
 
-@dataclass(slots=True)
+@slotted
 class Worst:
     """The longest response found so far to one completion."""
 

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
+
+from ravenchart.gen.frozen import frozen
 
 from .bus import Bus, Frame
 from .responses import Reason
@@ -18,7 +19,7 @@ ERRORS = 1 << 40
 """Serial number of the errors; those of frames are below."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FrameInterference:
     """What one other message takes of the time before transmission."""
 
@@ -27,7 +28,7 @@ class FrameInterference:
     time: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FrameLevel:
     """What is sent before a frame: the first ``reach`` of ``order``, most urgent first.
 
@@ -71,7 +72,7 @@ class FrameLevel:
         return frame.jitter + self.delays.get(frame.name, 0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FrameResponse:
     """The worst-case response of one frame; all times in ticks.
 

@@ -13,9 +13,11 @@ inherited from others the latter may miss an order that there is, never accept a
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 from fractions import Fraction
+
+from ravenchart.gen.frozen import frozen
 
 from . import holistic
 from .bus import Frame
@@ -42,7 +44,7 @@ class ChangeKind(Enum):
     PLACE = "place"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Change:
     """One change; ``enough`` when it meets all deadlines alone.
 

@@ -17,7 +17,9 @@ A best case is the sum of the best cases (`best`) along the chain, 0 unless give
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
+
+from ravenchart.gen.frozen import frozen
 
 from . import can, fixed_priority
 from .blocking import Section
@@ -39,7 +41,7 @@ LATEST = 1_000
 """Periods of jitter above which there is no bound."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Network:
     """Tasks, buses, and what releases what.
 
@@ -110,7 +112,7 @@ class Network:
         return tuple(found)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Holistic:
     """The responses of a network, by name, after so many ``rounds``.
 

@@ -5,12 +5,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from ravenchart.gen.frozen import frozen
 
 from .checks import natural
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Platform:
     """Overheads of one core, all in ticks; zero where there is none.
 

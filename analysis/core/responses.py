@@ -5,9 +5,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
+
+from ravenchart.gen.frozen import frozen
 
 from .blocking import Section, held_up
 from .multiframe import Demand
@@ -25,7 +26,7 @@ class Reason(Enum):
     RIVAL = "something that delays it has no bound itself"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Interference:
     """What one other task executes in the window: so many releases, the first in ``frame``."""
 
@@ -35,7 +36,7 @@ class Interference:
     time: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Overheads:
     """Time in the window that no task executes: switches of all its jobs, ticks, releases."""
 
@@ -52,7 +53,7 @@ class Overheads:
         return self.switch_time + self.tick_time + self.release_time
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Level:
     """What runs before a task: the first ``reach`` of its core's tasks, most urgent first."""
 
@@ -73,7 +74,7 @@ class Level:
         return load
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Alignment:
     """Where in the pattern of known offsets a response is at its longest.
 
@@ -87,7 +88,7 @@ class Alignment:
     tasks: frozenset[str]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RowResponse:
     """The longest time from the arrival of a job to the completion of one of its rows.
 
@@ -101,7 +102,7 @@ class RowResponse:
     window: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Response:
     """The worst-case response of one task; all times in ticks.
 

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+from ravenchart.gen.frozen import frozen
 
 from .multiframe import Demand
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Stream:
     """Jobs that arrive at ``offset`` + k ``period``, of the costs of a cycle, ticks each."""
 

@@ -6,8 +6,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
+
+from ravenchart.gen.frozen import frozen
 
 from .checks import at_most, distinct, natural, positive
 
@@ -15,7 +17,7 @@ FRAME_LIMIT = 1024
 """Releases after which a table must repeat; with more, every row counts in every job."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TableRow:
     """One row of a task's table: executed in release k when k mod ``every`` is ``phase``.
 
@@ -36,7 +38,7 @@ class TableRow:
             raise ValueError(f"phase of {owner} must be below {self.every}, not {self.phase}")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Task:
     """A periodic or sporadic task; all times in ticks.
 

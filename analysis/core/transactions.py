@@ -30,8 +30,9 @@ says nothing about when they do. The bound is safe, and may not be attained.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from ravenchart.gen.frozen import frozen
 
 from .bus import Frame
 from .can_response import FrameResponse
@@ -46,7 +47,7 @@ STEPS_EFFORT = 500_000
 """Terms of windows in one call: what comes after has the bound without transactions."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LevelItem:
     """An item of a transaction as one level sees it: times from the event, cost of a job."""
 
@@ -61,7 +62,7 @@ class LevelItem:
         return self.period - (first.offset + first.jitter - self.offset) % self.period
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Arriving:
     """A step in a busy period: how many jobs wait at its beginning, and when the next arrives."""
 
@@ -81,7 +82,7 @@ class _Arriving:
         return (self.waiting + later) * self.step.cost
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Level:
     """What can delay one item: its own transaction, other ones, and sources without offsets."""
 

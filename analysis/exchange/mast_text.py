@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
+
+from ravenchart.gen.frozen import frozen
 
 Value: TypeAlias = "str | tuple[Value, ...] | Attributes"
 
@@ -24,7 +25,7 @@ DEPTH = 50
 """Parentheses may be nested as deep."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Attributes:
     """Attributes with their values, in order."""
 
@@ -42,7 +43,7 @@ class Attributes:
         return found
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MastObject:
     """One object of a model."""
 

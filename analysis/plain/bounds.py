@@ -9,8 +9,7 @@ time, or cycles and the rate of their clock.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import identifier
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Slot, System, Work
@@ -26,7 +25,7 @@ SECOND = 10**9
 """In ns."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Bound:
     """The bound of a row in ns, and where it stands."""
 

@@ -14,14 +14,15 @@ import csv
 import json
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
+
+from ravenchart.gen.frozen import frozen, slotted
 
 TOO_LONG = 64 * 2**20
 """Characters that a file may have."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Problem:
     """What is wrong with a file, at a line from 1 on; 0 where it is no line's fault."""
 
@@ -35,7 +36,7 @@ class Problem:
         return f"{place}: error: {self.text}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Entry:
     """One row: its kind, its line, and its columns; empty ones are left out."""
 
@@ -44,7 +45,7 @@ class Entry:
     columns: dict[str, str]
 
 
-@dataclass(slots=True)
+@slotted
 class ReadFile:
     """The rows of a file and what is wrong with it."""
 

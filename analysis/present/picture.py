@@ -5,10 +5,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from xml.etree import ElementTree as Xml
 
 import networkx as nx
+
+from ravenchart.gen.frozen import frozen
 
 BOX_WIDTH = 150
 BOX_HEIGHT = 34
@@ -21,7 +22,7 @@ LEGIBLE = 60
 """With more boxes than this a picture says nothing."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NodeBox:
     """Where a node stands: its left upper corner, in px."""
 

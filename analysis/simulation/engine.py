@@ -14,6 +14,7 @@ from ravenchart.analysis.core.checks import natural
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.tasks import Task
+from ravenchart.gen.frozen import frozen, slotted
 
 from .phases import Phase, PhaseScenario
 from .processor import Job, SimulatedProcessor, segments_of
@@ -23,7 +24,7 @@ EVENTS = 5_000_000
 """Events after which a simulation is given up."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Stretch:
     """Instance ``number`` of an item had its core or bus from ``start`` to ``end``."""
 
@@ -34,7 +35,7 @@ class Stretch:
     end: int
 
 
-@dataclass(slots=True)
+@slotted
 class ObservedTimes:
     """What happened, in ticks; names are those of tasks and messages.
 

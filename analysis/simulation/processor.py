@@ -6,14 +6,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ravenchart.analysis.core.tasks import Task
+from ravenchart.gen.frozen import slotted
 
 from .phases import InsideSection
 
 
-@dataclass(slots=True)
+@slotted
 class JobStretch:
     """A stretch of a job: ticks left, priority inside, and the row that ends with it."""
 
@@ -23,7 +24,7 @@ class JobStretch:
     begun: bool = False
 
 
-@dataclass(slots=True)
+@slotted
 class Job:
     """A released job of ``task``; ``event`` began its chain, ``arrival`` and ``order`` itself."""
 
@@ -76,7 +77,7 @@ def _rows(task: Task, frame: int) -> Iterator[tuple[int, str]]:
         yield at, row.name
 
 
-@dataclass(slots=True)
+@slotted
 class SimulatedProcessor:
     """The state of one core at the time ``now``."""
 

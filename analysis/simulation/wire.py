@@ -5,12 +5,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ravenchart.analysis.core.bus import ERROR_BITS, Bus, Frame
+from ravenchart.gen.frozen import slotted
 
 
-@dataclass(slots=True)
+@slotted
 class QueuedFrame:
     """A queued instance of ``frame``; ``event`` began its chain, ``order`` tells who came first."""
 
@@ -20,7 +21,7 @@ class QueuedFrame:
     order: int
 
 
-@dataclass(slots=True)
+@slotted
 class Wire:
     """The state of one bus.
 

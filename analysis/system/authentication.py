@@ -5,8 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.buses import Message
@@ -15,7 +14,7 @@ from .protection import PortSilence, silences
 from .timing import Analysis
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Authenticated:
     """An authenticated message."""
 

@@ -15,15 +15,16 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.system import Carried, Chain, System
 
 from .observed import Observation
 from .timing import Analysis
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Journey:
     """The longest reaction that a run showed of a chain, of so many, beside its bound, in ns."""
 

@@ -17,9 +17,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
+from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.language.terms import NO_TIME, Ns
 
 KINDS = frozenset(
@@ -44,7 +45,7 @@ class TraceError(Exception):
     """A trace or map that cannot be read; the text names the file's line."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NumberedElement:
     """One numbered element; ``leaves`` are a region's or bus's, ``transitions`` a region's.
 
@@ -61,7 +62,7 @@ class NumberedElement:
     unit: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TraceMap:
     """The generator's map: which model, and its numbered elements."""
 
@@ -81,7 +82,7 @@ class TraceMap:
         return tuple(e for _, e in sorted(self.elements.items()) if e.kind == kind)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TraceRecord:
     """One T or V line; ``kind`` in lower case, ``text`` the state or transition it tells of."""
 
@@ -97,7 +98,7 @@ class TraceRecord:
         return choices[self.value] if choices else str(self.value)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Releases:
     """How one processor fared: releases, deadlines missed, longest response.
 
@@ -110,7 +111,7 @@ class Releases:
     now: Ns | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Visit:
     """A stay in one leaf state; ``end`` is None for the last one."""
 
@@ -119,7 +120,7 @@ class Visit:
     end: Ns | None
 
 
-@dataclass(slots=True)
+@slotted
 class Observation:
     """Everything that one trace file says; keys are element names or words of the file."""
 

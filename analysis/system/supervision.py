@@ -5,15 +5,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.nodes import SUPERVISOR
 
 from .timing import Analysis
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Silence:
     """One processor under supervision; times from when a release was due.
 
@@ -27,7 +26,7 @@ class Silence:
     raises: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Watch:
     """A node with its processors; ``silences`` is None where nothing supervises them."""
 

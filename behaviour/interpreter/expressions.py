@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import (
     EnumerationType,
     Expression,
@@ -35,7 +36,7 @@ from ravenchart.gen.language.terms import (
 TRUE, FALSE = "True", "False"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PortReading:
     """An input port as its readers see it; ``state`` is worded as the test for it."""
 

@@ -10,9 +10,10 @@ anything fires. So the values are those that the guards had.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum, auto
 
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import (
     Expression,
     InState,
@@ -69,7 +70,7 @@ class FiringReason(Enum):
     """A transition that was taken before has left its source."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FalseGuard:
     """A guard or condition that did not hold."""
 
@@ -77,7 +78,7 @@ class FalseGuard:
     reads: Reads
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Judgement:
     """A transition, and why it fired or did not."""
 
@@ -91,7 +92,7 @@ class Judgement:
     """To go until it is due."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ObservedStep:
     """One step; ``occurrence`` is None of the first, and of a region that has terminated."""
 

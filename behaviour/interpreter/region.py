@@ -15,6 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Flow, Value
 from ravenchart.gen.model.statechart import (
     After,
@@ -48,21 +49,21 @@ class Stuck(Exception):  # noqa: N818
 # --- Occurrences -------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Completed:
     """A state has completed."""
 
     state: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TimeOut:
     """The time-out of a transition is due."""
 
     transition: Transition
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Happened:
     """An event of the component, with its value."""
 
@@ -70,7 +71,7 @@ class Happened:
     value: Value | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Nothing:
     """Nothing waits: conditions are looked at."""
 
@@ -81,7 +82,7 @@ Occurrence = Completed | TimeOut | Happened | Nothing
 # --- What a step does ----------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NamedGoal:
     """A vertex to enter, and the segment of a fork that leads to it."""
 
@@ -89,7 +90,7 @@ class NamedGoal:
     segment: Transition | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ExecutedTransition:
     """A compound transition, ready to fire: its guards have been read."""
 
@@ -101,7 +102,7 @@ class ExecutedTransition:
     internal: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Deferral:
     """A state defers the event."""
 

@@ -20,6 +20,7 @@ from typing import TypeVar
 
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.files.located import Map, grow_list
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.quantities import duration, shown
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -43,7 +44,7 @@ from ravenchart.gen.origins import Origin
 N = TypeVar("N", bound=Named)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Raised:
     """An event of an instance, with its value if it carries one."""
 
@@ -58,7 +59,7 @@ class Raised:
         return self.instance, self.event
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Arrived:
     """A value for an input port."""
 
@@ -72,7 +73,7 @@ class Arrived:
         return self.end.instance, self.end.port
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Stimuli:
     """What comes in, in order of time, and the last instant."""
 

@@ -20,6 +20,7 @@ from types import MappingProxyType
 import z3
 
 from ravenchart.behaviour.tree import CONDITIONS, START, Occurrence
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import BOOLEAN, Reading
 from ravenchart.gen.model.statechart import DONE, After, Every, Overflow, Transition
 from ravenchart.gen.model.system import System
@@ -73,7 +74,7 @@ class SearchMove:
     """Rows one of which must have run just before, as it raised the event."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Violation:
     """A feasible way to a bad situation, and the data that take it."""
 

@@ -17,13 +17,14 @@ from enum import Enum
 import z3
 
 from ravenchart.behaviour.tree import TOP, ChartTree, Occurrence, RegionKey
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Expression, Flow, If, Raise, Reading, Set
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Transition, TransitionKind, When
 
 from .logic import Questions, Term, Variable, term, variable
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Configuration:
     """Where the control of a region is; all but ``history`` in tree order."""
 
@@ -48,7 +49,7 @@ class Rival:
     """When the second could have fired as well."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DeferredStep:
     """A state keeps the event for later."""
 
@@ -74,7 +75,7 @@ class Defeat(Enum):
     """A transition that fired before ends the region."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Beaten:
     """A transition that was selected and not fired, for a transition or a deferring state."""
 

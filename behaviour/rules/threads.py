@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from ravenchart.behaviour.tree import ChartTree, Occurrence, RegionKey
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import ScalarType
 
 from .logic import Term, Variable
@@ -29,7 +30,7 @@ MOST_CONFIGURATIONS = 3_000
 """A region of more, data and histories aside, is looked at in parts."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Situation:
     """A situation of one region: its control, and the cells of its own data."""
 
@@ -37,7 +38,7 @@ class Situation:
     cells: Cells
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Edge:
     """A step from one node to another."""
 

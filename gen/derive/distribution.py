@@ -11,9 +11,10 @@ what comes from another is, to it, a message from outside.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeVar
 
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import identifier, problem_of
 from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.buses import Bus, Message
@@ -36,7 +37,7 @@ from .identifiers import OPEN
 Check = TypeVar("Check", Protection, Authentication)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Carrier:
     """Makes messages of the connections between nodes.
 

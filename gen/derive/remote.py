@@ -17,8 +17,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import identifier, problem_of
 from ravenchart.gen.language.terms import (
     BUILT_IN,
@@ -141,7 +142,7 @@ def _bound(
     return replace(binding, provider=None) if idle and is_across(system, binding) else binding
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Call:
     """What carries one command."""
 

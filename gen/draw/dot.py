@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from html import escape
+
+from ravenchart.gen.frozen import frozen
 
 Attributes = dict[str, "str | Html"]
 
@@ -19,7 +21,7 @@ class Html(str):
     __slots__ = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Defaults:
     """Attributes of everything of a kind (``graph``, ``node``, ``edge``) from here on."""
 
@@ -27,7 +29,7 @@ class Defaults:
     attributes: Attributes
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DotNode:
     """A node."""
 
@@ -35,7 +37,7 @@ class DotNode:
     attributes: Attributes = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DotEdge:
     """An edge."""
 
@@ -44,7 +46,7 @@ class DotEdge:
     attributes: Attributes = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Group:
     """A graph inside another; a cluster has a border and a name of its own."""
 

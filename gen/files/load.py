@@ -11,10 +11,11 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path, PurePath
 
 from ravenchart.gen.diagnostics import Diagnostic, Sources, error
+from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.origins import Origin
 
 from . import deployments
@@ -31,7 +32,7 @@ Reader = Callable[[Path, int], bytes]
 """Reads a file, at most so many bytes; raises OSError."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Content:
     """The forms of a model's files, main file first; none when that one could not be read.
 
@@ -55,7 +56,7 @@ def read_file(path: Path, limit: int) -> bytes:
         return file.read(limit)
 
 
-@dataclass(slots=True)
+@slotted
 class _Reading:
     """The files read so far."""
 

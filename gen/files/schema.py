@@ -8,8 +8,6 @@ docs/model-reference.md. What needs more than one element to be judged is in
 `resolve` and `rules`.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Tag
@@ -160,8 +158,8 @@ class IfForm(Element):
     """Do one flow or another."""
 
     if_: ExpressionText = key("Boolean expression.", alias="if")
-    then: list[ActionForm] = key("Actions when it is true.")
-    else_: list[ActionForm] | None = optional("Actions when it is false.", alias="else")
+    then: "list[ActionForm]" = key("Actions when it is true.")
+    else_: "list[ActionForm] | None" = optional("Actions when it is false.", alias="else")
 
 
 ActionForm = Annotated[
@@ -277,8 +275,8 @@ class StateForm(Element):
     initial: InitialState | None = optional(
         "State inside it entered by default; needed with `states`."
     )
-    states: dict[Name, StateForm] | None = optional("Substates.", min_length=1)
-    regions: dict[Name, NestedRegionForm] | None = optional(
+    states: "dict[Name, StateForm] | None" = optional("Substates.", min_length=1)
+    regions: "dict[Name, NestedRegionForm] | None" = optional(
         "Regions side by side, instead of `states`.", min_length=1
     )
 

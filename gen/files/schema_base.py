@@ -6,8 +6,7 @@
 The forms themselves are in `schema`.
 """
 
-from __future__ import annotations
-
+import os
 import re
 from typing import Annotated, Any, TypeVar
 
@@ -50,6 +49,9 @@ from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.origins import Origin
 
 from .located import Map, Seq, TextPlace
+
+os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+"""Pydantic reads what every installed package says of itself otherwise."""
 
 
 def key(description: str, **limits: Any) -> Any:

@@ -3,8 +3,6 @@
 
 """Nodes, what runs on them, and how it is connected, in the file format."""
 
-from __future__ import annotations
-
 from pydantic import Field as PydanticField
 
 from .schema_base import (

@@ -3,8 +3,6 @@
 
 """The forms of commands and devices: dictionary, interfaces, device types, bindings."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pydantic import Field as PydanticField

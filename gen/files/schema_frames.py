@@ -3,8 +3,6 @@
 
 """The file format of buses and of what travels on them: a part of `schema`."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Tag

@@ -15,8 +15,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
+
+from ravenchart.gen.frozen import frozen, slotted
 
 LONGEST_TEXT = 2_000
 """Characters of an expression at most."""
@@ -39,7 +41,7 @@ TOKEN = re.compile(
 )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Term:
     """One operator, function, name or number, and where it stands in the text.
 
@@ -55,7 +57,7 @@ class Term:
     depth: int = 0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Malformed:
     """Why a text is no expression, and where."""
 
@@ -76,7 +78,7 @@ def _term(kind: str, at: int, word: str, *operands: Term, member: str = "") -> T
     return Term(kind, at, word, member, operands, depth)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Token:
     """A number, word or sign; ``kind`` is ``end`` of the one behind the last."""
 
@@ -94,7 +96,7 @@ class MisplacedError(Exception):
         self.token = token
 
 
-@dataclass(slots=True)
+@slotted
 class Waiting:
     """An operator, function, ``if`` or parenthesis whose last operand is still to come."""
 

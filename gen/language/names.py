@@ -8,10 +8,11 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Generic, Protocol, TypeVar
 
 from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.origins import Origin
 
 IDENTIFIER = r"^[A-Za-z](_?[A-Za-z0-9])*$"
@@ -157,7 +158,7 @@ def meant(name: str, known: Iterable[str]) -> str | None:
     return f"one of: {', '.join(names)}" if 0 < len(names) <= 12 else None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NameUse:
     """A name that is used: what it names, and where that is declared.
 
@@ -173,7 +174,7 @@ class NameUse:
     within: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unknown:
     """A name that is not declared, and the names that could stand there."""
 
@@ -182,7 +183,7 @@ class Unknown:
     known: tuple[str, ...]
 
 
-@dataclass(slots=True)
+@slotted
 class Findings:
     """The diagnostics of one model, as they are found, and the names that were looked up.
 
@@ -216,7 +217,7 @@ class Findings:
         return len(self.items) + self.losses
 
 
-@dataclass(slots=True)
+@slotted
 class NameScope(Generic[T]):
     """The names of one kind that can be used in one place, without regard to case.
 

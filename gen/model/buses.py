@@ -5,8 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns, Type
 from ravenchart.gen.origins import Origin
 
@@ -20,7 +19,7 @@ from .transmission import Transmission
 from .transport import Transport
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BusErrors:
     """At most ``burst`` errors at once, and one more every ``period``."""
 
@@ -28,7 +27,7 @@ class BusErrors:
     burst: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Bus:
     """A CAN bus and the WCETs of its driver on a node: one frame in, one frame out."""
 
@@ -77,7 +76,7 @@ class Bus:
         return -(-self.recovers_after // self.watch.period)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Message:
     """A CAN message: a port's value on a bus.
 
@@ -171,7 +170,7 @@ class Message:
         return f"{self.bus}.driver_tx.{self.name}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Reception:
     """A message as one node receives it; ``several`` do."""
 

@@ -6,14 +6,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 
 NOTHING = Ns(0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ResponseClaim:
     """A response from the event that leads to it, and the windows that show it.
 
@@ -29,7 +30,7 @@ class ResponseClaim:
     since: tuple[Ns, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ChainClaim:
     """The latencies of one of the model's chains; ``waits`` in its queues, one after the other."""
 
@@ -38,7 +39,7 @@ class ChainClaim:
     waits: tuple[Ns, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Claims:
     """All of them, by element; what is not there claims no time at all.
 

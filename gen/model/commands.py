@@ -10,9 +10,10 @@ What provides a required command is decided at generation; see docs/devices.md.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns, Scalar, ScalarType, Type, Value, named
 from ravenchart.gen.origins import Origin
 
@@ -38,7 +39,7 @@ class CommandKind(Enum):
         return self in (CommandKind.READ, CommandKind.QUALIFIED_READ)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Command:
     """An entry of the command dictionary; of one ``per_axis``, the types of one axis."""
 
@@ -50,7 +51,7 @@ class Command:
     per_axis: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class StandIn:
     """What stands in for a command: ``activity`` keeps the data item ``item`` up for it."""
 
@@ -58,7 +59,7 @@ class StandIn:
     item: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Need:
     """A required command, with the types that it has at the interface's number of axes."""
 
@@ -86,7 +87,7 @@ class Need:
         return None if self.is_read or self.reply is None else f"{self.name}_Reply"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Request:
     """A queued command of a provided interface, with its types there."""
 
@@ -100,7 +101,7 @@ class Request:
         return self.command.name
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Published:
     """A read command of a provided interface: its reply is that data item."""
 
@@ -113,7 +114,7 @@ class Published:
         return self.command.name
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class InterfaceEvent:
     """An event of an interface: it leaves its provider, or comes to who requires it, by a port."""
 
@@ -123,7 +124,7 @@ class InterfaceEvent:
     port: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Provided:
     """A provided interface of a component."""
 
@@ -139,7 +140,7 @@ class Provided:
     events: tuple[InterfaceEvent, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DriverCommand:
     """A command of a device type, with its types there and its worst-case execution time."""
 
@@ -159,7 +160,7 @@ class DriverCommand:
         return self.command.kind is CommandKind.EVENT
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DeviceParameter:
     """A constant of each device of a type."""
 
@@ -187,7 +188,7 @@ class Access(Enum):
         return self is not Access.READ
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Register:
     """A register of a device: ``width`` bits, ``offset`` bytes behind the device's address."""
 
@@ -203,7 +204,7 @@ class Register:
         return self.offset + self.width // 8
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Lifecycle:
     """Worst-case execution times of a driver's operations at start and end; None: it has none."""
 
@@ -222,7 +223,7 @@ class Lifecycle:
         return any(one is not None for one in (self.initialise, self.self_test, self.make_safe))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DeviceType:
     """A type of device: one driver."""
 
@@ -247,7 +248,7 @@ class DeviceType:
         return not self.simulated and bool(self.parameters or self.registers)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Device:
     """One piece of equipment of a type, or an array of devices as one."""
 
@@ -273,7 +274,7 @@ class Device:
         return named(self.provides, name)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Poll:
     """An event of a device, which the port handler of an instance asks for in each execution."""
 
@@ -290,7 +291,7 @@ class Poll:
         return self.device.command(self.event).wcet
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Server:
     """A provided interface of an instance; ``outside`` is that of the composite around it."""
 
@@ -299,7 +300,7 @@ class Server:
     outside: str | None = field(default=None, compare=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Remote:
     """A queued command of an instance on another node: the messages that carry its calls.
 
@@ -325,7 +326,7 @@ class Remote:
         return f"{self.server.instance}.{self.server.interface.server}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RemoteRead:
     """A read command of an instance on another node: the message that brings what it publishes.
 
@@ -344,7 +345,7 @@ class RemoteRead:
     """The row of the reader that notices."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Binding:
     """What provides a required command of an instance; None: what stands in for it."""
 

@@ -5,15 +5,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Scalar
 from ravenchart.gen.origins import Origin
 
 from .component import Component
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class End:
     """One end of a connection: a port of an instance."""
 
@@ -25,7 +24,7 @@ class End:
         return f"{self.instance}.{self.port}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Delegation:
     """A port or required interface that is reached by one of a composite instance around it."""
 
@@ -36,7 +35,7 @@ class Delegation:
     """Where that composite is named."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Instance:
     """One component instance on a node, its parameters all set.
 
@@ -60,7 +59,7 @@ class Instance:
         return (f"{self.name}.{name}", self.origin) if at is None else (at.outside, at.origin)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Connection:
     """An output port wired to an input port.
 

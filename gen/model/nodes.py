@@ -5,8 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import NO_TIME, Ns
 from ravenchart.gen.origins import Origin
 
@@ -20,7 +19,7 @@ SUPERVISOR = "supervisor"
 """The liveness supervision of a node, as a task."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Tick:
     """A timer that interrupts a node every ``period`` for up to ``wcet``."""
 
@@ -28,7 +27,7 @@ class Tick:
     wcet: Ns
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Supervision:
     """The liveness supervision of a node: a task that looks at all processors every ``period``.
 
@@ -40,7 +39,7 @@ class Supervision:
     margin: Ns
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Node:
     """One processor core or several alike, with platform figures, all worst cases in ns."""
 

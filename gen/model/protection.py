@@ -5,8 +5,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
+
+from ravenchart.gen.frozen import frozen
 
 ProfileName = Literal["e2e_p1", "e2e_p1b", "e2e_p1c", "e2e_p2", "e2e_p5", "e2e_p11", "e2e_p11c"]
 
@@ -16,7 +17,7 @@ NIBBLE = "E2E_Data_ID"
 """The names of the header's fields in a CAN database."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class HeaderField:
     """A field of the header: its first bit and its bits, Intel."""
 
@@ -25,7 +26,7 @@ class HeaderField:
     width: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Profile:
     """A profile, as PRS_E2EProtocol has it, with the header at byte 0."""
 
@@ -65,7 +66,7 @@ PROFILES: dict[ProfileName, Profile] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Protection:
     """The protection of one message."""
 

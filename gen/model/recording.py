@@ -5,8 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType
 from ravenchart.gen.origins import Origin
 
@@ -17,7 +16,7 @@ OBJECT = "recording"
 """The protected object that holds the recorded values of a node."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RecordedItem:
     """A port, data item or region of an instance that `record` names.
 
@@ -51,7 +50,7 @@ class RecordedItem:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RecordedValue:
     """One scalar of what is recorded: it has a number and a track of its own."""
 

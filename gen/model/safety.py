@@ -9,8 +9,7 @@ the states and data of one region, and the facts without which a transition migh
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     EnumerationType,
@@ -32,7 +31,7 @@ ValueRange = tuple[int, int]
 """First and last value; literals of an enumeration count by their position."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Fact:
     """While ``vertex``, a leaf or a choice or history, is active, a data item is in a span."""
 
@@ -51,7 +50,7 @@ class Fact:
         return _joined("or", parts) if parts else Literal("False", BOOLEAN)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SafeRegion:
     """The invariants that each step of a region keeps, by proof of its code."""
 

@@ -14,9 +14,10 @@ from __future__ import annotations
 import dataclasses
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Set
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType, Type
 
 FRAME_BITS = 64
@@ -41,7 +42,7 @@ class ByteOrder(Enum):
     """The most significant one."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Piece:
     """Bits of a raw value, from bit ``low`` of it on, that stand together from ``start`` on.
 
@@ -54,7 +55,7 @@ class Piece:
     width: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Signal:
     """One scalar in a frame: raw value = value - ``offset``, of an enumeration its code.
 

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Expression, Flow, Ns, named
 from ravenchart.gen.origins import Origin
 
@@ -35,7 +36,7 @@ class Overflow(Enum):
     DROP_OLDEST = "drop_oldest"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Timing:
     """Period, worst-case execution time and relative deadline of an activity."""
 
@@ -44,7 +45,7 @@ class Timing:
     deadline: Ns
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Initial:
     """Default entry of a region: the state it leads to, at any depth, and its effect."""
 
@@ -52,7 +53,7 @@ class Initial:
     effect: Flow = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NestedRegion:
     """A region of a composite state. The only region of one may have no name (``""``)."""
 
@@ -61,7 +62,7 @@ class NestedRegion:
     initial: Initial
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class State:
     """A state; ``region`` says in which region of ``parent`` it stands.
 
@@ -105,7 +106,7 @@ class PseudoKind(Enum):
     TERMINATE = "terminate"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Pseudostate:
     """A vertex that no execution rests in (terminate excepted)."""
 
@@ -124,14 +125,14 @@ class TransitionKind(Enum):
     INTERNAL = "internal"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class OnEvent:
     """Triggered by an event from the region's queue."""
 
     event: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class After:
     """Triggered this long after the source was entered, in whole executions."""
 
@@ -139,7 +140,7 @@ class After:
     executions: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Every:
     """Like `After`, again and again while the source is active."""
 
@@ -147,19 +148,19 @@ class Every:
     executions: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class When:
     """Triggered by a condition, read when no other occurrence waits."""
 
     condition: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Completion:
     """Triggered by the completion of its source, a state."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Segment:
     """Leaves a pseudostate: part of the compound transition that reached it."""
 
@@ -167,7 +168,7 @@ class Segment:
 Trigger = OnEvent | After | Every | When | Completion | Segment
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Transition:
     """One transition or segment; internal ones have their source as target.
 
@@ -185,7 +186,7 @@ class Transition:
     otherwise: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Lane:
     """A part of the chart in which one leaf is active: ``owner`` None is the top-level region."""
 

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import NO_TIME, IntegerType, Ns, Type, named
 from ravenchart.gen.origins import Origin
 
@@ -48,7 +49,7 @@ class Work(Enum):
     BUS_WATCH = "watch"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Slot:
     """One row of a processor's table: runs when release mod ``divisor`` = ``phase``."""
 
@@ -73,7 +74,7 @@ class Slot:
         return self.work in (Work.BUS_RECEIVE, Work.BUS_WATCH)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Processor:
     """A command processor: one task. Sporadic when ``released_by`` names what releases it.
 
@@ -130,7 +131,7 @@ class Processor:
         return Ns(sum(slot.timing.wcet for slot in self.slots))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Task:
     """One schedulable task as the analysis sees it: a processor, or a driver's work.
 
@@ -165,7 +166,7 @@ class Task:
         return 2 if self.sporadic else 1
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SharedObject:
     """A protected object: its ceiling is the highest priority among its users."""
 
@@ -178,7 +179,7 @@ class SharedObject:
     """Longest time inside it."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Carried:
     """A place on a way: the message that carries the value from node to node."""
 
@@ -193,7 +194,7 @@ Stop = Carried | str
 """A place on a way; rows, ports and data by their elements, ``owner.name``."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Gap:
     """Two places of a chain, as its path names them, between which no values go."""
 
@@ -209,7 +210,7 @@ class Gap:
     """Where values of the second place begin."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Chain:
     """A way that values take, and how long it may take them; None: no limit.
 
@@ -229,7 +230,7 @@ class Chain:
     gap: Gap | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Shutdown:
     """On a request to stop: raise these (instance, event), wait, end."""
 

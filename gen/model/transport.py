@@ -5,8 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 
 FIRST_BYTES, NEXT_BYTES = 6, 7
@@ -32,7 +31,7 @@ def distance_of(separation: Ns, row: Ns) -> int:
     return -(-(separation // MICROSECOND) // (row // MICROSECOND)) + 1
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Transport:
     """How the value of a message is cut into segments."""
 

@@ -11,10 +11,11 @@ front, and nothing behind the resolver knows of composites.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ravenchart.gen.files.schema_deployment import InnerInstanceForm
 from ravenchart.gen.files.schema_devices import InnerBindingForm
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import NameScope
 from ravenchart.gen.model.commands import InterfaceEvent, Need, Provided
 from ravenchart.gen.model.component import Component, Parameter, Port
@@ -31,7 +32,7 @@ Ends = tuple[tuple[End, Port], ...]
 """Ports of instances without others inside them."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Interface:
     """An interface of an instance, and who requires or provides it in the end, by paths.
 
@@ -59,7 +60,7 @@ def _joined(path: str, inner: str) -> str:
     return f"{path}.{inner}" if inner else path
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class InnerBinding:
     """A binding inside a composite: who requires, its interface, and who provides."""
 
@@ -74,7 +75,7 @@ class InnerBinding:
         return InnerBinding(self.form, *at, (f"{path}.{self.server[0]}", self.server[1]))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Inside:
     """An instance inside a composite."""
 
@@ -83,7 +84,7 @@ class Inside:
     of: Parts | Composite
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Composite:
     """A composite component; what was wrong keeps its name.
 

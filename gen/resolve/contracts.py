@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 
 from ravenchart.gen.files.located import TextPlace
 from ravenchart.gen.files.schema import ActivityForm
+from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.language.expressions import Term
 from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.terms import (
@@ -37,7 +38,7 @@ def sent(lists: Lists) -> tuple[str, ...]:
     return (*lists["sends"], *lists["may_send"], *lists["calls"])
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Side:
     """One side of an activity's contract: what it may name."""
 
@@ -53,7 +54,7 @@ class Side:
     """It holds when an execution ends."""
 
 
-@dataclass(slots=True)
+@slotted
 class ContractChecker(Checker):
     """Checks a condition of a contract: names must be those of the activity."""
 

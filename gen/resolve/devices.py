@@ -9,9 +9,10 @@ An array and a facade are decided here: what calls them calls the pieces.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
+from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.language.names import Findings, NameScope, meant
 from ravenchart.gen.language.terms import Ns, Type
 from ravenchart.gen.model.commands import (
@@ -32,7 +33,7 @@ from .interfaces import at_axes
 from .paths import Owners, Placed, owner_at, reached, split
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Facade:
     """Several providers as one; each command belongs to one of them."""
 
@@ -102,7 +103,7 @@ def _seen(scope: NameScope[Interface], path: str) -> NameScope[Interface]:
     return NameScope(scope.kind, items, scope.open)
 
 
-@dataclass(slots=True)
+@slotted
 class Devices:
     """The devices of a model, each resolved when it is asked for first."""
 

@@ -5,9 +5,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ravenchart.gen.files.schema import ComponentForm, InputForm, InvariantForm, OutputForm
+from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.language.names import HIDING, Findings, NameScope
 from ravenchart.gen.language.terms import Ns, Reading, Type
 from ravenchart.gen.model.component import (
@@ -34,7 +35,7 @@ RENAMED = ("state", "transition", "event")
 """Kinds of elements that get another name in Ada where theirs is one of Ada's."""
 
 
-@dataclass(slots=True)
+@slotted
 class Namespace:
     """The one namespace of a component, and the names that nothing in it can have."""
 
@@ -73,7 +74,7 @@ class Namespace:
             self.findings.error("RV-0304", origin, message, hint="choose another name")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Members:
     """The members of a component by name; those that were wrong keep their names."""
 

@@ -6,8 +6,9 @@
 from __future__ import annotations
 
 from collections.abc import Container
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
+from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.intervals import Interval
 from ravenchart.gen.language.names import NameScope, NameUse
 from ravenchart.gen.language.narrowing import Known, narrowed
@@ -25,7 +26,7 @@ EVENT = "event"
 """What expressions call the value of the triggering event."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Vocabulary:
     """What expressions of one region or activity may name."""
 
@@ -68,7 +69,7 @@ class Vocabulary:
         return replace(self, no_event=reason)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CheckedExpression:
     """A sound expression; an integer has no ``type`` but bounds and a unit.
 
