@@ -28,7 +28,7 @@ from ravenchart.gen.frozen import frozen
 
 from .blocking import Section
 from .checks import distinct, positive
-from .fixed_priority import analyse
+from .fixed_priority import analyse_tasks
 from .platform import Platform
 from .responses import Response
 from .tasks import FRAME_LIMIT, TableRow, Task
@@ -200,7 +200,7 @@ def checked(
         #  No job is inside an object for longer than it takes.
         length = min(section.length, cost.get(user, section.length))
         held.append(Section(section.resource, user, length))
-    responses = analyse((*tasks, *lifted), held, platforms)
+    responses = analyse_tasks((*tasks, *lifted), held, platforms)
     return Allocation(ordered, tasks, responses[: len(tasks)])
 
 

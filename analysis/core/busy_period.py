@@ -114,7 +114,7 @@ def response(
             return Response(task, level, blocking, None, reason=Reason.EFFORT)
         job += 1
         if job == 1 and not over:
-            repeat = pattern(level, task.period, effort.left)
+            repeat = repeats_after(level, task.period, effort.left)
         if over or job >= repeat:
             return _found(own, level, blocking, worst, job)
 
@@ -128,7 +128,7 @@ def _goals_of(own: Contender, job: int, blocked: int) -> list[Goal]:
     return sorted((before[frame] + cost, frame, number) for cost, frame, number in own.goals)
 
 
-def pattern(level: Level, period: int, limit: int) -> float:
+def repeats_after(level: Level, period: int, limit: int) -> float:
     """Jobs after which the releases at a level repeat; infinity when above ``limit``."""
     platform = level.platform
     length = math.lcm(period, platform.tick_period or 1)

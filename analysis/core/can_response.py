@@ -13,7 +13,7 @@ from ravenchart.gen.frozen import frozen
 
 from .bus import Bus, Frame
 from .responses import Reason
-from .window import Effort, Window, fixed_cost, releases
+from .window import Effort, Window, fixed_cost, releases_in
 
 ERRORS = 1 << 40
 """Serial number of the errors; those of frames are below."""
@@ -136,14 +136,14 @@ class FrameResponse:
         model = self.level.bus.errors
         if model is None or self.bound is None:
             return []
-        count = releases(self.window, model.period, self.frame.cost)
+        count = releases_in(self.window, model.period, self.frame.cost)
         later = [max(0, n * model.period - self.frame.cost) for n in range(count)]
         return [0] * (model.burst - 1) + later
 
     def queued(self, other: Frame) -> list[int]:
         """When frames of another message of the level take part in the window, at the soonest."""
         late = self.level.jitter(other, self.frame) + self.level.bus.bit_time
-        count = releases(self.window, other.period, late)
+        count = releases_in(self.window, other.period, late)
         return [max(0, n * other.period - late) for n in range(count)]
 
     @property

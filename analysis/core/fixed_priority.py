@@ -50,7 +50,7 @@ OVERHEADS_FROM = 1 << 40
 """Serial numbers of overheads; those of tasks are below."""
 
 
-def analyse(
+def analyse_tasks(
     tasks: Sequence[Task],
     sections: Sequence[Section] = (),
     platforms: Mapping[str, Platform] | None = None,
@@ -84,7 +84,7 @@ def bounds(
     for core, order in _cores(tasks).items():
         lengths = _quickly(order, held, (platforms or {}).get(core, NO_OVERHEAD))
         if not lengths or not all(lengths):
-            return tuple(r.bound for r in analyse(tasks, sections, platforms, ceilings))
+            return tuple(r.bound for r in analyse_tasks(tasks, sections, platforms, ceilings))
         found.update(zip([task.name for task in order], lengths, strict=True))
     return tuple([found[task.name] for task in tasks])
 

@@ -99,6 +99,6 @@ def rank(identifier: int, *, extended: bool = False) -> int:
     return first << _LEADING_SHIFT | 0b11 << 18 | rest
 
 
-def leading(rank: int) -> int:
+def leading_of_rank(rank: int) -> int:
     """The 11 leading bits of the identifier that has this rank."""
     return rank >> _LEADING_SHIFT

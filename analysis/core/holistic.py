@@ -49,7 +49,7 @@ class Network:
     task or frame that is released by the completion of another, by which; its own
     jitter then comes on top. Its period is that of what releases it, or a multiple where
     not every job does. Names are distinct over tasks and frames. ``platforms`` goes by
-    the name of a core, ``ceilings`` by resource, as in `fixed_priority.analyse`. Nothing
+    the name of a core, ``ceilings`` by resource, as in `fixed_priority.analyse_tasks`. Nothing
     that another releases has an offset. ``together``: steps of one chain count with the
     distances that they have.
     """
@@ -211,7 +211,7 @@ def _responses(
         core: max(t.priority for t in tasks if t.core == core and _delays(t, core, network, late))
         for core in {t.core for t in tasks if late[t.name] is None}
     }
-    for response in fixed_priority.analyse(
+    for response in fixed_priority.analyse_tasks(
         tasks, network.sections, network.platforms, network.ceilings
     ):
         task = response.task

@@ -30,7 +30,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import accumulate
 
-from .busy_period import WHOLE, Contender, Goal, Worst, pattern
+from .busy_period import WHOLE, Contender, Goal, Worst, repeats_after
 from .multiframe import Demand
 from .platform import Platform
 from .responses import (
@@ -254,7 +254,7 @@ class OffsetSearch:
             job += 1
             self.jobs = max(self.jobs, job)
             if job == 1 and not over and self.pattern == math.inf:
-                self.pattern = pattern(self.level, task.period, self.effort.left)
+                self.pattern = repeats_after(self.level, task.period, self.effort.left)
             if over or job >= self.pattern:
                 return
 

@@ -15,7 +15,7 @@ from .multiframe import Demand
 from .platform import Platform
 from .streams import Stream
 from .tasks import TableRow, Task
-from .window import cost_of, releases, source
+from .window import cost_of, releases_in, source
 
 
 class Reason(Enum):
@@ -186,7 +186,7 @@ class Response:
             return Overheads(0, 0, 0, 0, 0, 0)
         own = (self.worst_job + 1) * self.task.suspensions
         switched = own + sum(self._releases(t) * t.suspensions for t in self._others())
-        ticks = releases(self.window, platform.tick_period, 0) if platform.tick_period else 0
+        ticks = releases_in(self.window, platform.tick_period, 0) if platform.tick_period else 0
         released = 0
         if platform.release:
             released = sum(self._releases(task) * task.suspensions for task in self.level.order)
@@ -207,7 +207,7 @@ class Response:
         platform = self.level.platform
         if self.uses_offset_of(task):
             return stream_of(task, platform).count(*self._span(task))
-        return releases(self.window, task.period, jitter_of(task, platform))
+        return releases_in(self.window, task.period, jitter_of(task, platform))
 
     def released(self, task: Task) -> list[tuple[int, int]]:
         """When jobs of ``task`` are released in the window, at the soonest, with their frames."""

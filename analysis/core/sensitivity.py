@@ -18,7 +18,7 @@ from ravenchart.gen.frozen import frozen
 
 from . import holistic
 from .blocking import Section
-from .fixed_priority import analyse
+from .fixed_priority import analyse_tasks
 from .holistic import Network
 from .platform import Platform
 from .responses import Response
@@ -59,7 +59,7 @@ def scaling(
         factor = Fraction(count, steps)
         grown = [scaled(task, factor) for task in tasks]
         held = [replace(s, length=_up(s.length * factor)) for s in sections]
-        return _first_failing(analyse(grown, held, platforms, ceilings))
+        return _first_failing(analyse_tasks(grown, held, platforms, ceilings))
 
     found = greatest(lambda count: failing(count) is None, 1, FACTOR_LIMIT * steps)
     if found is None:
@@ -145,7 +145,7 @@ def growth(
         grown = [
             replace(task, wcet=task.wcet + extra) if task is chosen else task for task in tasks
         ]
-        return all(r.met for r in analyse(grown, sections, platforms, ceilings))
+        return all(r.met for r in analyse_tasks(grown, sections, platforms, ceilings))
 
     return greatest(met, 0, chosen.deadline)
 

@@ -38,7 +38,7 @@ from .bus import Frame
 from .can_response import FrameResponse
 from .responses import Response, demand_of, jitter_of, release_time
 from .tasks import Task
-from .window import Effort, Source, cost_of, fixed_cost, releases
+from .window import Effort, Source, cost_of, fixed_cost, releases_in
 
 if TYPE_CHECKING:
     from .holistic import Network
@@ -285,7 +285,7 @@ def _of_jobs(
             needed += sum(
                 max(sum(one.demand(window) for one in case) for case in cases) for cases in others
             )
-            needed += sum(cost_of(s, releases(window, s[0], s[1])) for s in level.sources)
+            needed += sum(cost_of(s, releases_in(window, s[0], s[1])) for s in level.sources)
             if needed <= length or effort.left <= 0:
                 return length
             length = needed

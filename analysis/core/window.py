@@ -41,7 +41,7 @@ def fixed_cost(period: int, jitter: int, cost: int) -> Source:
     return period, jitter, cost, None
 
 
-def releases(length: int, period: int, jitter: int) -> int:
+def releases_in(length: int, period: int, jitter: int) -> int:
     """Releases in a window of that length that is closed by no release."""
     return -(-(length + jitter) // period)
 
@@ -120,7 +120,7 @@ class Window:
     def add(self, serial: int, item: Source) -> None:
         """Take a source in; ``serial``, from 0 up, tells it from all others."""
         period, jitter, _, _ = item
-        count = releases(self.length, period, jitter)
+        count = releases_in(self.length, period, jitter)
         taken = cost_of(item, count)
         self.demand += taken
         heappush(self._due, (count * period - jitter, serial, taken, item))
@@ -129,7 +129,7 @@ class Window:
     def leave_out(self, serial: int, item: Source) -> None:
         """Count one source no more; at most one of a window's."""
         period, jitter, _, _ = item
-        self.demand -= cost_of(item, releases(self.length, period, jitter))
+        self.demand -= cost_of(item, releases_in(self.length, period, jitter))
         self._apart = serial
         self._weigh(item, -1)
 

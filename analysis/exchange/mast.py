@@ -22,14 +22,14 @@ from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.responses import release_time, switch_time
 from ravenchart.analysis.core.tasks import Task
 
-from .mast_text import Attributes, MastObject, Value, printed
+from .mast_text import Attributes, MastObject, Value, printed_model
 from .shapes import (
     ReleaseTree,
     background,
     dense,
-    exact,
     last_bit,
     names,
+    need_exact_times,
     no_errors,
     no_given_blocking,
     of_one_epoch,
@@ -51,7 +51,7 @@ NAMES = ("Activity_Operation", "Activity_Server", "Composite_Operation_List", "H
 
 def export(network: Network, chains: Sequence[TimedChain], title: str) -> str:
     """The model of ``network``; ``chains`` that sample are not part of what MAST analyses."""
-    exact(network)
+    need_exact_times(network)
     no_errors(network, "MAST")
     no_given_blocking(network, "MAST")
     head = ["Times in ns.", *remarks(network, chains), *last_bit(network, "MAST")]
@@ -65,7 +65,7 @@ def export(network: Network, chains: Sequence[TimedChain], title: str) -> str:
         _attributes(Model_Name=name, Model_Date="2000-01-01", System_PiP_Behaviour="Strict"),
     )
     comments = "".join(f"-- {line}\n" for line in head)
-    return f"{comments}\n" + printed((model, *writer.objects()))
+    return f"{comments}\n" + printed_model((model, *writer.objects()))
 
 
 def _linked_releases(network: Network) -> bool:

@@ -131,7 +131,7 @@ class _Reader:
         return Attributes(tuple(pairs)) if pairs else tuple(values)
 
 
-def printed(objects: tuple[MastObject, ...]) -> str:
+def printed_model(objects: tuple[MastObject, ...]) -> str:
     """The text of a model."""
     blocks = [f"{one.kind} {_text(one.attributes, 0)};\n" for one in objects]
     return "\n".join(blocks)

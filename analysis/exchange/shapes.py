@@ -57,7 +57,7 @@ def dense(levels: Iterable[int]) -> dict[int, int]:
     return {level: number for number, level in enumerate(sorted(set(levels)), 1)}
 
 
-def exact(network: Network) -> None:
+def need_exact_times(network: Network) -> None:
     """Refuse times that a double cannot hold."""
     for name, item in network.items().items():
         longest = item.plain_wcet if isinstance(item, Task) else item.cost

@@ -88,12 +88,12 @@ def of_model(analysis: Analysis) -> Advice | None:
     periods += [message.element for message in system.messages if message.source is None]
     order = [*(task.element for task in free), *(m.element for m in system.messages)]
     choices = Choices(wcets, periods, order)
-    found = advice(network, choices, analysis.scaling, analysis.schedulable, kept(analysis))
+    found = advice(network, choices, analysis.scaling, analysis.schedulable, keeps_all(analysis))
     late = any(not latency.met for _, latency in analysis.limited)
     return found and replace(found, limits=late)
 
 
-def kept(analysis: Analysis) -> Met:
+def keeps_all(analysis: Analysis) -> Met:
     """Whether a changed network of a model keeps every deadline and limit, and loses nothing."""
 
     def holds(other: Network) -> bool:

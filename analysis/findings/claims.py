@@ -21,7 +21,7 @@ from ravenchart.analysis.core.offsets import OffsetSearch, aligned
 from ravenchart.analysis.core.responses import Response, demand_of, jitter_of, release_time
 from ravenchart.analysis.core.window import Effort, Window, fixed_cost, source
 from ravenchart.analysis.system import latencies
-from ravenchart.analysis.system.authentication import authenticated
+from ravenchart.analysis.system.authentication import authentications
 from ravenchart.analysis.system.latencies import Latency, reception_frames
 from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.timing import Analysis
@@ -67,7 +67,7 @@ def claims_of(analysis: Analysis) -> Claims:
     guarded = protected(analysis)
     residual = {one.message.name: ceil(one.residual * 10**18) for one in guarded}
     noticed = [silence for one in guarded for silence in one.silences]
-    noticed += [silence for one in authenticated(analysis) for silence in one.silences]
+    noticed += [silence for one in authentications(analysis) for silence in one.silences]
     stale = {str(one.port): one.found for one in noticed if one.found is not None}
     handed |= {one.delivery for one in noticed if one.found is not None}
     travels = analysis.transfers.values()

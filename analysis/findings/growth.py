@@ -14,7 +14,7 @@ from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Slot
 
-from .advice import kept
+from .advice import keeps_all
 
 STEP = 1_000
 """Execution times grow by whole microseconds."""
@@ -30,7 +30,7 @@ def largest_wcet(analysis: Analysis, rows: Collection[str]) -> Ns | None:
     slots = _slots(analysis, rows)
     wcet, longest = slots[0][1].timing.wcet, min(slot.timing.deadline for _, slot in slots)
     parts: list[Part] = [(task, slot.element) for task, slot in slots]
-    holds = kept(analysis)
+    holds = keeps_all(analysis)
 
     def may_grow(steps: int) -> bool:
         grown = wcet + steps * STEP

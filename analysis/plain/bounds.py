@@ -15,7 +15,7 @@ from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Slot, System, Work
 
 from .columns import LARGEST, Column, Form, Kinds, RowValues, values
-from .entries import Problem, ReadFile, read
+from .entries import Problem, ReadFile, read_rows
 
 _COUNT = Column(Form.NUMBER, least=1)
 _COLUMNS = {"wcet": Column(Form.TIME_UP, least=1), "cycles": _COUNT, "clock_hz": _COUNT}
@@ -36,7 +36,7 @@ class Bound:
 
 def read_bounds(text: str, file: str, system: System) -> dict[str, Bound] | tuple[Problem, ...]:
     """The bound of each row of a table that the file lists, or what is wrong with it."""
-    reading = read(text, file)
+    reading = read_rows(text, file)
     known: dict[tuple[str, str], list[Slot]] = {}
     for slot in system.slots:
         known.setdefault(("row", slot.element.lower()), []).append(slot)

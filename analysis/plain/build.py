@@ -20,7 +20,7 @@ from ravenchart.analysis.core.tasks import TableRow, Task
 from ravenchart.gen.frozen import frozen
 
 from .columns import RowValues, values
-from .entries import Problem, ReadFile, read
+from .entries import Problem, ReadFile, read_rows
 
 SECOND = 10**9
 
@@ -35,9 +35,9 @@ class PlainSystem:
     chains: tuple[TimedChain, ...]
 
 
-def load(text: str, file: str) -> PlainSystem | tuple[Problem, ...]:
+def load_plain(text: str, file: str) -> PlainSystem | tuple[Problem, ...]:
     """The system in the text of a file, or what is wrong with it."""
-    reading = read(text, file)
+    reading = read_rows(text, file)
     rows: dict[str, list[RowValues]] = {}
     for entry in reading.entries:
         found = values(entry, reading)

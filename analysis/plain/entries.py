@@ -58,7 +58,7 @@ class ReadFile:
         self.problems.append(Problem(self.file, line, text))
 
 
-def read(text: str, file: str) -> ReadFile:
+def read_rows(text: str, file: str) -> ReadFile:
     """The rows of a file whose name ends in ``.json``, else of a CSV file."""
     reading = ReadFile(file, [], [])
     if len(text) > TOO_LONG:

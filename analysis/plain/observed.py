@@ -9,7 +9,7 @@ from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.tasks import Task
 
 from .columns import LONG, NEEDED, Kinds, values
-from .entries import Problem, read
+from .entries import Problem, read_rows
 
 KINDS: Kinds = {
     "task": {"observed": LONG},
@@ -37,7 +37,7 @@ def longest_times(network: Network) -> dict[str, int]:
 
 def observed(text: str, file: str, network: Network) -> dict[str, int] | tuple[Problem, ...]:
     """The longest time seen of each that the file lists, in ns, or what is wrong with it."""
-    reading = read(text, file)
+    reading = read_rows(text, file)
     known = longest_times(network)
     found: dict[str, int] = {}
     for entry in reading.entries:

@@ -41,7 +41,7 @@ class PlainResult:
         return self.found.met and all(latency.met for latency in self.latencies)
 
 
-def analyse(system: PlainSystem) -> PlainResult:
+def analyse_plain(system: PlainSystem) -> PlainResult:
     """All responses and latencies; ValueError for a chain that the system does not have."""
     network = system.network
     found = holistic.analyse(network)

@@ -19,7 +19,7 @@ from ravenchart.analysis.plain.results import (
     everything,
     latency_figures,
 )
-from ravenchart.analysis.system.authentication import authenticated
+from ravenchart.analysis.system.authentication import authentications
 from ravenchart.analysis.system.commands import command_times
 from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.timing import Analysis
@@ -90,7 +90,7 @@ def figures(analysis: Analysis) -> Json:
                 "tolerated": row.tolerated,
                 "stale": [{"port": str(one.port), "found": one.found} for one in row.silences],
             }
-            for row in authenticated(analysis)
+            for row in authentications(analysis)
         ],
         "transfers": [
             {

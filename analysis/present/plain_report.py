@@ -14,7 +14,7 @@ from ravenchart.analysis.plain.results import PlainResult, loads
 from .bars import row_of, slack_of
 from .page import page
 from .report import Execution
-from .rows import chain_picture, hops_of, instants_of
+from .rows import chain_picture, hop_cells, instants_of
 from .sentences import distance_lines, offset_lines, overload_lines
 
 SHOWN = 300
@@ -50,7 +50,7 @@ def render_plain(
         "advice": advice,
         "pictured": [*instants_of(found, tasks), *instants_of(found, sent)],
         "chains": [
-            (one.chain.name, hops_of(one), one, chain_picture(one)) for one in result.latencies
+            (one.chain.name, hop_cells(one), one, chain_picture(one)) for one in result.latencies
         ],
         "shorter": [*offset_lines(found.responses.values()), *distance_lines(found)],
         "executions": executions,

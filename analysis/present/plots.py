@@ -36,7 +36,7 @@ LEGIBLE_GROWTH = 10.0
 """Factors above this are cut off in the picture."""
 
 
-def svg(figure: Figure) -> str:
+def figure_svg(figure: Figure) -> str:
     """The picture on nothing, its text and axes in the colour of the page around it."""
     out = io.StringIO()
     with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "ravenchart"}):

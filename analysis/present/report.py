@@ -14,7 +14,7 @@ from markupsafe import Markup
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.findings.differences import Differences
-from ravenchart.analysis.system.authentication import authenticated
+from ravenchart.analysis.system.authentication import authentications
 from ravenchart.analysis.system.commands import command_times
 from ravenchart.analysis.system.graph import component_view
 from ravenchart.analysis.system.journeys import Journey
@@ -32,7 +32,7 @@ from . import plots
 from .bars import row_of
 from .page import page
 from .picture import draw
-from .rows import chain_picture, hops_of, instants_of
+from .rows import chain_picture, hop_cells, instants_of
 from .sentences import binding_lines, families, growth_line, offset_lines, verdict_line
 
 SHOWN_CHAINS = 40
@@ -178,7 +178,7 @@ def compare(analysis: Analysis, seen: Observation) -> tuple[Comparison, ...]:
     return tuple(sorted(rows, key=lambda row: -row.ratio))
 
 
-def render(
+def render_report(
     analysis: Analysis,
     run: RunReport | None = None,
     earlier: Differences | None = None,
@@ -210,17 +210,19 @@ def _context(analysis: Analysis, run: RunReport | None) -> dict[str, Any]:
         "buses": [_bus(analysis, bus) for bus in system.buses],
         "commands": tuple(command_times(analysis)),
         "limited": [
-            (chain.name, hops_of(found), found, chain_picture(found))
+            (chain.name, hop_cells(found), found, chain_picture(found))
             for chain, found in analysis.limited
         ],
         "chains": [
-            (hops_of(found), found, way)
+            (hop_cells(found), found, way)
             for found, way in zip(analysis.chains, analysis.ways.between_messages(), strict=True)
         ][:SHOWN_CHAINS],
         "chains_left": max(0, len(analysis.chains) - SHOWN_CHAINS),
         "by_offsets": offset_lines(analysis.responses),
         "factors": factors,
-        "room": Markup(plots.svg(plots.room(factors, _whole(analysis)))) if factors else None,
+        "room": Markup(plots.figure_svg(plots.room(factors, _whole(analysis))))
+        if factors
+        else None,
         "pictured": _instants(analysis),
         "objects": [(item, _names(item.users)) for item in system.objects if len(item.users) > 1],
         "private": sum(1 for item in system.objects if len(item.users) <= 1),
@@ -233,7 +235,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> dict[str, Any]:
         "visits": _visits(run),
         "watches": watches(analysis),
         "protected": protected(analysis),
-        "authenticated": authenticated(analysis),
+        "authenticated": authentications(analysis),
         "transfers": tuple(analysis.transfers.values()),
         "modes": [m for m in analysis.system.messages if m.transmission is not None],
     }
@@ -318,7 +320,7 @@ def _instants(analysis: Analysis) -> list[tuple[str, int, Markup]]:
 def _histograms(run: RunReport | None) -> list[tuple[str, Markup]]:
     """How often the chains were seen to react in what time."""
     return [
-        (one.chain, Markup(plots.svg(plots.histogram(one.times, one.bound, one.limit))))
+        (one.chain, Markup(plots.figure_svg(plots.histogram(one.times, one.bound, one.limit))))
         for one in (run.journeys if run else ())
         if one.times
     ]

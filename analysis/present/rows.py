@@ -28,7 +28,7 @@ HOPS = {
 """How data come to a step of a chain, in words."""
 
 
-def hops_of(found: Latency) -> list[tuple[str, str, int | None, int | None, int | None]]:
+def hop_cells(found: Latency) -> list[tuple[str, str, int | None, int | None, int | None]]:
     """Each hop: its name, how data come to it, what it waits, takes and is renewed after."""
     return [
         (hop.step.name, HOPS[hop.step.hop], hop.wait, hop.response, hop.renewal)
@@ -41,7 +41,7 @@ def chain_picture(found: Latency) -> Markup | None:
     pieces = plots.hop_pieces(found)
     if not pieces:
         return None
-    return Markup(plots.svg(plots.hops(pieces, found.reaction, found.chain.reaction_limit)))
+    return Markup(plots.figure_svg(plots.hops(pieces, found.reaction, found.chain.reaction_limit)))
 
 
 def instants_of(found: Holistic, names: Iterable[str]) -> list[tuple[str, int, Markup]]:
@@ -61,5 +61,5 @@ def instants_of(found: Holistic, names: Iterable[str]) -> list[tuple[str, int, M
             blocked = "already being sent"
         if slices:
             picture = plots.gantt(slices, deadline + response.lead, blocked)
-            drawn.append((name, slices[-1].end, Markup(plots.svg(picture))))
+            drawn.append((name, slices[-1].end, Markup(plots.figure_svg(picture))))
     return drawn

@@ -25,7 +25,7 @@ class Authenticated:
     silences: tuple[PortSilence, ...]
 
 
-def authenticated(analysis: Analysis) -> tuple[Authenticated, ...]:
+def authentications(analysis: Analysis) -> tuple[Authenticated, ...]:
     """Each authenticated message."""
     found: list[Authenticated] = []
     for message in analysis.system.messages:

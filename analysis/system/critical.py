@@ -16,7 +16,7 @@ from heapq import heapify, heappop, heappush
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.responses import Response, demand_of, release_time
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.analysis.core.window import releases
+from ravenchart.analysis.core.window import releases_in
 from ravenchart.gen.frozen import frozen
 
 GIVEN = "its given blocking"
@@ -131,7 +131,7 @@ def _jobs(response: Response) -> list[Job]:
         time = max(0, first + job * response.task.period)
         jobs.append((time, len(others) + 1 + job, own.costs[frame], response.task.name, "own"))
     if platform.tick_cost:
-        ticks = releases(window, platform.tick_period, 0)
+        ticks = releases_in(window, platform.tick_period, 0)
         times = [n * platform.tick_period for n in range(ticks)]
         jobs += [(time, 0, platform.tick_cost, "ticks and releases", "overhead") for time in times]
     for task in level.order if platform.release else ():

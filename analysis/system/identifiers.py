@@ -20,7 +20,7 @@ from collections.abc import Callable, Sequence
 from ravenchart.analysis.core.assignment import Order, audsley_frames, responses_in_place
 from ravenchart.analysis.core.bus import Frame
 from ravenchart.analysis.core.can_response import FrameResponse
-from ravenchart.analysis.core.frames import leading
+from ravenchart.analysis.core.frames import leading_of_rank
 from ravenchart.analysis.units import duration, microseconds, percent
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.frozen import frozen
@@ -55,14 +55,14 @@ class IdentifierPlaces:
         bound = sorted((f for f in left if f.name in self.given), key=lambda frame: frame.rank)
         open_ = [f for f in left if f.name not in self.given]
         below = next((n for n, f in enumerate(placed) if f.name in self.given), None)
-        end = PLACES if below is None else leading(placed[below].rank)
-        begin = leading(bound[-1].rank) if bound else 0
+        end = PLACES if below is None else leading_of_rank(placed[below].rank)
+        begin = leading_of_rank(bound[-1].rank) if bound else 0
         room = end - begin - 1 - (len(placed) if below is None else below)
         found = sorted(open_, key=self._urgency, reverse=True) if room > 0 else []
         if not bound:
             return found
-        above = set(range(1, begin)) - {leading(frame.rank) for frame in bound}
-        gap = begin - 1 - (leading(bound[-2].rank) if len(bound) > 1 else 0)
+        above = set(range(1, begin)) - {leading_of_rank(frame.rank) for frame in bound}
+        gap = begin - 1 - (leading_of_rank(bound[-2].rank) if len(bound) > 1 else 0)
         if gap >= len(open_):
             return sorted([*found, bound[-1]], key=self._urgency, reverse=True)
         return [*found, bound[-1]] if len(above) >= len(open_) else found

@@ -240,7 +240,7 @@ def of_model(seen: Observation, digest: str, file: str = "trace") -> None:
         )
 
 
-def together(parts: Mapping[str, Observation]) -> Observation:
+def merged(parts: Mapping[str, Observation]) -> Observation:
     """What several controllers on one machine showed, by node: as if it were one.
 
     Times count from the first start of all; elements are numbered anew, and counts are

@@ -31,7 +31,7 @@ from ravenchart.gen.model.system import Slot, System
 
 from .goals import Goal, GoalCoverage, GoalElement, GoalKind, goals
 from .stimulation import Choice, choices
-from .watched import watched
+from .watched import watched_machine
 
 EFFORT = 400_000
 """Instants that are executed at the most, unless another number is given."""
@@ -115,7 +115,7 @@ class CaseSearch:
         self.open = list(self.goals)
         self.choices = choices(system)
         self.instants: list[Instant] = []
-        start = watched(system, self.coverage)
+        start = watched_machine(system, self.coverage)
         self._coming = start.instants(Ns(2**62))
         self.near: dict[GoalElement, list[Branch]] = {}
         """By component, region and active state."""
@@ -309,7 +309,7 @@ class CaseSearch:
     def _replayed(self, path: Stimuli) -> GoalCoverage:
         """What one path shows by itself."""
         coverage = GoalCoverage()
-        for _ in watched(self.system, coverage).run(path):
+        for _ in watched_machine(self.system, coverage).run(path):
             pass
         return coverage
 

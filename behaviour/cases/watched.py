@@ -63,7 +63,7 @@ class WatchedRegion(RegionRun):
         super()._defer(event)
 
 
-def watched(system: System, coverage: GoalCoverage) -> Machine:
+def watched_machine(system: System, coverage: GoalCoverage) -> Machine:
     """The system before its epoch; what its charts show goes to ``coverage``."""
     machine = Machine(system, WatchedRegion)
     for instance in machine.instances.values():

@@ -67,22 +67,22 @@ class Outbox:
     raised: list[tuple[str, Value | None]] = field(default_factory=list)
 
 
-def default(kind: Type) -> Value:
+def least_value(kind: Type) -> Value:
     """The value nearest to zero; of an enumeration the first."""
     match kind:
         case IntegerType(first=first, last=last):
             return min(max(0, first), last)
         case EnumerationType(literals=literals):
             return literals[0]
-    return tuple((one.name, _scalar(default(one.type))) for one in kind.fields)
+    return tuple((one.name, _scalar(least_value(one.type))) for one in kind.fields)
 
 
 def holds(condition: Expression | None, view: View) -> bool:
     """Whether a guard lets through; where there is none it does."""
-    return condition is None or value_of(condition, view) == TRUE
+    return condition is None or value_in(condition, view) == TRUE
 
 
-def value_of(expression: Expression, view: View) -> Value:
+def value_in(expression: Expression, view: View) -> Value:
     """What an expression yields."""
     match expression:
         case Literal(value=value):
@@ -99,9 +99,9 @@ def value_of(expression: Expression, view: View) -> Value:
         case Operation(operator="or", operands=(left, right)):
             return _truth(holds(left, view) or holds(right, view))
         case Operation(operator="if", operands=(condition, then, otherwise)):
-            return value_of(then if holds(condition, view) else otherwise, view)
+            return value_in(then if holds(condition, view) else otherwise, view)
         case Operation(operator=operator, operands=operands):
-            values = [value_of(operand, view) for operand in operands]
+            values = [value_in(operand, view) for operand in operands]
             if operator in _LOGIC:
                 return _truth(_LOGIC[operator](*values))
             return _ARITHMETIC[operator](*map(_number, values))
@@ -175,9 +175,9 @@ def perform(flow: Flow, view: View, out: Outbox) -> None:
     for action in flow:
         match action:
             case Set(data=data, field=None, value=value):
-                view.data[data] = value_of(value, view)
+                view.data[data] = value_in(value, view)
             case Set(data=data, field=member, value=value):
-                new = _scalar(value_of(value, view))
+                new = _scalar(value_in(value, view))
                 old = view.data[data]
                 assert isinstance(old, tuple)
                 view.data[data] = tuple((f, new if f == member else v) for f, v in old)
@@ -192,5 +192,5 @@ def perform(flow: Flow, view: View, out: Outbox) -> None:
 def _made(values: tuple[tuple[str | None, Expression], ...], view: View) -> Value:
     """A scalar, or the record of these fields."""
     if values[0][0] is None:
-        return value_of(values[0][1], view)
-    return tuple((str(name), _scalar(value_of(value, view))) for name, value in values)
+        return value_in(values[0][1], view)
+    return tuple((str(name), _scalar(value_in(value, view))) for name, value in values)

@@ -22,7 +22,7 @@ from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.statechart import DONE, OnEvent, Overflow, Region
 from ravenchart.gen.model.system import Processor, Slot, System, Work
 
-from .expressions import Outbox, PortReading, View, default, perform
+from .expressions import Outbox, PortReading, View, least_value, perform
 from .region import RegionRun
 from .stimuli import Arrived, Raised, Stimuli
 from .traces import StepRecord, ValueRecord
@@ -61,7 +61,7 @@ class InstanceRun:
         self.parameters = dict(instance.parameters)
         self.data = {data.name: data.initial for data in self.component.data}
         self.ports = {
-            port.name: PortReading(default(port.type)) for port in self.component.inputs()
+            port.name: PortReading(least_value(port.type)) for port in self.component.inputs()
         }
         self.mailboxes = {port.name: Mailbox(port) for port in self.component.inputs()}
         policies = {e.name: e.overflow for e in self.component.events if e.overflow is not None}

@@ -32,7 +32,7 @@ from ravenchart.gen.model.statechart import (
     When,
 )
 
-from .expressions import View, value_of
+from .expressions import View, value_in
 from .region import ExecutedTransition, Happened, Nothing, Occurrence, RegionRun, Step
 
 Reads = tuple[tuple[Name | PortTest | InState, Value], ...]
@@ -255,7 +255,7 @@ class ObservedRegion(RegionRun):
 
     def _failed(self, expression: Expression) -> FalseGuard:
         reads = dict.fromkeys(_reads(expression))
-        return FalseGuard(expression, tuple((one, value_of(one, self._view)) for one in reads))
+        return FalseGuard(expression, tuple((one, value_in(one, self._view)) for one in reads))
 
 
 def _reads(expression: Expression) -> Iterator[Name | PortTest | InState]:

@@ -21,7 +21,7 @@ from typing import TypeVar
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.files.located import Map, grow_list
 from ravenchart.gen.frozen import frozen
-from ravenchart.gen.language.quantities import duration, shown
+from ravenchart.gen.language.quantities import parsed_duration, shown
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     NO_TIME,
@@ -81,7 +81,7 @@ class Stimuli:
     until: Ns
 
 
-def written(stimuli: Stimuli, comments: Iterable[str] = ()) -> str:
+def written_stimuli(stimuli: Stimuli, comments: Iterable[str] = ()) -> str:
     """A file of these stimuli, which `read` gives back; each comment is a line at its start."""
     lines = [f"# {comment}" for comment in comments]
     for entry in stimuli.entries:
@@ -109,7 +109,9 @@ def _text(value: Value) -> str:
 FORMS = "`{at, raise, with}`, `{at, put, value}` or, at the end, `{until}`"
 
 
-def read(text: str, file: str, system: System) -> tuple[Stimuli | None, tuple[Diagnostic, ...]]:
+def read_stimuli(
+    text: str, file: str, system: System
+) -> tuple[Stimuli | None, tuple[Diagnostic, ...]]:
     """The stimuli in a file for ``system``; None when something is wrong with them."""
     tree, found = grow_list(text, file)
     reading = _Reading(system, list(found))
@@ -174,7 +176,7 @@ class _Reading:
         """A time that is not before the one above."""
         origin = item.values_at[key].origin
         given = item[key]
-        time = duration(given) if isinstance(given, str) else None
+        time = parsed_duration(given) if isinstance(given, str) else None
         if given == 0 and not isinstance(given, bool):
             time = NO_TIME
         if time is None:

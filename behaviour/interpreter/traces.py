@@ -78,7 +78,7 @@ def seconds(time: Ns) -> str:
     return f"{whole}.{digits}"
 
 
-def parsed(line: str) -> StepRecord:
+def parsed_record(line: str) -> StepRecord:
     """The record that `StepRecord.text` printed as ``line``."""
     head, _, behaviours = line.partition(": ")
     time, _, element = head.partition(" ")

@@ -15,7 +15,7 @@ from ravenchart.gen.model.statechart import OnEvent, Region, State, Transition
 from ravenchart.gen.origins import Origin
 
 from . import logic
-from .labels import label, reached, trace, valuation, where
+from .labels import active_leaves, step_label, trace, valuation, way_to
 from .logic import Term
 from .reach import Reachable
 from .reasons import Obstacle, beaten, in_front, taken_inside
@@ -188,7 +188,7 @@ def guards_exclude_each_other(reach: Reachable, thread: Thread) -> Iterator[Diag
         )
         notes = [
             (one.origin, f"{first} is here"),
-            (other.origin, reached(reach, thread, edge)),
+            (other.origin, way_to(reach, thread, edge)),
         ]
         hint = f"let the guard of {second} exclude that of {first}"
         yield warning("RV-1103", other.origin, message, notes=notes, hint=hint)
@@ -211,11 +211,10 @@ def choices_have_a_way_out(reach: Reachable, thread: Thread) -> Iterator[Diagnos
         assert pseudo is not None
         message = f"{thread.name} may get stuck in {stuck}: no segment leaves it"
         message += f" with {data}" if data else ""
-        step = (
-            f"{where(thread.tree, edge.before.configuration)} -{label(thread.tree, edge.outcome)}->"
-        )
+        leaves = active_leaves(thread.tree, edge.before.configuration)
+        step = f"{leaves} -{step_label(thread.tree, edge.outcome)}->"
         notes = [
-            (pseudo.origin, reached(reach, thread, edge)),
+            (pseudo.origin, way_to(reach, thread, edge)),
             (_transition(thread.tree.region, edge.outcome.fired[0]).origin, f"then {step} {stuck}"),
         ]
         hint = "add a segment with `guard: else`"
@@ -300,7 +299,7 @@ def safe_state_is_near(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]
     for node, edge in thread.nodes.items():
         if node in near or edge is None:
             continue
-        at = where(tree, node.configuration)
+        at = active_leaves(tree, node.configuration)
         message = f"no way leads from {at} to {safe}, the safe state of {thread.name}"
         notes = [
             (tree.region.state(safe).origin, "the safe state is here"),

@@ -22,11 +22,11 @@ from ravenchart.gen.origins import Origin
 
 from . import logic
 from .budget import Exhausted
-from .labels import label, valuation, where
+from .labels import active_leaves, step_label, valuation
 from .logic import Term, Variable
 from .parts import determines
 from .reach import Reachable
-from .schedule import PORTS, schedules, together
+from .schedule import PORTS, in_one_table, schedules
 from .search import Violation, WaySearch
 from .stepping import Configuration
 from .threads import Edge, Thread
@@ -210,7 +210,7 @@ def _stale(reach: Reachable, system: System, thread: Thread) -> Pairs:
     """Copies of what a thread may have read before another processor wrote it anew."""
     component = reach.component
     rows = {r.name: r for r in component.runnables()}
-    beside = {name for name in (*rows, PORTS) if together(system, component, thread.name, name)}
+    beside = {name for name in (*rows, PORTS) if in_one_table(system, component, thread.name, name)}
     old = []
     for name, type_ in reach.types.items():
         if name[0] == "in" and name not in reach.symbols:
@@ -256,8 +256,8 @@ def _after(reach: Reachable, thread: Thread, edge: Edge, stale: Pairs) -> Pairs:
 
 
 def _step(thread: Thread, edge: Edge) -> str:
-    at, to = (where(thread.tree, n.configuration) for n in (edge.before, edge.after))
-    return f"{thread.name}: {at} -{label(thread.tree, edge.outcome)}-> {to}"
+    at, to = (active_leaves(thread.tree, n.configuration) for n in (edge.before, edge.after))
+    return f"{thread.name}: {at} -{step_label(thread.tree, edge.outcome)}-> {to}"
 
 
 def _origin(thread: Thread, edge: Edge) -> Origin:

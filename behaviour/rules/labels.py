@@ -24,7 +24,7 @@ LONGEST = 12
 """Steps of a trace that are shown; of a longer one, the last of them."""
 
 
-def where(tree: ChartTree, configuration: Configuration) -> str:
+def active_leaves(tree: ChartTree, configuration: Configuration) -> str:
     """The active leaves of a configuration."""
     if configuration.stopped:
         return "the end"
@@ -32,7 +32,7 @@ def where(tree: ChartTree, configuration: Configuration) -> str:
     return " + ".join(leaves) if leaves else "the start"
 
 
-def label(tree: ChartTree, outcome: Outcome) -> str:
+def step_label(tree: ChartTree, outcome: Outcome) -> str:
     """What a step is made for: an event, a time, or the transition that nothing triggers."""
     kind, subject = outcome.occurrence.kind, outcome.occurrence.subject
     if kind == "event":
@@ -52,7 +52,11 @@ def trace(tree: ChartTree, steps: Sequence[Edge]) -> str:
     if not steps:
         return "the start"
     first = steps[0]
-    text = "" if not first.before.configuration.active else where(tree, first.before.configuration)
+    text = (
+        ""
+        if not first.before.configuration.active
+        else active_leaves(tree, first.before.configuration)
+    )
     if len(steps) > LONGEST:
         text = "..."
     done = False
@@ -60,8 +64,8 @@ def trace(tree: ChartTree, steps: Sequence[Edge]) -> str:
         if edge.outcome.occurrence.kind == "done":
             done = True
             continue
-        target = where(tree, edge.after.configuration)
-        word = "done" if done else label(tree, edge.outcome)
+        target = active_leaves(tree, edge.after.configuration)
+        word = "done" if done else step_label(tree, edge.outcome)
         text = target if not text else f"{text} -{word}-> {target}"
         done = False
     return text
@@ -89,7 +93,7 @@ def valuation(reach: Reachable, model: Term, terms: Iterable[Term]) -> str:
     return ", ".join(shown_)
 
 
-def reached(reach: Reachable, thread: Thread, edge: Edge) -> str:
+def way_to(reach: Reachable, thread: Thread, edge: Edge) -> str:
     """The shortest way to where a step begins, as a note."""
     way = reach.way(thread, edge.before)
     text = trace(thread.tree, way)

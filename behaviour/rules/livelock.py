@@ -18,7 +18,7 @@ import z3
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 
 from . import logic
-from .labels import reached, trace, valuation
+from .labels import trace, valuation, way_to
 from .logic import Term, Variable
 from .reach import Reachable
 from .threads import Edge, Situation, Thread
@@ -100,7 +100,7 @@ def _finding(reach: Reachable, thread: Thread, cycle: Sequence[Edge], data: str)
     circle = trace(thread.tree, cycle)
     told = f" with {data}" if data else ""
     message = f"livelock in {region.name}{told}: a cycle without event or time-out: {circle}"
-    notes = [(first.origin, reached(reach, thread, cycle[0]))]
+    notes = [(first.origin, way_to(reach, thread, cycle[0]))]
     if starves:
         notes.append((region.origin, "completions come before events, so no event is ever taken"))
         hint = "let one of the transitions wait for an event or a time-out"

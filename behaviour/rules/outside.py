@@ -92,7 +92,7 @@ def external_events(component: Component, system: System) -> Iterator[tuple[str,
     yield from ((event.name, None) for event in outside)
 
 
-def parameters_of(component: Component, system: System) -> dict[str, dict[Variable, Term]]:
+def instance_parameters(component: Component, system: System) -> dict[str, dict[Variable, Term]]:
     """The parameters of each instance that has any."""
     types = {p.name: p.type for p in component.parameters}
     return {

@@ -35,7 +35,7 @@ from .budget import Budget, TooManyQuestions
 from .cells import actions, expressions, partition
 from .logic import Term, Variable
 from .outcomes import Outcome, outcomes
-from .outside import as_region, done_of, external_events, parameters_of
+from .outside import as_region, done_of, external_events, instance_parameters
 from .publishing import is_in, is_in_parts
 from .stepping import Configuration
 from .threads import MOST_QUESTIONS, Cells, Edge, Situation, Thread
@@ -52,7 +52,7 @@ class Reachable:
         self.budget = budget
         self.types = logic.readable(component)
         self.symbols: dict[Variable, Term] = {}
-        self.constants = parameters_of(component, system)
+        self.constants = instance_parameters(component, system)
         self.initial = {
             name: value
             for data in component.data

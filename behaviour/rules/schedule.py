@@ -67,7 +67,7 @@ def schedules(system: System, component: Component) -> Iterator[tuple[str, Rows]
         yield instance.name, rows
 
 
-def together(system: System, component: Component, one: str, other: str) -> bool:
+def in_one_table(system: System, component: Component, one: str, other: str) -> bool:
     """Whether two rows are in one table in every instance, so that neither interrupts the other."""
     for instance in system.instances:
         if instance.component.name != component.name:

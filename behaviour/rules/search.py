@@ -26,7 +26,7 @@ from ravenchart.gen.model.statechart import DONE, After, Every, Overflow, Transi
 from ravenchart.gen.model.system import System
 
 from . import logic
-from .labels import label, where
+from .labels import active_leaves, step_label
 from .logic import Term, Variable
 from .outcomes import Outcome
 from .outside import external_events
@@ -382,16 +382,16 @@ class WaySearch:
         at: dict[str, str] = {}
         for made in way.steps:
             tree = self.reach.thread(made.thread).tree
-            to = where(tree, made.outcome.after)
+            to = active_leaves(tree, made.outcome.after)
             if made.thread not in self.reach.published:
                 parts.append(f"{made.thread} runs")
             elif made.outcome.occurrence == START:
                 parts.append(f"{made.thread}: {to}" if several else to)
             elif last == made.thread and made.thread in at:
-                parts[-1] += f" -{label(tree, made.outcome)}-> {to}"
+                parts[-1] += f" -{step_label(tree, made.outcome)}-> {to}"
             else:
                 head = f"{made.thread}: " if several else ""
-                parts.append(f"{head}{at[made.thread]} -{label(tree, made.outcome)}-> {to}")
+                parts.append(f"{head}{at[made.thread]} -{step_label(tree, made.outcome)}-> {to}")
             at[made.thread] = to
             last = made.thread
         return "; ".join(parts) if parts else "at the start"

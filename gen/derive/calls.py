@@ -81,12 +81,12 @@ def device_types(system: System) -> tuple[DeviceType, ...]:
     return tuple(dict.fromkeys(device.type for device in system.devices if device.type))
 
 
-def started(system: System) -> tuple[Device, ...]:
+def devices_with_ends(system: System) -> tuple[Device, ...]:
     """The devices with operations at start or end, in model order."""
     return tuple(d for d in system.devices if d.type is not None and d.type.lifecycle.given)
 
 
-def units_of(system: System, kind: DeviceType) -> tuple[Device, ...]:
+def called_devices(system: System, kind: DeviceType) -> tuple[Device, ...]:
     """The devices of a type that are called, in model order."""
     return tuple(device for device in system.devices if device.type == kind)
 

@@ -104,7 +104,7 @@ class Carrier:
         )
 
 
-def placed(system: System) -> System:
+def with_nodes(system: System) -> System:
     """The system with a node for each of its processors.
 
     Without `node` a processor is where the instance of its first row is; and one that is

@@ -35,7 +35,7 @@ class DeviceLink:
     interface: str | None
 
 
-def links(system: System) -> tuple[DeviceLink, ...]:
+def device_links(system: System) -> tuple[DeviceLink, ...]:
     """What bindings lead to, each once, in model order."""
     found: dict[DeviceLink, None] = {}
     for binding in system.bindings:

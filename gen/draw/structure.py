@@ -30,11 +30,11 @@ from .boxes import Box, boxed
 from .devices import (
     DASHED,
     DeviceLink,
+    device_links,
     device_name,
     devices,
     end_port,
     interface_cell,
-    links,
     parts,
     provided_port,
     required,
@@ -67,7 +67,7 @@ class _Drawing:
                 (wire.target, wire.source.instance),
             )
         }
-        for link in reversed(links(system)):
+        for link in reversed(device_links(system)):
             right = link.interface is None or (
                 self.position[link.instance] < self.position[link.provider]
             )
@@ -98,7 +98,7 @@ class _Drawing:
             yield DotEdge(_rim(node), _message_name(message), _HIDDEN)
         for wire in self.system.connections:
             yield self._wire(wire.source, wire.target)
-        yield from map(self._bound, links(self.system))
+        yield from map(self._bound, device_links(self.system))
         yield from parts(self.system)
         for message in self.system.messages:
             yield from self._carried(message)
@@ -223,7 +223,7 @@ def _order(system: System) -> list[str]:
     graph: nx.Graph[str] = nx.Graph()
     graph.add_nodes_from(instance.name for instance in system.instances)
     graph.add_edges_from((w.source.instance, w.target.instance) for w in system.connections)
-    bound = [one for one in links(system) if one.interface is not None]
+    bound = [one for one in device_links(system) if one.interface is not None]
     graph.add_edges_from((one.instance, one.provider) for one in bound)
     found: list[str] = []
     while len(graph):

@@ -14,7 +14,7 @@ from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.system import System
 
 from .boxes import Box, boxes
-from .devices import devices_of, kind_of, links
+from .devices import device_links, devices_of, kind_of
 
 
 def plantuml(system: System) -> str:
@@ -32,7 +32,7 @@ def plantuml(system: System) -> str:
     for wire in system.connections:
         source, target = wire.source, wire.target
         lines.append(f"{_port(source)} --> {_port(target)}")
-    for link in links(system):
+    for link in device_links(system):
         provider = identifier(link.provider) if link.interface else f"device_{link.provider}"
         lines.append(f"{identifier(link.instance)} ..> {provider} : {link.required}")
     for device in system.devices:
@@ -103,7 +103,7 @@ def mermaid(system: System) -> str:
         source, target = wire.source, wire.target
         label = f"{source.port} to {target.port}"
         lines.append(f'  {_shape(source.instance)} -->|"{label}"| {_shape(target.instance)}')
-    for link in links(system):
+    for link in device_links(system):
         provider = _shape(link.provider) if link.interface else f"device_{link.provider}"
         lines.append(f'  {_shape(link.instance)} -.->|"{link.required}"| {provider}')
     for device in system.devices:

@@ -20,7 +20,7 @@ from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.names import meant, nearest
 from ravenchart.gen.origins import Origin
 
-from .located import FormPath, Map, Seq, scalar
+from .located import FormPath, Map, Seq, scalar_value
 from .schema import ModelFile
 from .schema_base import REQUIREMENTS
 
@@ -185,7 +185,7 @@ class ErrorPlace:
             message = f"{self.subject} must have at most {context['max_length']} characters"
             return error("RV-0204", self.origin, message)
         code, words = KINDS.get(kind, ("RV-0203", "has a wrong value"))
-        quoted = isinstance(self.value, str) and not isinstance(scalar(self.value), str)
+        quoted = isinstance(self.value, str) and not isinstance(scalar_value(self.value), str)
         if kind in ("int_type", "bool_type") and quoted:
             message = f"{self.subject} {words}, not the text `{self.value}`"
             return error(code, self.origin, message, hint="write it without quotes")

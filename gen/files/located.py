@@ -174,7 +174,7 @@ class Builder:
         origin = self.at(event)
         if exact:
             origin = replace(origin, column=origin.column + quoted)
-        self._put(event.value if quoted else scalar(event.value), TextPlace(origin, exact))
+        self._put(event.value if quoted else scalar_value(event.value), TextPlace(origin, exact))
 
     def _put(self, value: object, place: TextPlace) -> None:
         if not self.open:
@@ -192,7 +192,7 @@ class Builder:
             container.values_at[waiting[0]] = place
 
 
-def scalar(text: str) -> int | bool | str:
+def scalar_value(text: str) -> int | bool | str:
     """A plain scalar's value: an integer, a Boolean, or the text itself."""
     if text in ("true", "false"):
         return text == "true"

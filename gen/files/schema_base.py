@@ -41,7 +41,7 @@ from ravenchart.gen.language.quantities import (
     BYTES,
     LONGEST,
     NANOSECONDS,
-    duration,
+    parsed_duration,
     pattern,
     quantity,
 )
@@ -100,7 +100,7 @@ def _positive(value: object) -> object:
 
 
 def _duration(value: object) -> Ns:
-    parsed = duration(value) if isinstance(value, str) else None
+    parsed = parsed_duration(value) if isinstance(value, str) else None
     if parsed is None:
         shape = "a duration such as `20 ms` (ns, us, ms or s; whole nanoseconds)"
         raise _coded("RV-0205", f"must be {shape}")

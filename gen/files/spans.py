@@ -86,15 +86,15 @@ Plain = str | dict[str, "Plain"] | list["Plain"]
 """What a tree says, without where: scalars as text."""
 
 
-def plain(node: YamlNode) -> Plain:
+def plain_tree(node: YamlNode) -> Plain:
     """What a tree says."""
     match node:
         case YamlScalar():
             return node.value
         case YamlMapping():
-            return {key.value: plain(value) for key, value in node.entries}
+            return {key.value: plain_tree(value) for key, value in node.entries}
         case Sequence():
-            return [plain(item) for item in node.items]
+            return [plain_tree(item) for item in node.items]
 
 
 def spans(text: str) -> YamlMapping | None:

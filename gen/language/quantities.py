@@ -38,7 +38,7 @@ def quantity(text: str, units: Mapping[str, int]) -> int | None:
     return value.numerator if value.denominator == 1 else None
 
 
-def duration(text: str) -> Ns | None:
+def parsed_duration(text: str) -> Ns | None:
     """A duration such as ``20 ms`` in ns; None when not well-formed or not exact."""
     value = quantity(text, NANOSECONDS)
     return None if value is None else Ns(value)

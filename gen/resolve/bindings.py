@@ -37,14 +37,14 @@ from .devices import (
     Provider,
     found_in,
     has_tasks,
-    name_of,
     offered,
     provided_axes,
+    provider_name,
     tells,
     told_by,
     ungathered,
 )
-from .paths import owner_at, placed, reached, split
+from .paths import outermost, owner_at, reached, split
 
 Given = dict[tuple[str, str], tuple[BindingForm, Provider | None]]
 """The binding of (instance, interface), in lower case; no provider: it was wrong."""
@@ -73,7 +73,7 @@ def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
                 hint = "several devices are joined to one by `facade` or `array`"
                 findings.error("RV-1203", form.origin, message, notes=notes, hint=hint)
             found.setdefault(key, (form, provider))
-    for one in placed(devices.owners):
+    for one in outermost(devices.owners):
         for inner in (binding.under(one.name) for binding in one.composite.bindings):
             key = (inner.instance.lower(), inner.interface.lower())
             found.setdefault(key, (inner.form, Server(*inner.server)))
@@ -87,7 +87,9 @@ def bindings_of(
     made: list[Binding] = []
     for form, provider in given.values():
         if provider is not None and form.has("time_limit") and not has_tasks(provider):
-            message = f"`time_limit` has no meaning for {name_of(provider)}, which has no task"
+            message = (
+                f"`time_limit` has no meaning for {provider_name(provider)}, which has no task"
+            )
             hint = "remove it: a device is called directly"
             findings.error("RV-1214", form.at_key("time_limit"), message, hint=hint)
     for instance in instances:
@@ -147,15 +149,17 @@ def event_wires(
                 notes = [(heard.origin, f"{heard.name} is required here")]
                 if not told:
                     message = (
-                        f"{name_of(provider)} does not provide the event {heard.name}, which "
+                        f"{provider_name(provider)} does not provide the event {heard.name}, which "
                         f"{instance.name} requires"
                     )
                     near = meant(heard.name, told_by(provider))
                     near = near or "provide it by `events`, or by `provides` of a device type"
                     findings.error("RV-1204", form.at("to"), message, notes=notes, hint=near)
                 elif len(told) > 1:
-                    first, second = (name_of(teller) for teller, _ in told[:2])
-                    message = f"{first} and {second} of {name_of(provider)} both raise {heard.name}"
+                    first, second = (provider_name(teller) for teller, _ in told[:2])
+                    message = (
+                        f"{first} and {second} of {provider_name(provider)} both raise {heard.name}"
+                    )
                     hint = f"say which is meant: `choose: {{{heard.name}: {first}}}`"
                     findings.error("RV-1212", form.at("to"), message, notes=notes, hint=hint)
                 else:
@@ -207,7 +211,7 @@ def _bound(
         findings.error(code, at, message, notes=notes, hint=hint)
 
     found = found_in(provider, need.name, report)
-    own = name_of(provider)
+    own = provider_name(provider)
     if found is None and not need.optional:
         array = ungathered(provider, need.name)
         if array is not None:
@@ -220,12 +224,10 @@ def _bound(
             report("RV-1204", message, hint)
     if found is not None and need.command.per_axis:
         axes = provided_axes(found, need.name)
-        if axes != need.axes and (need.interface, name_of(found)) not in uneven:
-            uneven.add((need.interface, name_of(found)))
-            message = (
-                f"{name_of(found)} has {_axes(axes)}, but {instance.name}.{need.interface} works "
-                f"on {need.axes}"
-            )
+        name, user = provider_name(found), f"{instance.name}.{need.interface}"
+        if axes != need.axes and (need.interface, name) not in uneven:
+            uneven.add((need.interface, name))
+            message = f"{name} has {_axes(axes)}, but {user} works on {need.axes}"
             report("RV-1205", message, "join devices by `array`, or change `axes`")
     limit = LONGEST if form.lost("time_limit") else form.time_limit
     limit = None if limit is None else Ns(limit)

@@ -29,7 +29,7 @@ from .chart_names import States, concurrent_states, names_of
 from .chart_structure import structure_errors
 from .charts import region_of
 from .contracts import contract_of, sent
-from .flows import Targets, Use, called, flow_of
+from .flows import Targets, Use, called_command, flow_of
 from .interfaces import heard_of, needs_of, provided_of, servers_serve_once, stand_ins_agree
 from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
 from .vocabulary import Vocabulary
@@ -299,7 +299,7 @@ def _lists(
             if key == "raises" and name.lower() == DONE:
                 declared = _done(targets, origin, findings)
             elif key == "calls":
-                need = called(name, origin, words, targets, findings)
+                need = called_command(name, origin, words, targets, findings)
                 declared = None if need is None else need.name
             elif key in ("reads", "sends", "may_send") and targets.calls.find(name) is not None:
                 message = f"`{name}` is a command to call, so it cannot stand in `{key}`"

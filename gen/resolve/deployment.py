@@ -40,7 +40,7 @@ from ravenchart.gen.origins import Origin
 
 from .components import timing_of
 from .composites import connectable
-from .paths import DeploymentNames, event_at, member, split
+from .paths import DeploymentNames, event_at, member_of, split
 
 
 def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
@@ -232,7 +232,7 @@ def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | None:
             return None
         bus = site.buses.look_up(text, origin, site.findings)
         return None if bus is None else bus.name
-    found = member(text, "bus or instance.port", origin, site)
+    found = member_of(text, "bus or instance.port", origin, site)
     if found is None:
         return None
     instance, parts, name = found
@@ -256,7 +256,7 @@ def _slot(text: str, origin: Origin, form: ProcessorForm, site: DeploymentNames)
     owner, name = pair
     if site.buses.knows(owner) and not site.owners.knows(owner):
         return _bus_slot(text, name, owner, origin, form, site)
-    found = member(text, shape, origin, site)
+    found = member_of(text, shape, origin, site)
     if found is None:
         return None
     instance, parts, name = found
@@ -331,7 +331,7 @@ def chain_of(
 
 def _row_at(text: str, origin: Origin, site: DeploymentNames) -> str | None:
     """The id of the row ``instance.name``."""
-    found = member(text, "a message or instance.row", origin, site)
+    found = member_of(text, "a message or instance.row", origin, site)
     if found is None:
         return None
     instance, parts, own = found

@@ -28,7 +28,14 @@ from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.origins import Origin
 
 from .composites import Interface, provided_by, required_by
-from .equipment import address_of, apart, lifecycle_of, parameters_of, registers_of, values_of
+from .equipment import (
+    address_of,
+    apart,
+    device_parameters,
+    lifecycle_of,
+    parameter_values,
+    registers_of,
+)
 from .interfaces import at_axes
 from .paths import Owners, Placed, owner_at, reached, split
 
@@ -45,7 +52,7 @@ class Facade:
 Provider = Device | Server | Facade
 
 
-def name_of(provider: Provider) -> str:
+def provider_name(provider: Provider) -> str:
     """How a model calls it."""
     if isinstance(provider, Server):
         return provider.outside or f"{provider.instance}.{provider.interface.name}"
@@ -77,7 +84,7 @@ def device_type_of(
         if command is not None:
             made = DriverCommand(command, *at_axes(command, form.axes, types), Ns(wcet))
             found.declare(command.name, at, made, findings)
-    parameters, registers = parameters_of(form, types, findings), registers_of(form, findings)
+    parameters, registers = device_parameters(form, types, findings), registers_of(form, findings)
     lost = form.damaged or parameters is None or registers is None
     if len(found.sound()) < len(form.provides) or lost:
         return None
@@ -201,7 +208,7 @@ class Devices:
             kind = self.kinds.look_up(form.type, form.at("type"), self.findings)
             if kind is None:
                 return None
-            values = values_of(name, form, kind, self.findings)
+            values = parameter_values(name, form, kind, self.findings)
             if not address_of(name, form, kind, self.findings) or values is None:
                 return None
             address = form.address if kind.registers else None
@@ -231,7 +238,7 @@ class Devices:
             if member is None:
                 continue
             if member in found:
-                message = f"{name_of(member)} appears twice in `{key}`"
+                message = f"{provider_name(member)} appears twice in `{key}`"
                 self.findings.error("RV-1210", at, message, hint="remove one of them")
             found.append(member)
         whole = len(found) == len(texts) and not form.list_damaged(key)
@@ -244,15 +251,15 @@ class Devices:
         for index, member in enumerate(members):
             at = form.item_at("array", index)
             for leaf in member.leaves() if isinstance(member, Device) else ():
-                first = places.setdefault(leaf.name, name_of(member))
-                if first != name_of(member):
-                    where = f"in {first}, {name_of(member)}"
+                first = places.setdefault(leaf.name, provider_name(member))
+                if first != provider_name(member):
+                    where = f"in {first}, {provider_name(member)}"
                     message = f"{leaf.name} appears twice in `array`: {where}"
                     hint = "a piece of equipment has its axes once: remove one of them"
                     self.findings.error("RV-1210", at, message, hint=hint)
             if not isinstance(member, Device):
                 what = "a facade" if isinstance(member, Facade) else "a task's interface"
-                message = f"{name_of(member)} is {what}; the members of an array are devices"
+                message = f"{provider_name(member)} is {what}; the members of an array are devices"
                 hint = "join devices of one kind by `array`, and what differs by `facade`"
                 self.findings.error("RV-1211", at, message, hint=hint)
             elif pieces and _kind(member) is not _kind(pieces[0]):
@@ -283,14 +290,14 @@ class Devices:
         chosen: list[tuple[str, Provider]] = []
         for command, text in (form.choose or {}).items():
             at = form.entry_at("choose", command)
-            names = [name_of(member) for member in members]
-            member = next((m for m in members if name_of(m).lower() == text.lower()), None)
+            names = [provider_name(member) for member in members]
+            member = next((m for m in members if provider_name(m).lower() == text.lower()), None)
             if member is None:
                 message = f"`{text}` is no member of {name}"
                 value = form.place("choose", command).origin
                 self.findings.error("RV-1212", value, message, hint=meant(text, names))
             elif command.lower() not in map(str.lower, (*offered(member), *told_by(member))):
-                message = f"{name_of(member)} does not provide `{command}`"
+                message = f"{provider_name(member)} does not provide `{command}`"
                 hint = meant(command, (*offered(member), *told_by(member)))
                 self.findings.error("RV-1212", at, message, hint=hint)
             else:
@@ -319,9 +326,9 @@ def found_in(provider: Provider, command: str, report: Report) -> Device | Serve
         return found_in(meant_by, command, report)
     having = [member for member in provider.members if command in offered(member)]
     if len(having) > 1:
-        names = " and ".join(name_of(member) for member in having[:2])
+        names = " and ".join(provider_name(member) for member in having[:2])
         message = f"{names} of {provider.name} both provide {command}"
-        hint = f"say which is meant: `choose: {{{command}: {name_of(having[0])}}}`"
+        hint = f"say which is meant: `choose: {{{command}: {provider_name(having[0])}}}`"
         report("RV-1212", message, hint)
     return found_in(having[0], command, report) if having else None
 

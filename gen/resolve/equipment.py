@@ -35,7 +35,7 @@ ALIGNMENT = 4
 """Of the address of a device, in bytes."""
 
 
-def parameters_of(
+def device_parameters(
     form: DeviceTypeForm, types: NameScope[Type], findings: Findings
 ) -> tuple[DeviceParameter, ...] | None:
     """The parameters of a device type; None when one of them is wrong."""
@@ -88,7 +88,7 @@ def lifecycle_of(form: DeviceTypeForm) -> Lifecycle:
     return Lifecycle(*(None if span is None else Ns(span) for span in spans))
 
 
-def values_of(
+def parameter_values(
     name: str, form: DeviceForm, kind: DeviceType, findings: Findings
 ) -> tuple[tuple[DeviceParameter, Scalar], ...] | None:
     """The value of each parameter of a device; None when one is wrong or missing."""

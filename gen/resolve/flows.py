@@ -36,7 +36,7 @@ from ravenchart.gen.model.component import Event
 from ravenchart.gen.model.statechart import DONE
 from ravenchart.gen.origins import Origin
 
-from .typed import condition, fitting, read
+from .typed import condition, fitting, read_expression
 from .vocabulary import Vocabulary
 
 ActionForms = Sequence[SetForm | SendForm | CallForm | RaiseForm | IfForm]
@@ -184,7 +184,7 @@ def _send(form: SendForm, words: Vocabulary, targets: Targets, findings: Finding
 
 
 def _call(form: CallForm, words: Vocabulary, targets: Targets, findings: Findings) -> Action | None:
-    need = called(form.call, form.at("call"), words, targets, findings)
+    need = called_command(form.call, form.at("call"), words, targets, findings)
     if need is None:
         return None
     origin = form.at_key("call")
@@ -204,7 +204,7 @@ def _call(form: CallForm, words: Vocabulary, targets: Targets, findings: Finding
     return None if values is None else Send(origin, need.name, values)
 
 
-def called(
+def called_command(
     name: str, origin: Origin, words: Vocabulary, targets: Targets, findings: Findings
 ) -> Need | None:
     """The required command of that name that can be called."""
@@ -323,7 +323,7 @@ def _whole(
     findings: Findings,
 ) -> FlowValues | None:
     """A record given as it was read from something of the same type; else message and hint."""
-    checked = read(text, place, words, findings)
+    checked = read_expression(text, place, words, findings)
     if checked is None:
         return None
     source = checked.expression

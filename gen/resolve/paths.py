@@ -96,7 +96,7 @@ def owner_at(
     return found
 
 
-def member(
+def member_of(
     text: str, shape: str, origin: Origin, site: DeploymentNames
 ) -> tuple[Instance, Parts, str] | None:
     """The instance of ``instance.name``, what its component has, and the name."""
@@ -163,7 +163,7 @@ def reached(owner: Instance | Placed, origin: Origin, kind: str, findings: Findi
 
 def event_at(text: str, origin: Origin, site: DeploymentNames) -> tuple[str, str] | None:
     """The (instance, event) that ``instance.Event`` names."""
-    found = member(text, "instance.Event", origin, site)
+    found = member_of(text, "instance.Event", origin, site)
     if found is None:
         return None
     instance, parts, own = found
@@ -176,7 +176,7 @@ def event_at(text: str, origin: Origin, site: DeploymentNames) -> tuple[str, str
     return None if event is None else (instance.name, event.name)
 
 
-def placed(owners: Owners) -> Iterator[Placed]:
+def outermost(owners: Owners) -> Iterator[Placed]:
     """The composites of the system itself: none inside another."""
     for one in owners.sound():
         if isinstance(one, Placed) and "." not in one.name:

@@ -21,14 +21,14 @@ from ravenchart.gen.model.instances import Connection, Delegation, End, Instance
 
 from .components import Parts
 from .composites import Composite, within
-from .paths import DeploymentNames, Placed, ends_at, placed
+from .paths import DeploymentNames, Placed, ends_at, outermost
 from .values import constant
 
 Values = Mapping[str, tuple[Parameter, Scalar | None]]
 """The parameters of the composite around an instance, by their names in lower case."""
 
 
-def place(name: str, form: InstanceForm, site: DeploymentNames) -> None:
+def place_instance(name: str, form: InstanceForm, site: DeploymentNames) -> None:
     """Declare an instance and those inside it; without an item where it is not sound."""
     findings = site.findings
     of = site.components.look_up(form.component, form.at("component"), findings)
@@ -170,7 +170,7 @@ def connection_of(form: ConnectionForm, site: DeploymentNames) -> tuple[Connecti
 
 def inner_connections(site: DeploymentNames) -> Iterator[Connection]:
     """The connections inside composite instances."""
-    for one in placed(site.owners):
+    for one in outermost(site.owners):
         for wire in one.composite.connections:
             source = replace(wire.source, instance=f"{one.name}.{wire.source.instance}")
             target = replace(wire.target, instance=f"{one.name}.{wire.target.instance}")

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import field, replace
 from typing import Any, TypeVar
 
-from ravenchart.gen.derive.distribution import Carrier, placed
+from ravenchart.gen.derive.distribution import Carrier, with_nodes
 from ravenchart.gen.derive.identifiers import identified
 from ravenchart.gen.derive.macs import with_macs
 from ravenchart.gen.derive.remote import calling
@@ -52,7 +52,7 @@ from .devices import Devices, Provider, device_type_of
 from .interfaces import command_of, declare_vectors
 from .messages import message_of
 from .paths import DeploymentNames, Owners
-from .placing import connection_of, inner_connections, place
+from .placing import connection_of, inner_connections, place_instance
 from .recording import recorded_of
 from .values import types_of
 
@@ -303,7 +303,7 @@ class _Sections:
         """Add the instances, those inside composite ones by their paths."""
         before = self.findings.count()
         for name, form in self.model.entries("instances"):
-            place(name, form, site)
+            place_instance(name, form, site)
         if self.findings.count() == before and not site.owners.has_lost():
             self.sound.add("instances")
 
@@ -450,7 +450,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         messages=tuple(m for m in frames if not m.is_foreign),
         traffic=tuple(m for m in frames if m.is_foreign),
     )
-    system = with_macs(placed(system))
+    system = with_macs(with_nodes(system))
     return Resolved(system, frozenset(damaged), frozenset(sections.sound))
 
 

@@ -30,7 +30,14 @@ from ravenchart.gen.language.terms import (
 )
 from ravenchart.gen.origins import Origin
 
-from .vocabulary import EVENT, CheckedExpression, Vocabulary, described, literal_use, range_of
+from .vocabulary import (
+    EVENT,
+    CheckedExpression,
+    Vocabulary,
+    interval_in_words,
+    literal_use,
+    result_in_words,
+)
 
 FUNCTIONS: Mapping[str, int] = {
     "abs": 1,
@@ -258,7 +265,7 @@ class Checker:
         wrong = False
         for operand, item in zip(operands, sound, strict=True):
             if item.type is not None:
-                message = f"`{term.word}` takes numbers, but this is {described(item)}"
+                message = f"`{term.word}` takes numbers, but this is {result_in_words(item)}"
                 self.refuse("RV-0404", operand, message)
                 wrong = True
         return None if wrong else sound
@@ -287,7 +294,7 @@ class Checker:
         else:
             unit = next((item.unit for item in operands if not item.bare), None)
         if operator == "/" and operands[1].bounds[0] <= 0 <= operands[1].bounds[1]:
-            shown = range_of(operands[1].bounds)
+            shown = interval_in_words(operands[1].bounds)
             hint = "exclude 0 by `max(..., 1)`, or by `if` around the division"
             self.refuse("RV-0406", term, f"the divisor may be 0: it is {shown}", hint)
             return None
@@ -331,7 +338,7 @@ class Checker:
         """A condition."""
         checked = self.check(term, BOOLEAN)
         if checked is not None and checked.type is not BOOLEAN:
-            message = f"{taker} takes a condition, but this is {described(checked)}"
+            message = f"{taker} takes a condition, but this is {result_in_words(checked)}"
             self.refuse("RV-0404", term, message)
             return None
         return checked
@@ -355,7 +362,8 @@ class Checker:
             return None
         wrong = left.type is not right.type or isinstance(left.type, RecordType)
         if wrong:
-            message = f"`{term.word}` cannot compare {described(left)} with {described(right)}"
+            pair = f"{result_in_words(left)} with {result_in_words(right)}"
+            message = f"`{term.word}` cannot compare {pair}"
             hint = "compare their fields" if isinstance(left.type, RecordType) else None
             self.refuse("RV-0404", term, message, hint)
             return None
@@ -392,7 +400,7 @@ class Checker:
         if condition is None or checked is None or other is None:
             return None
         if checked.type is not other.type or isinstance(checked.type, RecordType):
-            message = f"`if` cannot yield {described(checked)} or {described(other)}"
+            message = f"`if` cannot yield {result_in_words(checked)} or {result_in_words(other)}"
             self.refuse("RV-0404", term, message)
             return None
         terms = (condition.expression, checked.expression, other.expression)
@@ -417,7 +425,7 @@ def _is_literal_of(word: str, type_: EnumerationType | None) -> bool:
 # --- Entry points ----------------------------------------------------------------
 
 
-def read(
+def read_expression(
     text: int | bool | str,
     place: TextPlace,
     vocabulary: Vocabulary,
@@ -446,11 +454,11 @@ def condition(
     checks: Callable[[Vocabulary, Findings, TextPlace], Checker] = Checker,
 ) -> Expression | None:
     """A Boolean expression for ``taker``, such as ``guard``."""
-    checked = read(text, place, vocabulary, findings, BOOLEAN, checks)
+    checked = read_expression(text, place, vocabulary, findings, BOOLEAN, checks)
     if checked is None:
         return None
     if checked.type is not BOOLEAN:
-        message = f"`{taker}` takes a condition, but this is {described(checked)}"
+        message = f"`{taker}` takes a condition, but this is {result_in_words(checked)}"
         findings.error("RV-0404", place.origin, message)
         return None
     return checked.expression
@@ -466,13 +474,13 @@ def fitting(
 ) -> Expression | None:
     """An expression that is of the target's type and provably within its range."""
     expected = type_ if isinstance(type_, EnumerationType) else None
-    checked = read(text, place, vocabulary, findings, expected)
+    checked = read_expression(text, place, vocabulary, findings, expected)
     if checked is None:
         return None
     if isinstance(type_, EnumerationType) or checked.type is not None:
         if checked.type is type_:
             return checked.expression
-        message = f"`{target}` is of type {type_.name}, but this is {described(checked)}"
+        message = f"`{target}` is of type {type_.name}, but this is {result_in_words(checked)}"
         findings.error("RV-0404", place.origin, message)
         return None
     if not checked.bare and checked.unit != type_.unit:
@@ -483,7 +491,10 @@ def fitting(
     low, high = checked.bounds
     if type_.first <= low and high <= type_.last:
         return checked.expression
-    wanted, given = range_of((type_.first, type_.last), type_.unit), range_of(checked.bounds)
+    wanted, given = (
+        interval_in_words((type_.first, type_.last), type_.unit),
+        interval_in_words(checked.bounds),
+    )
     shown = str(text) if len(str(text)) <= 60 and "\n" not in str(text) else "..."
     if low == high:
         message, hint = f"`{target}` takes {wanted}, but this is {low}", None

@@ -91,7 +91,7 @@ def literal_use(literal: str, of_type: EnumerationType, origin: Origin) -> NameU
     )
 
 
-def described(checked: CheckedExpression) -> str:
+def result_in_words(checked: CheckedExpression) -> str:
     """What an expression yields, in words."""
     if checked.type is not None:
         kind = "a record" if isinstance(checked.type, RecordType) else "a value"
@@ -99,6 +99,6 @@ def described(checked: CheckedExpression) -> str:
     return "a number"
 
 
-def range_of(bounds: Interval, unit: str | None = None) -> str:
+def interval_in_words(bounds: Interval, unit: str | None = None) -> str:
     """An interval in words."""
     return f"{bounds[0]} .. {bounds[1]}" + (f" {unit}" if unit else "")

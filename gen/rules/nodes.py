@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.derive.calls import callers, started
+from ravenchart.gen.derive.calls import callers, devices_with_ends
 from ravenchart.gen.derive.remote import is_across, obstacle
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.quantities import shown
@@ -144,7 +144,7 @@ def devices_start_in_time(resolved: Resolved) -> Iterator[Diagnostic]:
     """The devices of a node are initialised and tested before the first release."""
     system = resolved.system
     for node in system.nodes:
-        own = [device for device in started(system) if _home(system, device) == node.name]
+        own = [device for device in devices_with_ends(system) if _home(system, device) == node.name]
         time = sum(device.type.lifecycle.start for device in own if device.type is not None)
         if time > LONGEST_START:
             text = (

@@ -32,16 +32,16 @@ from .bus_records import (
     MemberState,
     RecordKind,
     Status,
+    can_message,
     confirmed_in,
     decode,
     encode,
     frame_in,
     greeting_data,
     greeting_of,
-    message_of,
     record_in,
     request_of,
-    split,
+    split_records,
 )
 
 PATIENCE = 5.0
@@ -281,7 +281,7 @@ class RavenchartBus(can.BusABC):
                 octets = self._unread + octets
             part = len(octets) % RECORD_BYTES
             self._unread = octets[-part:] if part else b""
-            for fields in split(octets[:-part] if part else octets):
+            for fields in split_records(octets[:-part] if part else octets):
                 frame = frame_in(fields, self._start, self._channel)
                 if frame is not None:
                     self._arrived.append(frame)
@@ -333,7 +333,7 @@ class RavenchartBus(can.BusABC):
         """What a record from the server means."""
         match record.kind:
             case RecordKind.FRAME | RecordKind.ERROR_FRAME:
-                arrived = message_of(record, self._start)
+                arrived = can_message(record, self._start)
                 arrived.channel = self._channel
                 self._arrived.append(arrived)
             case RecordKind.STATE:

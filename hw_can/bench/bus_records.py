@@ -243,7 +243,7 @@ def record_of(message: can.Message, number: int) -> BusRecord:
     return record
 
 
-def message_of(record: BusRecord, start: int) -> can.Message:
+def can_message(record: BusRecord, start: int) -> can.Message:
     """The frame or error frame; ``start`` is when bus time 0 was, in ns since 1970."""
     flags = Flag(record.flags)
     remote = Flag.REMOTE in flags
@@ -282,7 +282,7 @@ _FORMATS = {
 """By the flags of a frame: its lengths, and its last identifier."""
 
 
-def split(octets: bytes) -> Iterator[_Fields]:
+def split_records(octets: bytes) -> Iterator[_Fields]:
     """The fields of each record in ``octets``, a multiple of 88 bytes."""
     return _LAYOUT.iter_unpack(octets)
 

@@ -69,7 +69,7 @@ def fault_text(fault: BaseException) -> str:
     return "".join(c if c.isprintable() else "?" for c in said)
 
 
-def joined(interface: BusEnd, codec: Codec, record: OnFrame = unrecorded) -> Peer:
+def joined_peer(interface: BusEnd, codec: Codec, record: OnFrame = unrecorded) -> Peer:
     """A peer at that end of a bus; BenchError when there is none."""
     bus = opened(interface)
     link = link_of(bus) if interface.name == "slcan" and "socket://" in interface.channel else None

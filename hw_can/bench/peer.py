@@ -25,7 +25,7 @@ from cantools.database import Database
 from cantools.database.errors import Error as CodecFault
 
 from .naming import as_in_model
-from .protection import HEADER, Sender, Wrong, sender_of
+from .protection import HEADER, Sender, Wrong, protected_sender
 
 OUTSIDE = "Outside"
 """In a database, the sender of what no node of the model sends."""
@@ -62,7 +62,9 @@ class Codec:
         self._names = {(m.frame_id, m.is_extended_frame): m.name for m in database.messages}
         self._switched = _switches(database)
         found = ((m.name, m.dbc) for m in database.messages)
-        senders = ((name, sender_of(dbc.attributes)) for name, dbc in found if dbc is not None)
+        senders = (
+            (name, protected_sender(dbc.attributes)) for name, dbc in found if dbc is not None
+        )
         self._senders = {name: sender for name, sender in senders if sender is not None}
 
     @staticmethod

@@ -85,7 +85,7 @@ class Sender:
         return made
 
 
-def sender_of(attributes: Mapping[str, Any]) -> Sender | None:
+def protected_sender(attributes: Mapping[str, Any]) -> Sender | None:
     """The sender of a message with these attributes; None where it is not protected."""
     if PROFILE not in attributes or DATA_IDS not in attributes:
         return None

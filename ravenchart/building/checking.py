@@ -95,7 +95,7 @@ def check(
     system = loaded.system
     if system is None:
         raise Refused(_rendered(loaded, loaded.diagnostics), loaded.diagnostics)
-    system, unordered = identified(system)
+    system, unordered = with_good_identifiers(system)
     analysis = analyse(system)
     late = (unordered or folded(findings(analysis), system.instances)) if deadlines else ()
     behaviour = _behaviour(loaded, system, effort, finish)
@@ -119,7 +119,7 @@ def _behaviour(loaded: Loaded, system: System, effort: int, finish: bool) -> Beh
     return found
 
 
-def identified(system: System) -> tuple[System, tuple[Diagnostic, ...]]:
+def with_good_identifiers(system: System) -> tuple[System, tuple[Diagnostic, ...]]:
     """The system with the identifiers that the analysis finds for buses that ask for it.
 
     A bus without a good order keeps that by deadline, and there is a diagnostic of it.

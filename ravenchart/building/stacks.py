@@ -208,9 +208,9 @@ def _graph(made: BuiltProgram) -> graph.Graph:
     if reports in found:
         found[PUT_ALL] = found[reports]
     if made.target.facts.stacks.library is None:
-        ours = {graph.plain(one.name) for one in found.values()}
+        ours = {graph.plain_symbol(one.name) for one in found.values()}
         code = machine.read(_said(made, "objdump", "-d", "--no-show-raw-insn").splitlines())
-        found |= {name: one for name, one in code.items() if graph.plain(name) not in ours}
+        found |= {name: one for name, one in code.items() if graph.plain_symbol(name) not in ours}
     return found
 
 
@@ -290,7 +290,7 @@ def _known(system: System) -> dict[str, tuple[str, Origin, int | None]]:
 def _ending(made: BuiltProgram, depths: Depths) -> int:
     """What the run-time library executes on the stack of a task that ends."""
     wanted = set(made.target.facts.stacks.on_end)
-    found = [title for title, one in depths.graph.items() if graph.plain(one.name) in wanted]
+    found = [title for title, one in depths.graph.items() if graph.plain_symbol(one.name) in wanted]
     return max(map(depths.depth, found), default=0)
 
 

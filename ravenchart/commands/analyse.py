@@ -115,7 +115,7 @@ def _of_model(options: argparse.Namespace, checked: Checked) -> bool:
 
         with progress("write the report"):
             built = {one.node: one.last_build() for one in programs.programs_of(checked)}
-            page = report.render(analysis, run, changed, built)
+            page = report.render_report(analysis, run, changed, built)
         plain.write(options.html, page)
     return within
 

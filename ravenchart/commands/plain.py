@@ -19,9 +19,9 @@ from ravenchart.analysis.exchange import FORMATS, Unfit
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.findings.deadlines import no_bound_reason
 from ravenchart.analysis.findings.differences import Differences, Figures
-from ravenchart.analysis.plain.build import PlainSystem, load
+from ravenchart.analysis.plain.build import PlainSystem, load_plain
 from ravenchart.analysis.plain.observed import longest_times, observed
-from ravenchart.analysis.plain.results import Json, PlainResult, analyse, everything, loads
+from ravenchart.analysis.plain.results import Json, PlainResult, analyse_plain, everything, loads
 from ravenchart.analysis.present.plain_report import render_plain
 from ravenchart.analysis.present.report import Execution
 from ravenchart.analysis.present.sentences import distance_lines, offset_lines, overload_lines
@@ -43,7 +43,7 @@ SHOWN = 50
 
 def read(path: Path) -> PlainSystem:
     """The system in a file; `Refused` with everything that is wrong with it."""
-    found = load(text_of(path), str(path))
+    found = load_plain(text_of(path), str(path))
     if isinstance(found, PlainSystem):
         return found
     raise Refused("\n".join(map(str, found[:SHOWN])))
@@ -60,7 +60,7 @@ def text_of(path: Path) -> str:
 def analysed(path: Path) -> PlainResult:
     """The analysis of a file; `Refused` with what is wrong with it."""
     try:
-        return analyse(read(path))
+        return analyse_plain(read(path))
     except ValueError as fault:
         raise Refused(f"{path}: error: {fault}") from None
 

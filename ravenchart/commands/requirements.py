@@ -35,7 +35,7 @@ def execute(options: argparse.Namespace) -> int:
     facts = evidence.gathered(options)
     with progress("judge the claims"):
         found = claims.claims(facts)
-        trace = tracing.traced(facts, found, requirements, options.scenario)
+        trace = tracing.traced_requirements(facts, found, requirements, options.scenario)
     for one in trace.forward:
         print(f"{one.requirement.id}  {one.requirement.text}")
         for title, words in (

@@ -21,7 +21,7 @@ from ravenchart.failures import OK, WRONG, Refused
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.bench.scenario import DriveForm
 from ravenchart.running import judge, scenarios
-from ravenchart.running.attaching import bus_of
+from ravenchart.running.attaching import spoken_bus
 from ravenchart.running.process import Ended, StartError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem, connected
 from ravenchart.running.shell import Shell
@@ -49,7 +49,7 @@ def execute(options: argparse.Namespace) -> int:
     """Carry out the lines of standard input; the exit status."""
     checked = common.checked(options)
     system = checked.system
-    bus_of(system)
+    spoken_bus(system)
     interface = common.interface(options, system)
     drives = scenarios.checked(options.drives, system).drives if options.drives else {}
     ended: Sequence[Ended] = ()

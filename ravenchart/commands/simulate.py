@@ -20,12 +20,12 @@ from pathlib import Path
 
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.region import Stuck
-from ravenchart.behaviour.interpreter.stimuli import Raised, Stimuli, read
+from ravenchart.behaviour.interpreter.stimuli import Raised, Stimuli, read_stimuli
 from ravenchart.behaviour.interpreter.traces import (
     Played,
     StepRecord,
     ValueRecord,
-    parsed,
+    parsed_record,
     parsed_value,
 )
 from ravenchart.behaviour.rules.outside import external_events
@@ -65,7 +65,7 @@ def stimuli_of(system: System, path: Path) -> Stimuli:
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or str(problem)
         raise _refused([_unreadable(path, reason)], path, "") from problem
-    stimuli, found = read(text, str(path), system)
+    stimuli, found = read_stimuli(text, str(path), system)
     if stimuli is None:
         raise _refused(found, path, text)
     return stimuli
@@ -188,7 +188,7 @@ def executed(system: System, program: Path, stimuli: Stimuli) -> Played:
     types = {one.element: one.type for one in system.recorded_values}
     for line in done.stdout.splitlines():
         if ": " in line:
-            steps.append(parsed(line))
+            steps.append(parsed_record(line))
         else:
             found = parsed_value(line)
             number, of_type = int(found.value), types[found.element]

@@ -21,7 +21,7 @@ from cantools.database.errors import Error as DatabaseFault
 
 from ravenchart.failures import Refused
 from ravenchart.gen.language.names import database_problem_of, meant
-from ravenchart.gen.language.quantities import duration
+from ravenchart.gen.language.quantities import parsed_duration
 from ravenchart.gen.model.signals import FD_SIZES
 from ravenchart.gen.resolve.layouts import SIGNED_BITS
 
@@ -75,7 +75,7 @@ def periods(default: str | None, path: Path | None) -> Periods:
     found = Periods(default, {str(name): str(text) for name, text in rows.items()})
     given = [("--period", default)] if default is not None else []
     for place, text in (*given, *((f"{path}: {name}", one) for name, one in found.rows.items())):
-        time = duration(text)
+        time = parsed_duration(text)
         if time is None or time <= 0:
             raise Refused(f"{place}: error: `{text}` is no duration such as `20 ms`")
     return found
@@ -100,7 +100,7 @@ def imported(
     ``parts``: only the sections for a model that includes them.
     """
     given = given or Periods()
-    database = read(path, lenient=lenient)
+    database = read_database(path, lenient=lenient)
     buses = list(dict.fromkeys(m.bus_name for m in database.messages if m.bus_name))
     if bus is not None and bus not in buses:
         hint = meant(bus, buses) if buses else "it has no buses: leave `--bus` out"
@@ -129,7 +129,7 @@ def imported(
     return Imported(writer.text(path, rate, parts=parts), problems)
 
 
-def read(path: Path, *, lenient: bool) -> Database:
+def read_database(path: Path, *, lenient: bool) -> Database:
     """A database of any of the formats. Refused when cantools cannot read it."""
     ending = path.suffix.lower()
     form = ending.removeprefix(".") if ending in FORMATS else "dbc"

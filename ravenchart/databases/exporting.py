@@ -22,7 +22,7 @@ from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.system import System
 
-from .database import read
+from .database import read_database
 from .fields import fields_of, raw_fields
 from .names import Names
 
@@ -46,7 +46,7 @@ def exported(system: System, bus: Bus, original: Path | None, *, lenient: bool =
     own = emit_dbc(system, bus)
     if original is None:
         return Exported(own)
-    first = read(original, lenient=lenient)
+    first = read_database(original, lenient=lenient)
     made = cantools.database.load_string(own, "dbc", strict=False)
     assert isinstance(made, Database)
     names = dict(zip(first.messages, Names.of_each([m.name for m in first.messages]), strict=True))

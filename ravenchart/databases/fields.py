@@ -14,7 +14,16 @@ from dataclasses import dataclass, field, replace
 
 from cantools.database.can import Message, Signal
 
-from .signals import HALF, Unsayable, Words, bits_of, parts_of, raw_words, unsigned_words, words_of
+from .signals import (
+    HALF,
+    Unsayable,
+    Words,
+    bits_in_frame,
+    pieces_of,
+    raw_words,
+    signal_words,
+    unsigned_words,
+)
 
 MOST = 64
 """Fields of a record at most."""
@@ -34,7 +43,7 @@ class ImportedField:
     @property
     def bits(self) -> tuple[int, ...]:
         """Its bits in the frame, the least significant first."""
-        return bits_of(self.signal)
+        return bits_in_frame(self.signal)
 
     def clashes(self, other: ImportedField) -> bool:
         """Do both have a bit in some frame?"""
@@ -92,7 +101,7 @@ def _selector(found: Fields) -> ImportedField | None:
     roots = [
         s for s in message.signals
         if s.is_multiplexer and not s.multiplexer_ids and not s.conversion.is_float
-        and max(bits_of(s)) < 8 * message.length
+        and max(bits_in_frame(s)) < 8 * message.length
     ]  # fmt: skip
     if not roots:
         return None
@@ -101,7 +110,7 @@ def _selector(found: Fields) -> ImportedField | None:
     try:
         if signal.is_signed:
             return ImportedField(signal, unsigned_words(signal, "a multiplexor has no sign"))
-        words = words_of(signal, taken=found.taken)
+        words = signal_words(signal, taken=found.taken)
         if not all(words.has(page) for page in pages):
             reason = "some values of the multiplexor have no name, or are beyond its limits"
             words = raw_words(signal, reason)
@@ -149,13 +158,15 @@ def _add(found: Fields, signal: Signal, loose: list[ImportedField]) -> None:
     if signal.multiplexer_ids and not pages and inner is None:
         found.left_out.append((signal, "its multiplexor has no such value"))
         return
-    for part in parts_of(signal):
-        if max(bits_of(part)) >= 8 * found.message.length:
+    for part in pieces_of(signal):
+        if max(bits_in_frame(part)) >= 8 * found.message.length:
             reason = f"it reaches beyond the {found.message.length} bytes of its frame"
             found.left_out.append((part, reason))
             continue
         try:
-            words = words_of(part, taken=found.taken) if inner is None else raw_words(part, inner)
+            words = (
+                signal_words(part, taken=found.taken) if inner is None else raw_words(part, inner)
+            )
         except Unsayable as problem:
             found.left_out.append((part, str(problem)))
             continue
@@ -238,7 +249,7 @@ def _constants(found: Fields) -> Iterator[ImportedField]:
     for signal, _ in found.left_out:
         first = signal.raw_initial
         first = int(first) if isinstance(first, int) else 0
-        for place, bit in enumerate(bits_of(signal)):
+        for place, bit in enumerate(bits_in_frame(signal)):
             if bit not in held and bit < 8 * found.message.length:
                 values.setdefault(bit, first >> place & 1)
     room = MOST - len(found.fields)

@@ -74,7 +74,7 @@ class Words:
         return self.codes.index(code)
 
 
-def words_of(signal: Signal, *, taken: Set[str] = frozenset()) -> Words:
+def signal_words(signal: Signal, *, taken: Set[str] = frozenset()) -> Words:
     """A signal in a model's words; `Unsayable` when not even its raw counts can be said.
 
     ``taken`` are names that no literal may have.
@@ -236,14 +236,14 @@ HALF = 32
 """Bits of a piece of a signal that is too wide."""
 
 
-def parts_of(signal: Signal) -> tuple[Signal, ...]:
+def pieces_of(signal: Signal) -> tuple[Signal, ...]:
     """The signal itself, or pieces of it where it has more bits than a model's number.
 
     Two pieces are `_High` and `_Low`; more are numbered from the least significant one on.
     """
     if signal.length <= SIGNED_BITS:
         return (signal,)
-    bits = bits_of(signal)
+    bits = bits_in_frame(signal)
     pieces = [bits[low : low + HALF] for low in range(0, len(bits), HALF)]
     names = ["Low", "High"] if len(pieces) == 2 else [str(n) for n in range(len(pieces))]
     intel = signal.byte_order == "little_endian"
@@ -261,7 +261,7 @@ def parts_of(signal: Signal) -> tuple[Signal, ...]:
     return tuple(reversed(made))
 
 
-def bits_of(signal: Signal) -> tuple[int, ...]:
+def bits_in_frame(signal: Signal) -> tuple[int, ...]:
     """Its bits in the frame, the least significant first."""
     intel = signal.byte_order == "little_endian"
     order = ByteOrder.INTEL if intel else ByteOrder.MOTOROLA

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ravenchart.analysis.core.frames import classic_bits, fd_bits, rank
-from ravenchart.gen.language.quantities import duration, shown
+from ravenchart.gen.language.quantities import parsed_duration, shown
 
 BIT_RATES = (500_000, 1_000_000)
 """Of a bus whose database does not say it, or says one that its frames do not leave room on."""
@@ -72,7 +72,7 @@ class SentMessage:
 
 
 def _nanoseconds(period: str | None) -> int:
-    found = duration(period or SENDING_PERIOD)
+    found = parsed_duration(period or SENDING_PERIOD)
     assert isinstance(found, int)
     return found
 

@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from ravenchart.gen.files import spans
-from ravenchart.gen.files.spans import Plain, YamlMapping, YamlNode, YamlScalar, plain
+from ravenchart.gen.files.spans import Plain, YamlMapping, YamlNode, YamlScalar, plain_tree
 
 Exchange = Callable[[YamlNode], Plain | None]
 """What a node says after a change; None where it says what it said."""
@@ -45,7 +45,7 @@ class Document:
     def changed(self, text: str, exchange: Exchange) -> Document:
         """That of the new text, where it says what this one says but for what is exchanged."""
         made = Document.of(text)
-        if made is None or plain(made.root) != _exchanged(self.root, exchange):
+        if made is None or plain_tree(made.root) != _exchanged(self.root, exchange):
             raise LayoutError("the layout of the file does not allow this change: edit the file")
         return made
 
@@ -90,7 +90,7 @@ def with_entry(
     def exchange(node: YamlNode) -> Plain | None:
         if node is not mapping:
             return None
-        told = {name.value: plain(inner) for name, inner in mapping.entries}
+        told = {name.value: plain_tree(inner) for name, inner in mapping.entries}
         return told | {key: new if says is None else says}
 
     return document.changed(text[:place] + added + text[place:], exchange)
@@ -110,7 +110,7 @@ def without_entry(document: Document, mapping: YamlMapping, key: str) -> Documen
     def exchange(node: YamlNode) -> Plain | None:
         if node is not mapping:
             return None
-        return {name.value: plain(v) for name, v in mapping.entries if name is not found[0]}
+        return {name.value: plain_tree(v) for name, v in mapping.entries if name is not found[0]}
 
     return document.changed(made, exchange)
 
@@ -146,7 +146,7 @@ def with_block(
     def exchange(node: YamlNode) -> Plain | None:
         if node is not around:
             return None
-        told = {name.value: plain(inner) for name, inner in around.entries}
+        told = {name.value: plain_tree(inner) for name, inner in around.entries}
         return told | {key: {**scalars, items: [item.says]}}
 
     return document.changed(text[:place] + added + text[place:], exchange)
@@ -168,7 +168,7 @@ def without_block(document: Document, around: YamlMapping, key: str) -> Document
     def exchange(node: YamlNode) -> Plain | None:
         if node is not around:
             return None
-        return {name.value: plain(v) for name, v in around.entries if name is not found[0]}
+        return {name.value: plain_tree(v) for name, v in around.entries if name is not found[0]}
 
     return document.changed(made[:begin] + made[behind:], exchange)
 
@@ -184,7 +184,7 @@ def without_item(
     text = document.text
     name, items = _list(mapping, key)
     taken = items.items[number]
-    item = TakenItem(plain(taken), text[taken.start : taken.end])
+    item = TakenItem(plain_tree(taken), text[taken.start : taken.end])
     if items.flow:
         made = _cut(text, [(one.start, one.end) for one in items.items], number)
     else:
@@ -199,7 +199,9 @@ def without_item(
             made = f"{made[:colon]} []{made[colon:]}"
 
     def exchange(node: YamlNode) -> Plain | None:
-        return [plain(one) for one in items.items if one is not taken] if node is items else None
+        return (
+            [plain_tree(one) for one in items.items if one is not taken] if node is items else None
+        )
 
     return document.changed(made, exchange), item
 
@@ -228,7 +230,7 @@ def with_item(
     def exchange(node: YamlNode) -> Plain | None:
         if node is not items:
             return None
-        told = [plain(one) for one in items.items]
+        told = [plain_tree(one) for one in items.items]
         return [*told[:number], item.says, *told[number:]]
 
     return document.changed(text[:place] + added + text[place:], exchange)

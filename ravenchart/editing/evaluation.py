@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.system.timing import Analysis, analyse
-from ravenchart.building.checking import identified
+from ravenchart.building.checking import with_good_identifiers
 from ravenchart.building.garbage import without_collector
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.files.load import Reader, read_file
@@ -90,7 +90,7 @@ def evaluate(path: Path, texts: Texts, other: Reader = read_file) -> Evaluation:
     loaded = load(path, read)
     if loaded.system is None:
         return Evaluation(seen, loaded, None, ())
-    system, unordered = identified(loaded.system)
+    system, unordered = with_good_identifiers(loaded.system)
     analysis = analyse(system)
     late = unordered or folded(findings(analysis), system.instances)
     return Evaluation(seen, loaded, analysis, late)

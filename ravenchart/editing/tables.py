@@ -18,7 +18,7 @@ from pathlib import Path
 from ravenchart.allocation.proposals import WantedTable, free_name, stack_text
 from ravenchart.analysis.units import duration
 from ravenchart.gen.files import spans
-from ravenchart.gen.files.spans import plain
+from ravenchart.gen.files.spans import plain_tree
 from ravenchart.gen.model.system import Processor, System
 
 from . import edits
@@ -92,7 +92,7 @@ def rearranged(path: Path, state: Evaluation, tables: Sequence[WantedTable]) -> 
             f"{shared} goes to a processor of each node, and the text has it once: "
             "`ravenchart allocate --yaml` prints what to write"
         )
-    homes = homes_of(files.places, tables)
+    homes = processors_for(files.places, tables)
     names = [home or _added(files, table) for table, home in zip(tables, homes, strict=True)]
     for table, name in zip(tables, names, strict=True):
         for place, row in enumerate(table.rows):
@@ -108,7 +108,7 @@ def rearranged(path: Path, state: Evaluation, tables: Sequence[WantedTable]) -> 
     return files.texts(state.texts)
 
 
-def homes_of(places: ModelPlaces, tables: Sequence[WantedTable]) -> list[str | None]:
+def processors_for(places: ModelPlaces, tables: Sequence[WantedTable]) -> list[str | None]:
     """The processor that each table takes over: of those with most of its rows, the first."""
     shared: list[tuple[int, int, str]] = []
     for number, table in enumerate(tables):
@@ -200,7 +200,7 @@ def _set_reactions(files: _Files, tables: Sequence[WantedTable], names: Sequence
     for table, name in zip(tables, names, strict=True):
         for key, events in table.raises.items():
             found = files.processor(name).mapping.get(key)
-            known = {str(one).lower() for one in plain(found)} if found is not None else set()
+            known = {str(one).lower() for one in plain_tree(found)} if found is not None else set()
             for event in (one for one in events if one.lower() not in known):
                 files.change(name, partial(_with_event, key=key, event=event))
 

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 from ravenchart.gen.emit.ada.naming import region_package
 from ravenchart.gen.emit.program import simulation, source_folders
-from ravenchart.running.coverage import GCOV, spans
+from ravenchart.running.coverage import GCOV, number_ranges
 
 from .claim import Claim, ClaimKind, Shown
 from .facts import Facts
@@ -78,7 +78,7 @@ def _problems(
     branches = sorted({line for line, count in body.branches if not count} - {*lines})
     left = []
     if lines:
-        left.append(f"{file}: not executed: {spans(lines)}")
+        left.append(f"{file}: not executed: {number_ranges(lines)}")
     if branches:
-        left.append(f"{file}: a branch is not taken: {spans(branches)}")
+        left.append(f"{file}: a branch is not taken: {number_ranges(branches)}")
     return (), tuple(left)

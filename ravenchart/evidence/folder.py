@@ -41,7 +41,7 @@ from .documents import (
 from .facts import Facts
 from .gaps import gaps
 from .lists import Requirement
-from .tracing import Traceability, claims_of, traced
+from .tracing import Traceability, claims_about, traced_requirements
 
 INDEX, DATA, TIMING = "index.html", "evidence.json", "timing.html"
 TREE, SARIF, SBOM = "claims.svg", "findings.sarif", "sbom.cdx.json"
@@ -80,11 +80,13 @@ def make(
 ) -> FolderTexts:
     """All texts of the folder."""
     found = claims(facts)
-    trace = None if requirements is None else traced(facts, found, requirements, scenarios)
-    back = trace or traced(facts, found, (), ())
+    trace = (
+        None if requirements is None else traced_requirements(facts, found, requirements, scenarios)
+    )
+    back = trace or traced_requirements(facts, found, (), ())
     findings = (*facts.checked.diagnostics, *(trace.findings if trace else ()))
     texts = {
-        TIMING: report.render(facts.checked.analysis),
+        TIMING: report.render_report(facts.checked.analysis),
         TREE: gsn.draw(
             facts.checked.system.name,
             facts.checked.system.digest,
@@ -112,7 +114,7 @@ def _document(
     system = facts.checked.system
     named: dict[str, list[str]] = {}
     for link in facts.links:
-        for claim in claims_of(facts, link, found):
+        for claim in claims_about(facts, link, found):
             named.setdefault(claim.id, []).extend(link.ids)
     return Evidence(
         FORMAT,

@@ -83,7 +83,7 @@ class Traceability:
     findings: tuple[Diagnostic, ...]
 
 
-def traced(
+def traced_requirements(
     facts: Facts,
     found: Sequence[Claim],
     requirements: Sequence[Requirement],
@@ -92,7 +92,7 @@ def traced(
     """Requirements traced through a model; scenarios ``given``: None for those beside it."""
     probes = (*_scenarios(facts, given), *_tested(facts.tests or ()))
     backward = tuple(
-        Back(link, code_of(facts, link), claims_of(facts, link, found)) for link in facts.links
+        Back(link, code_of(facts, link), claims_about(facts, link, found)) for link in facts.links
     )
     forward = tuple(_trace(one, backward, probes) for one in requirements)
     known = {one.id for one in requirements}
@@ -113,7 +113,7 @@ def _trace(one: Requirement, backward: Sequence[Back], probes: Sequence[Probe]) 
 # --- From an element -------------------------------------------------------------
 
 
-def claims_of(facts: Facts, link: Link, found: Sequence[Claim]) -> tuple[Claim, ...]:
+def claims_about(facts: Facts, link: Link, found: Sequence[Claim]) -> tuple[Claim, ...]:
     """The claims about an element: about itself, what is around it, or what is inside it."""
     if not link.path:
         return tuple(claim for claim in found if claim.kind in PROOFS)

@@ -8,13 +8,13 @@ from __future__ import annotations
 from ravenchart.failures import Unusable
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import System
-from ravenchart.hw_can.bench.interfaces import BusEnd, joined
+from ravenchart.hw_can.bench.interfaces import BusEnd, joined_peer
 from ravenchart.hw_can.bench.peer import BenchError, OnFrame, Peer
 
 from .vocabulary import BusVocabulary
 
 
-def bus_of(system: System) -> Bus:
+def spoken_bus(system: System) -> Bus:
     """The bus on which a controller is spoken to; Unusable without one."""
     if not system.buses:
         raise Unusable(f"{system.name} has no bus, so nothing can be said to it")
@@ -23,7 +23,7 @@ def bus_of(system: System) -> Bus:
 
 def interface_of(system: System, name: str, channel: str) -> BusEnd:
     """The interface with the bit rates that the model gives its bus; Unusable without a bus."""
-    bus = bus_of(system)
+    bus = spoken_bus(system)
     data_rate = (bus.data_rate or bus.bit_rate) if bus.takes_fd else None
     return BusEnd(name, channel, bus.bit_rate, data_rate, fd=bus.takes_fd)
 
@@ -31,6 +31,6 @@ def interface_of(system: System, name: str, channel: str) -> BusEnd:
 def attached(interface: BusEnd, vocabulary: BusVocabulary, record: OnFrame) -> Peer:
     """A peer there; Unusable where there is no such bus."""
     try:
-        return joined(interface, vocabulary.codec, record)
+        return joined_peer(interface, vocabulary.codec, record)
     except BenchError as fault:
         raise Unusable(str(fault)) from None

@@ -14,7 +14,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from ravenchart.analysis.system.observed import Observation, read_map, together
+from ravenchart.analysis.system.observed import Observation, merged, read_map
 from ravenchart.building.targets import Board, Emulator
 from ravenchart.failures import Unusable
 from ravenchart.gen.language.terms import Ns
@@ -158,7 +158,7 @@ def _concluded(
     if len(request.controllers) > 1 and whole is not None:
         for part in parts.values():
             part.start = Ns(0)  # the looks of all boards begin together
-        whole = together(parts) if len(parts) == len(request.controllers) else None
+        whole = merged(parts) if len(parts) == len(request.controllers) else None
     chains = len(request.controllers) == 1
     return runs.concluded(
         title, plan, played, whole, ended, problems, request.analysis, chains=chains

@@ -17,7 +17,7 @@ from can.io.generic import MessageWriter
 from can.io.logger import MESSAGE_WRITERS
 
 from ravenchart.failures import Unusable
-from ravenchart.hw_can.bench.bus_records import RECORD_BYTES, decode, greeting_of, message_of
+from ravenchart.hw_can.bench.bus_records import RECORD_BYTES, can_message, decode, greeting_of
 from ravenchart.hw_can.bench.peer import OnFrame, unrecorded
 
 CHUNK = 512 * RECORD_BYTES
@@ -83,7 +83,7 @@ def _copy(read: Callable[[int], bytes], logger: can.Listener) -> None:
     while len(octets := read(RECORD_BYTES)) == RECORD_BYTES:
         if broken:
             continue
-        message = message_of(decode(octets), greeting.start)
+        message = can_message(decode(octets), greeting.start)
         message.channel = greeting.name
         try:
             logger.on_message_received(message)

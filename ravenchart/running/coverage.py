@@ -137,7 +137,7 @@ def _records(one: SourceCoverage) -> Iterator[str]:
     yield "end_of_record"
 
 
-def spans(numbers: Sequence[int]) -> str:
+def number_ranges(numbers: Sequence[int]) -> str:
     """Numbers in order, those that follow each other together: ``3, 7-9``."""
     starts = [n for n, one in enumerate(numbers) if not n or one != numbers[n - 1] + 1]
     parts = (numbers[a:b] for a, b in pairwise([*starts, len(numbers)]))

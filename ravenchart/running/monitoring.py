@@ -17,7 +17,7 @@ from ravenchart.building.checking import Checked
 from ravenchart.failures import Refused, Unusable
 
 from .monitored import NodeMonitor, WatchedEvent, WatchedNode
-from .snapshots import SnapshotFile, parsed, written
+from .snapshots import SnapshotFile, parsed_snapshot, snapshot_files
 
 PERIOD = 0.1
 """Seconds between two looks, as between two snapshots."""
@@ -39,7 +39,7 @@ def found(checked: Checked, note: Callable[[str], None]) -> list[NodeFile]:
     files: list[NodeFile] = []
     for program in made:
         main = f"{checked.stem}_main"
-        running = written([home / program.folder for home in homes], main)
+        running = snapshot_files([home / program.folder for home in homes], main)
         if running:
             files.append((program, running[0]))
         if running[1:]:
@@ -126,7 +126,7 @@ class WatchedController:
             self.node.process, self.node.events, self.node.unlisted = process, [], 0
             return True
         with _readable():
-            snapshot = parsed(text, self._map, str(self._file.path))
+            snapshot = parsed_snapshot(text, self._map, str(self._file.path))
             if not self._sequence:
                 for digest in (self._digest, self._map.digest):
                     of_model(snapshot.seen, digest, str(self._file.path))

@@ -14,17 +14,17 @@ from pathlib import Path
 from rich.console import Console
 
 from ravenchart import terminal
-from ravenchart.analysis.present.plots import svg
-from ravenchart.analysis.present.report import RunReport, compare, executions, render
+from ravenchart.analysis.present.plots import figure_svg
+from ravenchart.analysis.present.report import RunReport, compare, executions, render_report
 from ravenchart.analysis.system.journeys import journeys
 from ravenchart.analysis.system.observed import (
     Observation,
     TraceError,
     TraceMap,
+    merged,
     of_model,
     read_map,
     read_trace,
-    together,
 )
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.building import stacks
@@ -231,7 +231,7 @@ def write_report(
         picture.write_bytes(plots.png(figure))
         written.append(picture)
         caption = "Target and true position of each axis, its states in the band above."
-        pictures.append((caption, svg(figure)))
+        pictures.append((caption, figure_svg(figure)))
     pictures += value_plots.pictures(outcome.observation)
     run = RunReport(
         title=outcome.title,
@@ -246,7 +246,7 @@ def write_report(
         pictures=tuple(pictures),
     )
     page = out_dir / "report.html"
-    page.write_text(render(analysis, run, programs=programs), encoding="utf-8")
+    page.write_text(render_report(analysis, run, programs=programs), encoding="utf-8")
     return (page, *written)
 
 
@@ -444,7 +444,7 @@ def run_nodes(
         parts = [read(t, m, problems) for t, m in zip(traces, maps, strict=True)]
         if all(part is not None for part in parts):
             named = zip(controllers, parts, strict=True)
-            seen = together({c.node: part for c, part in named if part is not None})
+            seen = merged({c.node: part for c, part in named if part is not None})
     title = plan.title if plan else f"{seconds:g} s without a scenario"
     return concluded(title, plan, played, seen, all_ended(ended), problems, analysis)
 

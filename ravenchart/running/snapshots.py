@@ -119,7 +119,7 @@ def _is_whole(text: str, length: int) -> bool:
     )
 
 
-def parsed(text: str, trace_map: TraceMap, file: str) -> Snapshot:
+def parsed_snapshot(text: str, trace_map: TraceMap, file: str) -> Snapshot:
     """A whole snapshot; TraceError names the first line that cannot be read."""
     lines = text.splitlines()
     report: list[str] = []
@@ -165,7 +165,7 @@ def is_written(path: Path) -> bool:
         file.close()
 
 
-def written(folders: Sequence[Path], program: str) -> list[Path]:
+def snapshot_files(folders: Sequence[Path], program: str) -> list[Path]:
     """The files of controllers that run now, of a program in any mode; the newest first."""
     found: list[tuple[float, Path]] = []
     for path in (p for folder in folders for p in folder.glob(f"*/{program}{MARK}*")):

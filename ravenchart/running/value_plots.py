@@ -11,7 +11,7 @@ from itertools import groupby
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ravenchart.analysis.present.plots import INK, svg
+from ravenchart.analysis.present.plots import INK, figure_svg
 from ravenchart.analysis.system.observed import Observation
 
 from .plots import TRUE_COLOUR
@@ -31,7 +31,7 @@ def pictures(seen: Observation | None) -> Iterator[tuple[str, str]]:
         left = len(recorded) - MOST_PANELS
         caption = "Recorded values over time, in the time of the controller."
         caption += f" {left} more are in the trace." if left > 0 else ""
-        yield caption, svg(values(recorded[:MOST_PANELS]))
+        yield caption, figure_svg(values(recorded[:MOST_PANELS]))
 
 
 def values(series: Sequence[Series]) -> Figure:

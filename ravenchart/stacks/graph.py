@@ -99,7 +99,7 @@ _ADDED = re.compile(
 )
 
 
-def plain(name: str) -> str:
+def plain_symbol(name: str) -> str:
     """The symbol of the subprogram that a function was made of.
 
     The compiler makes special copies of functions, and from GNAT 13 on a function inside each
@@ -114,12 +114,12 @@ _TASK = re.compile(r"TKB(X[bn]*)?$")
 
 def is_task(name: str) -> bool:
     """Whether a symbol is that of a task body."""
-    return _TASK.search(plain(name)) is not None
+    return _TASK.search(plain_symbol(name)) is not None
 
 
 def ada_name(name: str) -> str:
     """A symbol as people read it: `pump_1__run_ports` is `Pump_1.Run_Ports`."""
-    base = re.sub(r"(TKB(X[bn]*)?|\.\d+)$", "", plain(name).removeprefix("_ada_"))
+    base = re.sub(r"(TKB(X[bn]*)?|\.\d+)$", "", plain_symbol(name).removeprefix("_ada_"))
     parts = [p for p in base.split("__") if p]
     if len(parts) < 2:
         return name

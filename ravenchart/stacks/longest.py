@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
-from .graph import INDIRECT, Function, Graph, StackFrame, plain
+from .graph import INDIRECT, Function, Graph, StackFrame, plain_symbol
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +111,7 @@ class Depths:
         self.graph = graph
         self.rules = rules
         self.problems: dict[StackProblem, None] = {}
-        self._endings = {t for t, f in graph.items() if plain(f.name) in rules.endings}
+        self._endings = {t for t, f in graph.items() if plain_symbol(f.name) in rules.endings}
         self._ended: dict[str, _Best] = {}
         """Of an ending and what it calls."""
         self._best: dict[str, _Best] = {}
@@ -190,18 +190,18 @@ class Depths:
         return self.rules.library is not None
 
     def _through_pointers(self, function: Function, place: str) -> list[str]:
-        known = self.rules.pointers.get(plain(function.name))
+        known = self.rules.pointers.get(plain_symbol(function.name))
         if known is None:
             self.problems[Indirect(function.name, place or function.place)] = None
             return []
-        names = {title: plain(one.name) for title, one in self.graph.items()}
+        names = {title: plain_symbol(one.name) for title, one in self.graph.items()}
         return [t for t, name in names.items() if any(fnmatchcase(name, one) for one in known)]
 
     def _size(self, title: str) -> int:
         if title == LIBRARY:
             return self.rules.library or 0
         function = self.graph[title]
-        bound = self.rules.bounds.get(plain(function.name))
+        bound = self.rules.bounds.get(plain_symbol(function.name))
         extra = 0
         if function.frame is StackFrame.DYNAMIC:
             if bound is None:
@@ -213,7 +213,7 @@ class Depths:
     def _times(self, title: str) -> int:
         """How many frames of a function are on a stack at once."""
         function = self.graph.get(title)
-        bound = self.rules.bounds.get(plain(function.name)) if function else None
+        bound = self.rules.bounds.get(plain_symbol(function.name)) if function else None
         return 1 if bound is None else bound.depth
 
     def _recursion(self, path: list[str], back: str) -> None:

@@ -13,7 +13,7 @@ from ravenchart.editing.evaluation import Evaluation, Texts, content
 from ravenchart.editing.places import ModelPlaces, NamedEntry
 from ravenchart.editing.tables import moved
 from ravenchart.gen.files.schema_deployment import PRIORITIES
-from ravenchart.gen.language.quantities import LONGEST, duration
+from ravenchart.gen.language.quantities import LONGEST, parsed_duration
 
 from .publishing import RefusedRequestError
 from .requests import Move, SetProcessor, SetTime
@@ -120,7 +120,7 @@ def _entry(
 
 def _duration(text: str) -> str:
     """A duration as it is written in the model."""
-    value = duration(text.strip())
+    value = parsed_duration(text.strip())
     if value is None:
         raise ChangeRefusedError(
             f"`{text}` is not a duration: write a number and ns, us, ms or s, such as `20 ms`"

@@ -35,7 +35,7 @@ from .requests import (
 )
 from .searching import Search
 from .session import Session
-from .view import located, view
+from .view import located, whole_view
 
 T = TypeVar("T")
 
@@ -121,7 +121,7 @@ class Hub(Publisher):
         room = lines if number == self.session.number else None
         search = None if self._search is None else self._search.told(self.session)
         more = {"room": room, "search": search, "replay": self.replay is not None}
-        return json.dumps(view(self.session) | more).encode()
+        return json.dumps(whole_view(self.session) | more).encode()
 
     def _published(self) -> None:
         """Look for advice on the state that is shown now."""

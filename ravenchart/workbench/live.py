@@ -17,7 +17,7 @@ from ravenchart.failures import Failure
 from ravenchart.running import monitoring
 from ravenchart.running.monitoring import WatchedController
 
-from .motion import LastValues, shown
+from .motion import LastValues, shown_node
 
 
 class LiveView:
@@ -52,7 +52,7 @@ class LiveView:
         for one, values in zip(self._watched, self._values, strict=True):
             assert self._checked is not None
             lines = values.look(one.node)
-            yield shown(self._checked.system, one.node, one.last, lines) | {"age": one.age}
+            yield shown_node(self._checked.system, one.node, one.last, lines) | {"age": one.age}
 
     def _attached(self, digest: str) -> str:
         """Watch what runs now, in place of what has ended; why there is nothing to watch."""

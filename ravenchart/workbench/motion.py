@@ -28,7 +28,9 @@ Lines = Mapping[str, tuple[Quantity, Sequence[Point]]]
 """Of each value what its numbers mean, and what it was when."""
 
 
-def shown(system: System, node: WatchedNode, last: Sequence[WatchedEvent], lines: Lines) -> Json:
+def shown_node(
+    system: System, node: WatchedNode, last: Sequence[WatchedEvent], lines: Lines
+) -> Json:
     """A node as the page gets it; ``last`` are its last transitions and faults."""
     return asdict(node) | {
         "last": [asdict(one) for one in last],

@@ -91,7 +91,7 @@ class Pages:
     async def events(self, request: Request) -> Response:
         """Every state from now on, as server-sent events."""
         if self.pages >= MOST_PAGES:
-            return error(503, f"{MOST_PAGES} pages are open already: close one")
+            return refusal(503, f"{MOST_PAGES} pages are open already: close one")
         return StreamingResponse(self._stream(), media_type="text/event-stream")
 
     async def _stream(self) -> AsyncIterator[bytes]:
@@ -106,23 +106,23 @@ class Pages:
         """A drawing."""
         asked = request.query_params
         found = await self.publisher.drawing(asked.get("name", ""), asked.get("mark"))
-        return error(404, "the model has no such drawing") if not found else JSONResponse(found)
+        return refusal(404, "the model has no such drawing") if not found else JSONResponse(found)
 
     async def act(self, request: Request) -> Response:
         """Do what a message asks for."""
         if request.headers.get("content-type", "").partition(";")[0] != "application/json":
-            return error(415, "a message is JSON: content-type application/json")
+            return refusal(415, "a message is JSON: content-type application/json")
         try:
             body = await _body(request)
             if body is None:
-                return error(413, f"a message has at most {LARGEST} bytes")
+                return refusal(413, f"a message has at most {LARGEST} bytes")
             state = await self.publisher.act(self.read(body))
         except MalformedError as problem:
-            return error(400, str(problem))
+            return refusal(400, str(problem))
         except OldError as problem:
-            return error(409, str(problem))
+            return refusal(409, str(problem))
         except RefusedRequestError as problem:
-            return error(422, str(problem), **problem.more())
+            return refusal(422, str(problem), **problem.more())
         return Response(state, media_type="application/json")
 
 
@@ -141,14 +141,14 @@ async def _body(request: Request) -> bytes | None:
 
 async def missing(request: Request, problem: Exception | None = None) -> Response:
     """There is no such thing."""
-    return error(404, "there is nothing of that name")
+    return refusal(404, "there is nothing of that name")
 
 
 async def _failed(request: Request, problem: Exception) -> Response:
     """An outside program is missing or has failed."""
-    return error(500, str(problem))
+    return refusal(500, str(problem))
 
 
-def error(status: int, text: str, **more: object) -> Response:
+def refusal(status: int, text: str, **more: object) -> Response:
     """An answer that refuses."""
     return JSONResponse({"error": text} | more, status)

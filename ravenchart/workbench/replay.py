@@ -20,7 +20,7 @@ from ravenchart.running.replaying import STEPS, ReplayedController, ReplayedRun
 from ravenchart.running.traces.files import read_traces
 from ravenchart.running.traces.simulated import is_simulated
 
-from .motion import WINDOW, plotted, shown
+from .motion import WINDOW, plotted, shown_node
 from .publishing import RefusedRequestError
 from .requests import PlayOrPause, ReplayRequest, Seek, SetSpeed, StepTo
 
@@ -97,7 +97,7 @@ class ReplayView:
             for one in plotted(self._checked.system)
             if one.element in values
         }
-        return shown(self._checked.system, node, node.events[-KEPT:], lines) | {
+        return shown_node(self._checked.system, node, node.events[-KEPT:], lines) | {
             "window": window,
             "starts": controller.late if at < controller.late else None,
             "counted": controller.counted(at),

@@ -27,7 +27,7 @@ from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import duration
 from ravenchart.editing.evaluation import evaluate
 from ravenchart.editing.places import ModelPlaces
-from ravenchart.editing.tables import homes_of
+from ravenchart.editing.tables import processors_for
 
 PAUSE = 0.2
 """Seconds that lie at least between two answers to one question."""
@@ -84,7 +84,7 @@ def allocated(analysis: Analysis, places: ModelPlaces, strategy: str, say: Say) 
 def outcome(proposal: Proposal, places: ModelPlaces) -> dict[str, Any]:
     """Tables with the names that they get and what the analysis says of them, times in ns."""
     analysis, found = proposal.analysis, tables(proposal)
-    homes = homes_of(places, found)
+    homes = processors_for(places, found)
     return {
         "verdict": verdict_line(analysis),
         "met": analysis.schedulable,

@@ -14,9 +14,9 @@ from starlette.routing import Route
 from . import requests
 from .hub import Hub
 from .live import LiveView
-from .pages import Pages, error
+from .pages import Pages, refusal
 from .replay import ReplayView
-from .view import source
+from .view import source_text
 
 
 class WorkbenchPages(Pages):
@@ -56,10 +56,10 @@ class WorkbenchPages(Pages):
     async def source(self, request: Request) -> Response:
         """The text of a file of the model."""
         file = request.query_params.get("file", "")
-        found = await self.hub.ask(lambda session: source(session, file))
-        return error(404, "the model has no such file") if found is None else JSONResponse(found)
+        found = await self.hub.ask(lambda session: source_text(session, file))
+        return refusal(404, "the model has no such file") if found is None else JSONResponse(found)
 
     async def growth(self, request: Request) -> Response:
         """How far the WCET of a row may grow."""
         found = await self.hub.growth(request.query_params.get("row", ""))
-        return error(409, "a later question took its place") if not found else JSONResponse(found)
+        return refusal(409, "a later question took its place") if not found else JSONResponse(found)

@@ -33,7 +33,7 @@ from .session import Session
 Json = dict[str, Any]
 
 
-def view(session: Session) -> Json:
+def whole_view(session: Session) -> Json:
     """All that the page shows."""
     now, good, saved = session.now, session.good.analysis, session.saved.analysis
     assert good is not None, "a session begins with a model without errors"
@@ -283,7 +283,7 @@ def _limits(chain: Chain, found: Latency, before: Latency | None) -> Iterator[Js
 # --- Sources and drawings --------------------------------------------------------------
 
 
-def source(session: Session, file: str) -> Json | None:
+def source_text(session: Session, file: str) -> Json | None:
     """The text of a file of the model as it is now; None of any other file."""
     content = session.now.texts.get(file)
     if content is None:

@@ -181,7 +181,7 @@ def _written_back(system: System, path: Path, tally: Tally) -> None:
     with tempfile.TemporaryDirectory() as folder:
         back = Path(folder) / "back.dbc"
         back.write_text(made.text, encoding="cp1252", errors="replace")
-        database.read(back, lenient=True)
+        database.read_database(back, lenient=True)
     tally["written back"] += 1
 
 
@@ -189,7 +189,7 @@ def tried(path: Path, *, build: bool) -> tuple[Path, Tally, str]:
     """What becomes of one file, and what went wrong."""
     tally = Tally(files=1)
     try:
-        read = database.read(path, lenient=True)
+        read = database.read_database(path, lenient=True)
     except Refused:
         return path, tally, ""
     tally["cantools reads"] += 1

@@ -132,7 +132,7 @@ def tasks() -> None:
         before = 0.0
         for number, tasks in enumerate(sets):
             spent = least_us(partial(fixed_priority.bounds, tasks))
-            terms = least_us(partial(fixed_priority.analyse, tasks))
+            terms = least_us(partial(fixed_priority.analyse_tasks, tasks))
             text = f"  {len(tasks)} tasks: {_spent(spent, before)}, with all terms {_ms(terms)}"
             if crate:
                 same = crate[number].bounds == fixed_priority.bounds(tasks)

@@ -13,7 +13,7 @@ import yaml
 
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.region import RegionRun
-from ravenchart.behaviour.interpreter.stimuli import Stimuli, read
+from ravenchart.behaviour.interpreter.stimuli import Stimuli, read_stimuli
 from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.gen.model.system import System
 from tests.support.pump import loaded
@@ -46,7 +46,7 @@ def system_of(text: str) -> System:
 
 def stimuli_of(text: str, system: System) -> Stimuli:
     """The stimuli of a file of events, which must be right."""
-    stimuli, found = read(text, "events.yaml", system)
+    stimuli, found = read_stimuli(text, "events.yaml", system)
     assert stimuli is not None, [f"{d.origin}: {d.message}" for d in found]
     return stimuli
 

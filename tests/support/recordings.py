@@ -13,7 +13,7 @@ from ravenchart.analysis.system.observed import TraceMap
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.running.monitored import NodeMonitor, WatchedNode
 from ravenchart.running.replaying import KINDS
-from ravenchart.running.snapshots import RECENT, parsed
+from ravenchart.running.snapshots import RECENT, parsed_snapshot
 from tests.support.snapshot_files import snapshot
 
 LISTED = ("Transition", "Fault")
@@ -101,6 +101,6 @@ def monitored(
         for (element, _), (count, time, value, kind) in sorted(counts.items())
     ]
     text = snapshot(reports, *recent, *reported, *tallies, digest=trace_map.digest)
-    node = NodeMonitor(analysis, "board").shown(parsed(text, trace_map, "file"), 0)
+    node = NodeMonitor(analysis, "board").shown(parsed_snapshot(text, trace_map, "file"), 0)
     node.now = at
     return node

@@ -13,7 +13,7 @@ import yaml
 
 from ravenchart.command_line import main
 from ravenchart.failures import OK, WRONG
-from ravenchart.gen.language.quantities import duration
+from ravenchart.gen.language.quantities import parsed_duration
 from ravenchart.paths import ROOT
 
 MODEL = ROOT / "examples" / "three_components" / "model.yaml"
@@ -40,4 +40,4 @@ def test_every_row_is_measured_by_a_program_without_contracts(
     content = yaml.safe_load(out.read_text(encoding="utf-8"))
     assert content["not_executed"] == []
     for time in content["wcet"].values():
-        assert duration(time) is not None
+        assert parsed_duration(time) is not None

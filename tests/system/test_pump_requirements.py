@@ -54,7 +54,7 @@ def _played(until: str, *events: str) -> list[str]:
     """What the region does, a line for each step, with its time in seconds."""
     lines = [_line(event) for event in sorted(events, key=_milliseconds)]
     text = "\n".join([*lines, f"- {{until: {until}}}"])
-    given, found = stimuli.read(text, "events.yaml", _pump())
+    given, found = stimuli.read_stimuli(text, "events.yaml", _pump())
     assert given is not None, [str(one) for one in found]
     records = simulate.simulated_by_interpreter(_pump(), given)
     return [one.text() for one in records if one.text().split()[1] == "bed.Infusion:"]

@@ -22,7 +22,7 @@ from ravenchart.running import monitoring
 from ravenchart.running.monitored import WatchedNode
 from ravenchart.running.process import ControllerProcess
 from ravenchart.running.replaying import ReplayedRun
-from ravenchart.running.snapshots import SnapshotFile, parsed
+from ravenchart.running.snapshots import SnapshotFile, parsed_snapshot
 from ravenchart.running.traces.files import read_traces
 from ravenchart.running.traces.formats import FORMATS
 from ravenchart.running.traces.timeline import Timeline, of_run
@@ -111,7 +111,7 @@ def test_a_run_has_each_value_once_in_order(tmp_path: Path) -> None:
     assert [one.time for one in seen.values] == sorted(one.time for one in seen.values)
     text = SnapshotFile(folder / LIVE).text()
     assert text is not None
-    shown = {t.last.element: t for t in parsed(text, seen.map, LIVE).tallies}
+    shown = {t.last.element: t for t in parsed_snapshot(text, seen.map, LIVE).tallies}
     for element in seen.map.of_kind("value"):
         points = [(one.time, one.value) for one in seen.values if one.element == element]
         last = shown[element].last

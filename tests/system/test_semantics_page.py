@@ -12,7 +12,7 @@ from itertools import groupby
 import pytest
 
 from ravenchart.behaviour.interpreter.machine import Machine
-from ravenchart.behaviour.interpreter.stimuli import read
+from ravenchart.behaviour.interpreter.stimuli import read_stimuli
 from ravenchart.paths import ROOT
 from tests.support.pump import loaded
 
@@ -53,7 +53,7 @@ def _done(chart: str, events: list[str]) -> list[str]:
     assert result.system is not None, [str(one) for one in result.diagnostics]
     entries = [f"- {{at: {APART * n} ms, raise: one.{e}}}" for n, e in enumerate(events, 1)]
     entries.append(f"- {{until: {APART * (len(events) + 1) - 1} ms}}")
-    stimuli, found = read("\n".join(entries), "events.yaml", result.system)
+    stimuli, found = read_stimuli("\n".join(entries), "events.yaml", result.system)
     assert stimuli is not None, [str(one) for one in found]
     steps: dict[int, list[str]] = {}
     for index, records in groupby(

@@ -21,7 +21,7 @@ from ravenchart.analysis.system.observed import Observation, read_map, read_trac
 from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
 from ravenchart.running.process import ControllerProcess
-from ravenchart.running.snapshots import VARIABLE, SnapshotFile, is_written, parsed
+from ravenchart.running.snapshots import VARIABLE, SnapshotFile, is_written, parsed_snapshot
 from tests.support.ada_programs import built
 from tests.support.examples import becomes
 from tests.support.faults import shows
@@ -64,7 +64,7 @@ class Watched:
         """The number of its last snapshot."""
         text = self._text()
         assert text is not None
-        return parsed(text, read_map(self._map.read_text("utf-8")), "live").sequence
+        return parsed_snapshot(text, read_map(self._map.read_text("utf-8")), "live").sequence
 
     def report(self) -> Observation:
         """What its trace and report say."""

@@ -37,5 +37,5 @@ def home(base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy that a test may spoil; the timing report, which takes a second, is left out."""
     place = evidence.copy(base, tmp_path / "valve")
     monkeypatch.setattr(records, "RECORDS", place / "records")
-    monkeypatch.setattr(report, "render", lambda _: "")
+    monkeypatch.setattr(report, "render_report", lambda _: "")
     return place

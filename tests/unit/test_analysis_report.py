@@ -22,7 +22,7 @@ from ravenchart.analysis.present.report import (
     StepRow,
     compare,
     executions,
-    render,
+    render_report,
 )
 from ravenchart.analysis.present.sentences import binding_lines
 from ravenchart.analysis.present.table import LEGEND, show
@@ -147,7 +147,7 @@ def test_what_to_change_is_said_on_the_terminal_and_in_the_report() -> None:
         "WCET of high less by 25.0 %: 400 to 300 us",
         "A longer period (up to 10 times) of one alone is not enough: high, low.",
     )
-    for text in (printed(inverted()), Page(render(analyse(inverted()))).text):
+    for text in (printed(inverted()), Page(render_report(analyse(inverted()))).text):
         places = [text.index(line) for line in expected]
         assert places == sorted(places)
 
@@ -171,7 +171,7 @@ def test_a_tight_system_is_told_what_gives_it_room_and_one_with_room_nothing() -
     text = printed(system(tasks))
     assert "To let all execution times grow by 20.0 %, one of these is enough:" in text
     assert "WCET of a less by 23.4 %" in text  # 1.2 (383 + 450) <= 1000
-    assert "What to change" in render(analyse(system(tasks)))
+    assert "What to change" in render_report(analyse(system(tasks)))
     for some in ([tasks[0]], []):
         assert advice.of_model(analyse(system(some))) is None
 
@@ -246,7 +246,7 @@ class Page(HTMLParser):
 
 
 def test_the_report_is_one_well_formed_file_without_outside_references() -> None:
-    text = render(analyse(plant()))
+    text = render_report(analyse(plant()))
     page = Page(text)
     assert page.open == []
     assert not [tag for tag, _ in page.tags if tag in ("link", "img", "iframe")]
@@ -264,7 +264,7 @@ def test_the_report_is_one_well_formed_file_without_outside_references() -> None
 
 
 def test_the_bars_parts_add_up_to_the_response() -> None:
-    text = render(analyse(plant()))
+    text = render_report(analyse(plant()))
     bars = re.findall(r'aria-label="response against deadline">(.*?)<span class="deadline"', text)
     widths = [sum(map(float, re.findall(r"width:([\d.]+)%", bar))) for bar in bars]
     found = analyse(plant())
@@ -276,11 +276,11 @@ def test_the_bars_parts_add_up_to_the_response() -> None:
 
 def test_names_are_escaped() -> None:
     one = system([task("<b>&amp;", 1, 1_000, 2_000)])
-    assert "&lt;b&gt;&amp;amp;" in render(analyse(one))
+    assert "&lt;b&gt;&amp;amp;" in render_report(analyse(one))
 
 
 def test_the_same_analysis_gives_the_same_bytes() -> None:
-    assert render(analyse(late())) == render(analyse(late()))
+    assert render_report(analyse(late())) == render_report(analyse(late()))
 
 
 def observation() -> Observation:
@@ -304,7 +304,7 @@ def run_report(*, comparable: bool = True) -> RunReport:
 
 @pytest.mark.slow
 def test_a_run_adds_its_steps_states_frames_and_observations() -> None:
-    page = Page(render(analyse(plant()), run_report()))
+    page = Page(render_report(analyse(plant()), run_report()))
     for phrase in (
         "Run: PASS",
         "A short run",
@@ -317,7 +317,7 @@ def test_a_run_adds_its_steps_states_frames_and_observations() -> None:
     ):
         assert phrase in page.text
     assert "Not comparable" not in page.text
-    assert "Not comparable" in render(analyse(plant()), run_report(comparable=False))
+    assert "Not comparable" in render_report(analyse(plant()), run_report(comparable=False))
 
 
 def test_observed_times_stand_beside_the_bound_of_the_same_task() -> None:

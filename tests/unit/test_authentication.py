@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.present.figures import figures
-from ravenchart.analysis.present.report import render
-from ravenchart.analysis.system.authentication import authenticated
+from ravenchart.analysis.present.report import render_report
+from ravenchart.analysis.system.authentication import authentications
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.emit.clashes import clashes
@@ -169,7 +169,7 @@ def test_a_first_version_knows_no_mac(two: System) -> None:
 
 
 def test_rates_and_times_of_a_message(analysis: Analysis) -> None:
-    first, second, *_ = authenticated(analysis)
+    first, second, *_ = authentications(analysis)
     assert first.authentication.random == pytest.approx(2.0**-24)
     assert first.tolerated == 256 * 20 * MS
     assert second.tolerated is None
@@ -185,7 +185,7 @@ def test_the_report_has_them(system: System, analysis: Analysis) -> None:
     found = json.loads(json.dumps(figures(analysis)))["authenticated"]
     assert [row["message"] for row in found] == [m.name for m in system.messages]
     assert found[1]["tolerated"] is None
-    text = render(analysis)
+    text = render_report(analysis)
     assert ">Authentication</h2>" in text
     assert "<td>first_in</td><td>valve</td>" in text
 

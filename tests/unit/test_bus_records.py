@@ -21,16 +21,16 @@ from ravenchart.hw_can.bench.bus_records import (
     MemberState,
     RecordKind,
     Status,
+    can_message,
     confirmed_in,
     decode,
     encode,
     frame_in,
     greeting_data,
     greeting_of,
-    message_of,
     record_of,
     request_of,
-    split,
+    split_records,
     state_of,
 )
 from tests.support.can_frames import mixed_frames
@@ -89,7 +89,7 @@ def test_a_thousand_frames_come_back_as_they_were() -> None:
     for number, frame in enumerate(mixed_frames(1_000), 1):
         record = decode(encode(record_of(frame, number)))
         assert record.number == number
-        assert message_of(record, 0).equals(frame, check_channel=False, timestamp_delta=None)
+        assert can_message(record, 0).equals(frame, check_channel=False, timestamp_delta=None)
 
 
 @given(st.binary(max_size=2 * RECORD_BYTES))
@@ -99,7 +99,7 @@ def test_any_bytes_are_a_record_or_refused(octets: bytes) -> None:
 
 def quick(octets: bytes) -> BusRecord | can.Message | int | None:
     """What the ways without a `BusRecord` make of it."""
-    (fields,) = split(octets)
+    (fields,) = split_records(octets)
     return frame_in(fields, 0, "x") or confirmed_in(fields) or None
 
 
@@ -125,7 +125,7 @@ def test_the_quick_ways_accept_what_is_sound_and_nothing_else(
         return
     if record.kind is RecordKind.FRAME:
         assert isinstance(found, can.Message)
-        assert found.equals(message_of(record, 0), check_channel=False, timestamp_delta=0)
+        assert found.equals(can_message(record, 0), check_channel=False, timestamp_delta=0)
     elif record.kind is RecordKind.CONFIRMATION:
         assert found == record.number
     else:

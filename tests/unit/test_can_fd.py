@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.analysis.present.report import render
+from ravenchart.analysis.present.report import render_report
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.building import checking, generation
 from ravenchart.gen.draw.structure import structure_dot
@@ -80,7 +80,7 @@ def test_a_frame_is_sent_at_the_data_rate_where_there_is_one(
 
 def test_the_report_and_the_picture_say_what_is_can_fd_and_how_fast() -> None:
     system = system_of_text(FAST)
-    page = render(analyse(system))
+    page = render_report(analyse(system))
     assert "500 kbit/s, 2000 kbit/s for the data of CAN FD frames" in page
     assert '<td class="n">48 FD</td>' in page and '<td class="n">2 FD</td>' not in page
     drawn = structure_dot(system)

@@ -12,9 +12,9 @@ import pytest
 
 from ravenchart.behaviour.cases.goals import GoalCoverage, GoalKind, goals
 from ravenchart.behaviour.cases.search import CaseSearch, SearchResult
-from ravenchart.behaviour.cases.watched import watched
+from ravenchart.behaviour.cases.watched import watched_machine
 from ravenchart.behaviour.interpreter.machine import Machine
-from ravenchart.behaviour.interpreter.stimuli import read, written
+from ravenchart.behaviour.interpreter.stimuli import read_stimuli, written_stimuli
 from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.command_line import main
 from ravenchart.commands import simulate
@@ -68,7 +68,7 @@ def found(system: System) -> SearchResult:
 
 def _shown(system: System, events: str) -> set[str]:
     coverage = GoalCoverage()
-    for _ in watched(system, coverage).run(stimuli_of(events, system)):
+    for _ in watched_machine(system, coverage).run(stimuli_of(events, system)):
         pass
     return {g.text() for g in goals(system.instances[0].component) if coverage.shows(g)}
 
@@ -156,7 +156,7 @@ def test_each_case_shows_what_it_says(system: System, found: SearchResult) -> No
     coverage = GoalCoverage()
     for case in found.cases:
         before = {goal for goal in found.goals if coverage.shows(goal)}
-        for _ in watched(system, coverage).run(case.stimuli):
+        for _ in watched_machine(system, coverage).run(case.stimuli):
             pass
         now = {goal for goal in found.goals if coverage.shows(goal)}
         assert set(case.shows) == now - before
@@ -164,7 +164,7 @@ def test_each_case_shows_what_it_says(system: System, found: SearchResult) -> No
 
 def test_to_be_watched_changes_nothing(system: System, found: SearchResult) -> None:
     for case in found.cases:
-        seen = list(watched(system, GoalCoverage()).run(case.stimuli))
+        seen = list(watched_machine(system, GoalCoverage()).run(case.stimuli))
         assert seen == list(Machine(system).run(case.stimuli))
 
 
@@ -228,9 +228,9 @@ def test_an_effort_is_a_whole_number_from_1(capsys: pytest.CaptureFixture[str]) 
 
 def test_a_written_file_is_read_back(system: System, found: SearchResult) -> None:
     for case in found.cases:
-        text = written(case.stimuli, ["one comment"])
+        text = written_stimuli(case.stimuli, ["one comment"])
         assert text.startswith("# one comment\n")
-        assert read(text, "case.yaml", system) == (case.stimuli, ())
+        assert read_stimuli(text, "case.yaml", system) == (case.stimuli, ())
 
 
 @pytest.fixture

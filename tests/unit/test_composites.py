@@ -265,9 +265,9 @@ def test_drawings_frame_what_is_inside_a_composite(
 
 def test_an_event_file_puts_a_value_to_an_instance_inside() -> None:
     text = "- {at: 10 ms, put: robot.left.shoulder.target, value: 5}\n- {until: 50 ms}\n"
-    found, wrong = stimuli.read(text, "events.yaml", system_of(NESTED))
+    found, wrong = stimuli.read_stimuli(text, "events.yaml", system_of(NESTED))
     assert found is not None and not wrong
-    assert "put: robot.left.shoulder.target" in stimuli.written(found)
+    assert "put: robot.left.shoulder.target" in stimuli.written_stimuli(found)
 
 
 def test_a_component_of_ten_levels_is_flattened() -> None:

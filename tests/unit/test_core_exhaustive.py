@@ -21,7 +21,7 @@ import pytest
 from ravenchart.analysis.core import can
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.bus import Bus, Frame
-from ravenchart.analysis.core.fixed_priority import analyse
+from ravenchart.analysis.core.fixed_priority import analyse_tasks
 from ravenchart.analysis.core.tasks import TableRow, Task
 from tests.support.exhaustive import Toy, longest_responses
 
@@ -102,7 +102,7 @@ def tasks_of(chosen: Sequence[Shape]) -> list[Task]:
 
 
 def bounds(tasks: Sequence[Task], sections: Sequence[Section] = ()) -> list[int | None]:
-    return [response.bound for response in analyse(tasks, sections)]
+    return [response.bound for response in analyse_tasks(tasks, sections)]
 
 
 def observed(of: Sequence[Toy]) -> list[int]:
@@ -217,7 +217,7 @@ def test_ceiling_blocking_is_safe_and_exact_a_tick_earlier(
 
 
 def row_bounds(tasks: Sequence[Task]) -> list[dict[str, int]]:
-    return [{row.row.name: row.bound for row in r.rows} for r in analyse(tasks)]
+    return [{row.row.name: row.bound for row in r.rows} for r in analyse_tasks(tasks)]
 
 
 def row_observations(of: Sequence[Toy]) -> list[dict[str, int]]:

@@ -29,7 +29,7 @@ from ravenchart.analysis.core.tasks import TableRow, Task
 
 
 def met(tasks: list[Task] | tuple[Task, ...], sections: list[Section]) -> bool:
-    return all(r.met for r in fixed_priority.analyse(tasks, sections))
+    return all(r.met for r in fixed_priority.analyse_tasks(tasks, sections))
 
 
 @st.composite
@@ -58,15 +58,17 @@ def test_a_blocking_that_is_given_counts_as_the_section_that_it_stands_for(
         replace(task, held=held[task.name].length) if task.name in held else task
         for task in ordered
     ]
-    wanted = fixed_priority.analyse(ordered, some[1])
-    found = fixed_priority.analyse(given)
+    wanted = fixed_priority.analyse_tasks(ordered, some[1])
+    found = fixed_priority.analyse_tasks(given)
     assert [(r.bound, r.blocked) for r in found] == [(r.bound, r.blocked) for r in wanted]
     assert fixed_priority.bounds(given) == fixed_priority.bounds(ordered, some[1])
 
 
 def test_a_blocking_that_is_given_is_suffered_besides_the_sections() -> None:
     tasks = [Task("high", 2, 20, 20, 3, held=4), Task("low", 1, 20, 20, 5)]
-    high, low = fixed_priority.analyse(tasks, [Section("o", "low", 2), Section("o", "high", 1)])
+    high, low = fixed_priority.analyse_tasks(
+        tasks, [Section("o", "low", 2), Section("o", "high", 1)]
+    )
     assert (high.bound, high.blocked) == (3 + 4 + 2, 6)
     assert (low.bound, low.blocked) == (8, 0)
 
@@ -76,7 +78,7 @@ def test_many_tasks_are_held_up_as_few_are(count: int) -> None:
     tasks = [Task(f"t{n}", n, 1000 + n, 1000, 2, held=5 + n) for n in range(count)]
     wanted = [2 * (count - n) + 5 + n for n in range(count)]
     assert list(fixed_priority.bounds(tasks)) == wanted
-    assert [r.bound for r in fixed_priority.analyse(tasks)] == wanted
+    assert [r.bound for r in fixed_priority.analyse_tasks(tasks)] == wanted
 
 
 @settings(max_examples=150, deadline=None)
@@ -184,5 +186,5 @@ def test_growth_of_one_task_is_found_by_counting(drawn: tuple[list[Task], list[S
 
 def test_the_tightest_come_first_and_no_bound_before_all() -> None:
     tasks = [Task("a", 4, 10, 10, 1), Task("b", 3, 10, 5, 3), Task("c", 2, 10, 7, 4)]
-    found = tightest(fixed_priority.analyse([*tasks, Task("d", 1, 9, 9, 9)]))
+    found = tightest(fixed_priority.analyse_tasks([*tasks, Task("d", 1, 9, 9, 9)]))
     assert [r.task.name for r in found] == ["d", "c", "b", "a"]

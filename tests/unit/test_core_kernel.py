@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from ravenchart.analysis.core import fixed_priority, kernel
 from ravenchart.analysis.core.blocking import Section
-from ravenchart.analysis.core.fixed_priority import analyse, bounds
+from ravenchart.analysis.core.fixed_priority import analyse_tasks, bounds
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.core.tasks import TableRow, Task
@@ -31,7 +31,7 @@ def found(
     """The responses where the library is asked from so many tasks on."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(fixed_priority, "WORTH_IT", worth_it)
-        responses = analyse(tasks, sections, {"": platform})
+        responses = analyse_tasks(tasks, sections, {"": platform})
         assert bounds(tasks, sections, {"": platform}) == tuple(r.bound for r in responses)
         return responses
 

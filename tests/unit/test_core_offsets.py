@@ -17,7 +17,7 @@ from ravenchart.analysis.core import fixed_priority, holistic, offsets
 from ravenchart.analysis.core.assignment import audsley_tasks, with_priorities
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.changes import stretched
-from ravenchart.analysis.core.fixed_priority import analyse
+from ravenchart.analysis.core.fixed_priority import analyse_tasks
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Response
@@ -31,13 +31,13 @@ def task(name: str, priority: int, wcet: int, period: int, offset: int | None) -
 
 def found(*tasks: Task, platform: Platform | None = None) -> dict[str, Response]:
     platforms = {} if platform is None else {"": platform}
-    return {r.task.name: r for r in analyse(tasks, (), platforms)}
+    return {r.task.name: r for r in analyse_tasks(tasks, (), platforms)}
 
 
 def test_tasks_that_never_meet_do_not_delay_each_other() -> None:
     a, b = task("a", 2, 4, 10, 0), task("b", 1, 3, 10, 5)
-    assert [r.bound for r in analyse([a, b])] == [4, 3]
-    assert [r.bound for r in analyse([replace(a, offset=None), b])] == [4, 7]
+    assert [r.bound for r in analyse_tasks([a, b])] == [4, 3]
+    assert [r.bound for r in analyse_tasks([replace(a, offset=None), b])] == [4, 7]
     response = found(a, b)["b"]
     assert response.alignment is not None
     assert (response.alignment.start, response.lead) == (5, 0)
@@ -74,13 +74,13 @@ def test_no_distance_of_two_epochs_makes_a_longer_response(
     ]
     bounds = fixed_priority.bounds([one.at_any_time() for one in tasks])
     assume(None not in bounds)
-    responses = analyse(tasks)
+    responses = analyse_tasks(tasks)
     for shift in range(24):
         known = [
             replace(one, epoch="", offset=(one.offset or 0) + (shift if one.epoch else 0))
             for one in tasks
         ]
-        for exact, several, free in zip(analyse(known), responses, bounds, strict=True):
+        for exact, several, free in zip(analyse_tasks(known), responses, bounds, strict=True):
             assert exact.bound is not None and several.bound is not None and free is not None
             assert exact.bound <= several.bound <= free
 
@@ -128,7 +128,7 @@ def test_overheads_count_as_without_offsets() -> None:
 def test_the_section_of_a_less_urgent_task_still_holds_up() -> None:
     a, b = task("a", 2, 4, 10, 0), task("b", 1, 3, 10, 5)
     sections = (Section("o", "a", 1), Section("o", "b", 2))
-    assert [r.bound for r in analyse([a, b], sections)] == [6, 3]
+    assert [r.bound for r in analyse_tasks([a, b], sections)] == [6, 3]
 
 
 def test_an_offset_counts_from_its_first_job_on() -> None:
@@ -168,8 +168,8 @@ def test_many_tasks_with_random_offsets_end_soon() -> None:
         task(f"t{n}", n, max(1, period // 160), period, chance.randrange(period))
         for n, period in enumerate(periods)
     ]
-    some = analyse(tasks)
-    blind = analyse([replace(t, offset=None) for t in tasks])
+    some = analyse_tasks(tasks)
+    blind = analyse_tasks([replace(t, offset=None) for t in tasks])
     assert all(s.bound and b.bound and s.bound <= b.bound for s, b in zip(some, blind, strict=True))
     assert any(s.alignment is not None for s in some)
 
@@ -181,8 +181,10 @@ def test_a_core_just_under_full_load_ends(spare: int) -> None:
     tasks = [task(f"t{n}", 9 - n, 10 - n, 40, n) for n in range(4)]
     tasks.append(task("low", 1, 6 * period // 40 - spare, period, 7))
     sections = Section("o", "low", 5), Section("o", "t0", 1)
-    some = {r.task.name: r for r in analyse(tasks, sections)}
-    blind = {r.task.name: r for r in analyse([replace(t, offset=None) for t in tasks], sections)}
+    some = {r.task.name: r for r in analyse_tasks(tasks, sections)}
+    blind = {
+        r.task.name: r for r in analyse_tasks([replace(t, offset=None) for t in tasks], sections)
+    }
     for name, response in some.items():
         bound, other = response.bound, blind[name].bound
         assert (bound is None) == (other is None)
@@ -193,7 +195,7 @@ def test_an_order_is_found_that_only_offsets_allow() -> None:
     tight = Task("tight", 1, 10, 3, 3, offset=5), Task("late", 2, 10, 4, 4, offset=0)
     order = audsley_tasks(tight)
     assert order.complete
-    assert all(r.met for r in analyse(with_priorities(tight, order)))
+    assert all(r.met for r in analyse_tasks(with_priorities(tight, order)))
     assert not audsley_tasks([replace(t, offset=None) for t in tight]).complete
 
 
@@ -206,7 +208,7 @@ def test_which_offsets_are_used_does_not_depend_on_priorities() -> None:
         chance.shuffle(tasks)
         order = [replace(t, priority=9 - n) for n, t in enumerate(tasks)]
         lowest = replace(task("low", 0, 1, 10_000, None))
-        names = {t.name for t in offsets.aligned(analyse([*order, lowest])[-1])}
+        names = {t.name for t in offsets.aligned(analyse_tasks([*order, lowest])[-1])}
         chosen.add(frozenset(names))
     assert len(chosen) == 1
 

@@ -50,7 +50,7 @@ def test_every_case_of_the_files_is_read_below() -> None:
 
 @pytest.mark.parametrize("case", named("rta.json", "fp"))
 def test_tasks(case: Any) -> None:
-    for response in fixed_priority.analyse(tasks_of(case), sections_of(case)):
+    for response in fixed_priority.analyse_tasks(tasks_of(case), sections_of(case)):
         expected = case["expected"][response.task.name]
         assert response.bound == expected["R"]
         assert response.met == expected["ok"]
@@ -63,10 +63,10 @@ def test_tasks_with_offsets_have_the_exact_figure_and_without_them_the_plain_one
     case: Any,
 ) -> None:
     tasks = tasks_of(case)
-    for response in fixed_priority.analyse(tasks):
+    for response in fixed_priority.analyse_tasks(tasks):
         expected = case["expected"][response.task.name]
         assert (response.bound, response.met) == (expected["R"], expected["ok"])
-    for response in fixed_priority.analyse([replace(task, offset=None) for task in tasks]):
+    for response in fixed_priority.analyse_tasks([replace(task, offset=None) for task in tasks]):
         assert response.bound == case["expected"][response.task.name]["R_without_offsets"]
 
 
@@ -75,14 +75,14 @@ def test_assignment_of_priorities(case: Any) -> None:
     expected, tasks = case["expected"], tasks_of(case)
     monotonic = Order(tuple(task.name for task in deadline_monotonic(tasks)))
     assert list(monotonic.names) == expected["dm_order"]
-    by_deadline = fixed_priority.analyse(with_priorities(tasks, monotonic))
+    by_deadline = fixed_priority.analyse_tasks(with_priorities(tasks, monotonic))
     assert {r.task.name: r.bound for r in by_deadline} == expected["dm_R"]
     assert all(r.met for r in by_deadline) == expected["dm_schedulable"]
     order = audsley_tasks(tasks)
     assert order.complete == expected["feasible"]
-    assert all(r.met for r in fixed_priority.analyse(with_priorities(tasks, order)))
+    assert all(r.met for r in fixed_priority.analyse_tasks(with_priorities(tasks, order)))
     example = Order(tuple(expected["opa_order_example"]))
-    found = fixed_priority.analyse(with_priorities(tasks, example))
+    found = fixed_priority.analyse_tasks(with_priorities(tasks, example))
     assert {r.task.name: r.bound for r in found} == expected["opa_R"]
 
 

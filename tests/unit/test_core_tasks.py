@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ravenchart.analysis.core.blocking import Section, blockers, ceilings
-from ravenchart.analysis.core.fixed_priority import analyse, response_under
+from ravenchart.analysis.core.fixed_priority import analyse_tasks, response_under
 from ravenchart.analysis.core.multiframe import Demand
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Reason, Response
@@ -40,13 +40,13 @@ def task(name: str, priority: int, wcet: int, period: int, **more: Any) -> Task:
         (lambda: Section("o", "a", 0), "length of the section of a on o must be an integer above"),
         (lambda: Platform(tick_cost=1), "tick_period of the platform must be above 0"),
         (lambda: Platform(release=-1), "release of the platform must be an integer from 0 up"),
-        (lambda: analyse([task("a", 1, 1, 9)] * 2), "two tasks have the name a"),
+        (lambda: analyse_tasks([task("a", 1, 1, 9)] * 2), "two tasks have the name a"),
         (
             lambda: task("a", 1, 0, 9, rows=(TableRow("r", 1), TableRow("r", 2))),
             "two rows of task a have the name r",
         ),
         (
-            lambda: analyse([task("a", 1, 2, 9)], [Section("o", "a", 3)]),
+            lambda: analyse_tasks([task("a", 1, 2, 9)], [Section("o", "a", 3)]),
             "the section of a on o must be at most 2, the WCET of the task, not 3",
         ),
         (
@@ -72,7 +72,7 @@ def test_what_has_no_meaning_is_refused_by_name(made: Any, message: str) -> None
 
 def test_the_breakdown_adds_up_by_hand() -> None:
     #  c: w = 5 + ceil(20/7) 3 + ceil(20/12) 3 = 5 + 9 + 6 = 20
-    c = analyse([task("a", 3, 3, 7), task("b", 2, 3, 12), task("c", 1, 5, 20)])[2]
+    c = analyse_tasks([task("a", 3, 3, 7), task("b", 2, 3, 12), task("c", 1, 5, 20)])[2]
     assert [(i.task.name, i.releases, i.time) for i in c.interference] == [("a", 3, 9), ("b", 2, 6)]
     assert (c.own, c.blocked, c.bound, c.jobs, c.slack, c.met) == (5, 0, 20, 1, 0, True)
 
@@ -80,18 +80,18 @@ def test_the_breakdown_adds_up_by_hand() -> None:
 def test_equal_priorities_interfere_both_ways_and_do_not_block() -> None:
     pair = [task("a", 5, 2, 20), task("b", 5, 3, 20)]
     sections = [Section("o", "a", 2), Section("o", "b", 3)]
-    assert [(r.bound, r.blocked) for r in analyse(pair, sections)] == [(5, 0), (5, 0)]
+    assert [(r.bound, r.blocked) for r in analyse_tasks(pair, sections)] == [(5, 0), (5, 0)]
 
 
 def test_one_tick_past_the_deadline_is_a_miss() -> None:
     rival = task("a", 2, 3, 10)
     for wcet, met in ((4, True), (5, False)):
-        assert analyse([rival, task("b", 1, wcet, 20, deadline=7)])[1].met == met
+        assert analyse_tasks([rival, task("b", 1, wcet, 20, deadline=7)])[1].met == met
 
 
 def test_tasks_of_other_cores_do_not_meet() -> None:
     far = task("z", 9, 9, 10, core="other")
-    assert [r.bound for r in analyse([task("a", 1, 5, 10), far])] == [5, 9]
+    assert [r.bound for r in analyse_tasks([task("a", 1, 5, 10), far])] == [5, 9]
 
 
 def test_bystanders_are_blocked_and_an_interrupt_ceiling_blocks_the_interrupt() -> None:
@@ -120,7 +120,7 @@ def test_overheads_by_hand() -> None:
     platform = Platform(context_switch=1, release=2, tick_period=50, tick_cost=3)
     tasks = [task("a", 2, 10, 100, timed=True), task("b", 1, 20, 200)]
     #  b: 20 + 2 switches; a: 10 + 2, once for w <= 50; a tick in 50; a release of each
-    a, b = analyse(tasks, (), {"": platform})
+    a, b = analyse_tasks(tasks, (), {"": platform})
     assert (b.window, b.bound) == (22 + 12 + 3 + 4, 41)
     #  a is late by a tick's period: b's release costs it time although b is below it
     assert (a.jitter, a.window, a.bound) == (50, 12 + 3 + 4, 69)
@@ -147,14 +147,14 @@ def test_a_table_runs_as_it_is_and_beside_it_the_plain_sum() -> None:
     table = task("table", 2, 1, 20, rows=rows)
     assert [sum(r.wcet for r in frame) for frame in table.frames] == [2, 5, 2, 6]
     below = task("below", 1, 14, 80)
-    exact = analyse([table, below])
+    exact = analyse_tasks([table, below])
     assert [r.bound for r in exact] == [7, 14 + 7 + 3]
     assert {r.row.name: (r.bound, r.frame) for r in exact[0].rows} == {
         "fast": (3, 0),
         "slow": (6, 1),
         "other": (7, 3),
     }
-    assert [r.bound for r in analyse([plain(table), below])] == [10, 14 + 2 * 10]
+    assert [r.bound for r in analyse_tasks([plain(table), below])] == [10, 14 + 2 * 10]
     assert (exact[1].interference[0].frame, exact[1].interference[0].releases) == (2, 2)
 
 
@@ -162,15 +162,15 @@ def test_a_table_that_hardly_repeats_counts_in_full() -> None:
     rows = tuple(TableRow(f"r{n}", 1, n) for n in (7, 11, 13, 17))
     long = task("long", 1, 1, 100, rows=rows)
     assert long.frame_count == 1
-    assert analyse([long])[0].bound == analyse([plain(long)])[0].bound == 5
+    assert analyse_tasks([long])[0].bound == analyse_tasks([plain(long)])[0].bound == 5
 
 
 # --- Limits ----------------------------------------------------------------------------
 
 
 def test_full_load_has_bounds_and_more_has_none() -> None:
-    assert [r.bound for r in analyse([task("a", 2, 1, 2), task("b", 1, 2, 4)])] == [1, 4]
-    a, b, c = analyse([task("a", 3, 6, 10), task("b", 2, 5, 10), task("c", 1, 1, 10)])
+    assert [r.bound for r in analyse_tasks([task("a", 2, 1, 2), task("b", 1, 2, 4)])] == [1, 4]
+    a, b, c = analyse_tasks([task("a", 3, 6, 10), task("b", 2, 5, 10), task("c", 1, 1, 10)])
     assert (a.met, b.bound, b.reason, c.reason) == (True, None, Reason.OVERLOAD, Reason.OVERLOAD)
     assert b.level.load == Fraction(11, 10)
     assert (b.interference, b.slack, b.overheads.time) == ((), None, 0)
@@ -178,14 +178,14 @@ def test_full_load_has_bounds_and_more_has_none() -> None:
 
 def test_jitter_beyond_the_period_releases_several_jobs_at_once() -> None:
     #  at 0 the jobs of -25, -15 and -5 are released, and of b one
-    a, b = analyse([task("a", 2, 3, 10, jitter=25), task("b", 1, 1, 17)])
+    a, b = analyse_tasks([task("a", 2, 3, 10, jitter=25), task("b", 1, 1, 17)])
     assert (a.bound, b.bound, b.interference[0].releases) == (28, 10 + 3, 4)
 
 
 @pytest.mark.parametrize("spare", [1, 1_000, 10**6])
 def test_huge_hyperperiods_just_under_full_load_end(spare: int) -> None:
     tasks = [task("a", 3, 499_979, 999_983), task("b", 2, 500_000_000 - spare, 1_000_000_007)]
-    for response in analyse([*tasks, task("c", 1, 1, 10**9)]):
+    for response in analyse_tasks([*tasks, task("c", 1, 1, 10**9)]):
         assert response.bound is not None or response.reason is Reason.EFFORT
 
 
@@ -193,21 +193,23 @@ def test_full_load_of_coprime_periods_ends_without_a_bound() -> None:
     first, second = 1_000_003, 999_983
     wcet = (first - 1) * second // first
     tasks = [task("a", 2, 1, first, jitter=5), task("b", 1, wcet, second, jitter=second)]
-    a, b = analyse(tasks)
+    a, b = analyse_tasks(tasks)
     assert a.bound == 6
     assert b.bound is not None or b.reason is Reason.EFFORT
 
 
 def test_numbers_beyond_64_bits_are_exact() -> None:
     year = 10**30
-    a, b = analyse([task("a", 2, year // 2, year), task("b", 1, year // 2 - 1, year)])
+    a, b = analyse_tasks([task("a", 2, year // 2, year), task("b", 1, year // 2 - 1, year)])
     assert (a.bound, b.bound) == (year // 2, year - 1)
 
 
 def test_many_tasks_of_one_priority_and_five_thousand_levels() -> None:
-    assert {r.bound for r in analyse([task(f"t{n}", 1, 1, 1_000) for n in range(300)])} == {300}
+    assert {r.bound for r in analyse_tasks([task(f"t{n}", 1, 1, 1_000) for n in range(300)])} == {
+        300
+    }
     many = [task(f"t{n}", n, 1, 10_000 + n) for n in range(5_000)]
-    assert [r.bound for r in analyse(many)] == list(range(5_000, 0, -1))
+    assert [r.bound for r in analyse_tasks(many)] == list(range(5_000, 0, -1))
 
 
 # --- What always holds -------------------------------------------------------------------
@@ -249,7 +251,7 @@ def test_the_terms_add_up_and_rows_end_with_their_job(
     system: tuple[list[Task], list[Section], Platform],
 ) -> None:
     tasks, sections, platform = system
-    for r in analyse(tasks, sections, {"": platform}):
+    for r in analyse_tasks(tasks, sections, {"": platform}):
         if r.bound is not None:
             assert adds_up(r), r
             assert 0 <= r.worst_job < r.jobs
@@ -276,8 +278,8 @@ def test_no_bound_falls_when_load_grows(
         worse = replace(platform, context_switch=platform.context_switch + 1)
     else:
         grown = [plain(t) for t in tasks]
-    before = analyse(tasks, sections, {"": platform})
-    after = analyse(grown, held, {"": worse})
+    before = analyse_tasks(tasks, sections, {"": platform})
+    after = analyse_tasks(grown, held, {"": worse})
     for old, new in zip(before, after, strict=False):
         assert new.bound is None or (old.bound is not None and new.bound >= old.bound)
 
@@ -289,7 +291,7 @@ def test_one_response_alone_is_the_same(
 ) -> None:
     tasks, sections, platform = system
     held = blockers(tasks, sections)
-    for r in analyse(tasks, sections, {"": platform}):
+    for r in analyse_tasks(tasks, sections, {"": platform}):
         rivals = [t for t in tasks if t.priority >= r.task.priority and t is not r.task]
         below = [t for t in tasks if t.priority < r.task.priority]
         alone = response_under(r.task, rivals, below, held.get(r.task.name), platform)
@@ -305,8 +307,8 @@ def test_offsets_only_make_bounds_shorter(
     tasks, sections, platform = system
     blind = [replace(task, offset=None) for task in tasks]
     for known, any_ in zip(
-        analyse(tasks, sections, {"": platform}),
-        analyse(blind, sections, {"": platform}),
+        analyse_tasks(tasks, sections, {"": platform}),
+        analyse_tasks(blind, sections, {"": platform}),
         strict=True,
     ):
         assert known.reason is any_.reason
@@ -320,14 +322,14 @@ def test_offsets_only_make_bounds_shorter(
 
 def test_the_reference_cases_add_up() -> None:
     for case in cases("rta.json", "fp"):
-        assert all(adds_up(r) for r in analyse(tasks_of(case), sections_of(case)))
+        assert all(adds_up(r) for r in analyse_tasks(tasks_of(case), sections_of(case)))
 
 
 def test_each_suspension_of_a_job_costs_two_switches_and_a_release() -> None:
     platform = {"": Platform(context_switch=5, release=3)}
     fast = task("fast", 2, 10, 100, suspensions=2)
     low = task("low", 1, 20, 1_000)
-    found = {r.task.name: r for r in analyse([fast, low], (), platform)}
+    found = {r.task.name: r for r in analyse_tasks([fast, low], (), platform)}
     #  each job of `fast`: 10 + 4 x 5, and 2 x 3 to make it ready
     assert found["fast"].bound == 10 + 4 * 5 + 2 * 3 + 3
     assert found["low"].bound == 20 + 2 * 5 + 3 + 10 + 4 * 5 + 2 * 3

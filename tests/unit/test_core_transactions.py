@@ -13,7 +13,7 @@ import pytest
 from ravenchart.analysis.core import holistic
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.analysis.plain.build import PlainSystem, load
+from ravenchart.analysis.plain.build import PlainSystem, load_plain
 from ravenchart.analysis.simulation.engine import simulate
 from ravenchart.analysis.simulation.phases import chance_scenario
 from tests.support.random_networks import random_transactions
@@ -40,7 +40,7 @@ ITEMS = ("t1", "t21", "m1", "t4", "m2", "t22", "t3", "t5")
 
 
 def published() -> Network:
-    found = load(PUBLISHED, "rtss98.csv")
+    found = load_plain(PUBLISHED, "rtss98.csv")
     assert isinstance(found, PlainSystem)
     return found.network
 

@@ -9,7 +9,7 @@ import hashlib
 import json
 from pathlib import Path
 
-from ravenchart.running.coverage import SourceOwner, read, spans, tracefile
+from ravenchart.running.coverage import SourceOwner, number_ranges, read, tracefile
 
 GENERATED, RUNTIME = Path("/home/model/source"), Path("/runtime/src")
 PLACES = {GENERATED: SourceOwner.GENERATED, RUNTIME: SourceOwner.RUNTIME}
@@ -77,5 +77,5 @@ def test_the_tracefile_is_that_of_lcov(tmp_path: Path) -> None:
 
 
 def test_numbers_that_follow_each_other_stand_together() -> None:
-    assert spans([]) == ""
-    assert spans([3, 7, 8, 9, 11, 12]) == "3, 7-9, 11-12"
+    assert number_ranges([]) == ""
+    assert number_ranges([3, 7, 8, 9, 11, 12]) == "3, 7-9, 11-12"

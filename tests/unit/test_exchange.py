@@ -175,7 +175,10 @@ def test_what_is_spelled_out_has_the_same_bounds() -> None:
             for core in {t.core for t in tasks}
         }
         network = replace(network, tasks=tasks, platforms=platforms)
-        found, spelled = holistic.analyse(network), holistic.analyse(spelled_out(network))
+        found, spelled = (
+            holistic.analyse(network),
+            holistic.analyse(spelled_out(network)),
+        )
         for name in found.responses:
             assert spelled.from_event(name) == found.from_event(name), (seed, name)
 

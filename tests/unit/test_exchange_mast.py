@@ -17,7 +17,7 @@ from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.tasks import TableRow, Task
 from ravenchart.analysis.exchange import Unfit, mast
-from ravenchart.analysis.exchange.mast_text import Attributes, MastObject, parse, printed
+from ravenchart.analysis.exchange.mast_text import Attributes, MastObject, parse, printed_model
 from tests.support.core_cases import REFERENCE, two_nodes
 from tests.support.mast_models import by_kind, check_references, inner, number
 from tests.support.random_networks import random_network
@@ -52,7 +52,7 @@ def test_the_published_model_is_read_and_printed_back() -> None:
     timer = kinds["Processing_Resource"][0].get("system_timer")
     assert isinstance(timer, Attributes)
     assert (timer.word("Type"), number(timer, "Period")) == ("Ticker", 1000.0)
-    assert parse(printed(model)) == model
+    assert parse(printed_model(model)) == model
 
 
 @pytest.mark.parametrize(
@@ -117,7 +117,7 @@ def test_every_random_network_becomes_a_valid_model_that_reads_back() -> None:
             continue
         model = parse(text)
         check_references(model)
-        assert parse(printed(model)) == model
+        assert parse(printed_model(model)) == model
         written += 1
     assert written > 60
 

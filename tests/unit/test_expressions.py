@@ -28,7 +28,7 @@ from ravenchart.gen.language.terms import (
     Type,
 )
 from ravenchart.gen.origins import Origin
-from ravenchart.gen.resolve.typed import fitting, read
+from ravenchart.gen.resolve.typed import fitting, read_expression
 from ravenchart.gen.resolve.vocabulary import CheckedExpression, Vocabulary
 
 PLACE = TextPlace(Origin("m.yaml", 7, 11), exact=True)
@@ -67,7 +67,7 @@ def vocabulary() -> Vocabulary:
 def checked(text: int | bool | str) -> CheckedExpression:
     """The sound expression that a text stands for."""
     findings = Findings()
-    result = read(text, PLACE, vocabulary(), findings)
+    result = read_expression(text, PLACE, vocabulary(), findings)
     assert result is not None, findings.items
     assert findings.items == []
     return result
@@ -76,7 +76,7 @@ def checked(text: int | bool | str) -> CheckedExpression:
 def refused(text: str) -> tuple[str, int]:
     """The code of the one error in a text, and its column in the text."""
     findings = Findings()
-    assert read(text, PLACE, vocabulary(), findings) is None
+    assert read_expression(text, PLACE, vocabulary(), findings) is None
     assert len(findings.items) == 1, findings.items
     return findings.items[0].code, findings.items[0].origin.column - PLACE.origin.column
 
@@ -208,7 +208,7 @@ def test_literal_goes_before_a_name_of_another_type() -> None:
     words = vocabulary()
     words.readable.declare("red", None, (Reading.DATA, "red", LENGTH))
     findings = Findings()
-    found = read("colour = Red", PLACE, words, findings)
+    found = read_expression("colour = Red", PLACE, words, findings)
     assert found is not None
     assert tree(found.expression) == ("=", "colour", "Red")
 
@@ -259,7 +259,7 @@ def test_wrong_operand_is_refused_where_it_stands(text: str, code: str, at: int)
 
 def test_errors_of_both_operands_are_reported() -> None:
     findings = Findings()
-    assert read("lenght < 1 and cuont < 1", PLACE, vocabulary(), findings) is None
+    assert read_expression("lenght < 1 and cuont < 1", PLACE, vocabulary(), findings) is None
     assert [item.hint for item in findings.items] == [
         "did you mean `length`?",
         "did you mean `count`?",
@@ -268,7 +268,9 @@ def test_errors_of_both_operands_are_reported() -> None:
 
 def test_text_in_several_lines_is_located_at_its_beginning() -> None:
     findings = Findings()
-    read("length +\n lenght", TextPlace(PLACE.origin, exact=False), vocabulary(), findings)
+    read_expression(
+        "length +\n lenght", TextPlace(PLACE.origin, exact=False), vocabulary(), findings
+    )
     assert findings.items[0].origin == PLACE.origin
 
 
@@ -367,7 +369,7 @@ def test_division_rounds_towards_zero() -> None:
 @pytest.mark.parametrize("text", ["1 / length", "1 / 0", "count / (count - 3)"])
 def test_divisor_that_may_be_zero_is_refused(text: str) -> None:
     findings = Findings()
-    assert read(text, PLACE, vocabulary(), findings) is None
+    assert read_expression(text, PLACE, vocabulary(), findings) is None
     assert findings.items[0].code in ("RV-0405", "RV-0406")
 
 

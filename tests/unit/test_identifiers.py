@@ -19,7 +19,7 @@ from ravenchart.analysis.core.assignment import audsley_frames
 from ravenchart.analysis.core.bus import Bus, Frame
 from ravenchart.analysis.system.identifiers import IdentifierPlaces
 from ravenchart.analysis.system.timing import Verdict, analyse
-from ravenchart.building.checking import check, identified
+from ravenchart.building.checking import check, with_good_identifiers
 from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.model.system import System
@@ -94,7 +94,7 @@ def model(*messages: str, bus: str = SLOW) -> str:
 def assigned(*messages: str, bus: str = SLOW) -> tuple[System, tuple[Diagnostic, ...]]:
     system = loaded(model(*messages, bus=bus)).system
     assert system is not None
-    return identified(system)
+    return with_good_identifiers(system)
 
 
 A = received("a", 7, "2 ms")
@@ -194,7 +194,7 @@ def test_a_model_without_an_order_is_refused_for_that_alone(tmp_path: Path) -> N
 def test_what_leaves_in_the_order_sent_is_helped_by_no_identifier() -> None:
     urgent = ("id: 0x101, from: north.valve", "from: north.valve, deadline: 200 us")
     audsley = ("bit_rate: 500 kbit/s", "bit_rate: 500 kbit/s, identifiers: audsley")
-    _, (found,) = identified(system_of(("id: 0x100, ", ""), urgent, audsley))
+    _, (found,) = with_good_identifiers(system_of(("id: 0x100, ", ""), urgent, audsley))
     assert "valve_out cannot have" in found.message
     assert [text for _, text in found.notes] == [
         "all of the bus may go before it, for it leaves in the order sent: no identifier helps it"

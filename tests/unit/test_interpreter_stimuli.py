@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.behaviour.interpreter.stimuli import Raised, read
+from ravenchart.behaviour.interpreter.stimuli import Raised, read_stimuli
 from ravenchart.behaviour.interpreter.traces import StepRecord, seconds
 from ravenchart.command_line import main
 from ravenchart.gen.language.terms import Ns
@@ -66,7 +66,7 @@ def test_every_form_of_entry_and_value_is_read(system: System) -> None:
 - {at: 61 ms, put: unit.armed, value: true}
 - {until: 2 s}
 """
-    stimuli, found = read(text, "events.yaml", system)
+    stimuli, found = read_stimuli(text, "events.yaml", system)
     assert found == () and stimuli is not None
     assert stimuli.entries[1] == Raised(Ns(50_000_000), "unit", "Dial", 7)
     values = [one.value for one in stimuli.entries]
@@ -130,7 +130,7 @@ def test_every_form_of_entry_and_value_is_read(system: System) -> None:
     ],
 )
 def test_wrong_entry_is_told_at_its_place(system: System, entry: str, message: str) -> None:
-    stimuli, found = read(f"- {entry}\n- {{until: 1 s}}\n", "e.yaml", system)
+    stimuli, found = read_stimuli(f"- {entry}\n- {{until: 1 s}}\n", "e.yaml", system)
     assert stimuli is None
     told = f"{found[0].origin}: {found[0].message} [{found[0].code}]"
     assert told == f"e.yaml:{message}"
@@ -159,7 +159,7 @@ def test_wrong_entry_is_told_at_its_place(system: System, entry: str, message: s
     ],
 )
 def test_wrong_file_is_told(system: System, text: str, message: str) -> None:
-    stimuli, found = read(text, "e.yaml", system)
+    stimuli, found = read_stimuli(text, "e.yaml", system)
     assert stimuli is None
     assert f"{found[0].origin}: {found[0].message} [{found[0].code}]" == message
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 from ravenchart.analysis.system.journeys import Journey, journeys
-from ravenchart.analysis.system.observed import Observation, read_map, read_trace, together
+from ravenchart.analysis.system.observed import Observation, merged, read_map, read_trace
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.emit.tables.trace_map import trace_json
@@ -38,7 +38,7 @@ def seen(analysis: Analysis, panel: list[str], drive: list[str], late: int = 0) 
             row = {"activity": "row", "sent": "message", "arrived": "port"}[kind]
             text.append(f"T {int(float(time) * MS)} {kind} {known.named(name, row).number} 0")
         parts[node] = read_trace([*text, "L trace 0", "END"], known)
-    return together(parts)
+    return merged(parts)
 
 
 PANEL = [

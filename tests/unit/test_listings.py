@@ -17,8 +17,7 @@ import jsonschema
 import pytest
 
 from ravenchart.analysis.plain.bounds import read_bounds
-from ravenchart.analysis.plain.build import PlainSystem
-from ravenchart.analysis.plain.build import load as load_plain
+from ravenchart.analysis.plain.build import PlainSystem, load_plain
 from ravenchart.command_line import main, whole_parser
 from ravenchart.evidence import lists
 from ravenchart.gen.files.located import grow, grow_list

@@ -12,7 +12,7 @@ import pytest
 
 from ravenchart.gen.diagnostics import render
 from ravenchart.gen.files.load import LARGEST
-from ravenchart.gen.files.located import grow, scalar
+from ravenchart.gen.files.located import grow, scalar_value
 from ravenchart.gen.origins import Origin
 from ravenchart.gen.pipeline import load
 from tests.support.pump import PUMP, changed, codes, loaded, system_of
@@ -109,8 +109,8 @@ def test_odd_yaml_is_an_error_not_an_exception(text: str) -> None:
     ],
 )
 def test_scalar_has_the_value_that_it_seems_to_have(text: str, value: object) -> None:
-    assert scalar(text) == value
-    assert type(scalar(text)) is type(value)
+    assert scalar_value(text) == value
+    assert type(scalar_value(text)) is type(value)
 
 
 # --- Includes ------------------------------------------------------------------

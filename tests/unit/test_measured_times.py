@@ -19,7 +19,7 @@ from ravenchart.building import checking
 from ravenchart.command_line import main
 from ravenchart.commands import bounds, measure
 from ravenchart.failures import OK, WRONG
-from ravenchart.gen.language.quantities import duration
+from ravenchart.gen.language.quantities import parsed_duration
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
@@ -109,7 +109,7 @@ def test_the_yaml_has_times_for_the_model_and_the_warning(system: System) -> Non
     assert text.startswith(f"# Execution times {measured.WARNING}.\n")
     content = yaml.safe_load(text)
     assert content["wcet"] == {"Pump.Infusion": "12.1 us"}
-    assert duration(content["wcet"]["Pump.Infusion"]) == 12_100
+    assert parsed_duration(content["wcet"]["Pump.Infusion"]) == 12_100
     assert content["rows"] == {ROW: {"measured": "10.1 us", "model": "300 us"}}
     assert content["margin"] == "20 %"
     assert "bed.ports" in content["not_executed"]

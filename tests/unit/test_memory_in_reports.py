@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.analysis.present.report import render
+from ravenchart.analysis.present.report import render_report
 from ravenchart.building import checking, programs, stacks
 from ravenchart.command_line import main
 from ravenchart.failures import OK
@@ -111,7 +111,7 @@ def test_an_allowance_for_the_library_is_named_as_such(home: Path) -> None:
     program = the_program(home)
     analysis = program.checked.analysis
     found = replace(memory(program), library=12_288)
-    text = render(analysis, programs={"node": found})
+    text = render_report(analysis, programs={"node": found})
     assert '<data value="12288">12,288</data> bytes for the run-time library' in text
     assert "an allowance, not a computed bound" in text
-    assert HEADING not in render(analysis)
+    assert HEADING not in render_report(analysis)

@@ -20,7 +20,7 @@ from ravenchart.analysis.findings import claims as analysis_claims
 from ravenchart.analysis.findings.claims import by_offsets, claims_of, uncertified
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.present.figures import figures
-from ravenchart.analysis.present.report import render
+from ravenchart.analysis.present.report import render_report
 from ravenchart.analysis.present.table import show
 from ravenchart.analysis.system.critical import schedule
 from ravenchart.analysis.system.timing import Analysis, analyse
@@ -101,8 +101,8 @@ def test_a_processor_between_the_releases_of_another_does_not_wait_for_it() -> N
 def test_it_is_said_which_responses_come_of_offsets() -> None:
     apart, together = analysed(LOOPS), analysed(LOOPS, TOGETHER)
     said = "By their offsets: R of seldom. All others hold for any offsets."
-    assert said in render(apart)
-    assert "Here it makes none shorter: every R holds for any offsets." in render(together)
+    assert said in render_report(apart)
+    assert "Here it makes none shorter: every R holds for any offsets." in render_report(together)
     for found in (apart, together):
         out = io.StringIO()
         show(found, Console(file=out, width=100))

@@ -29,7 +29,7 @@ from ravenchart.running.monitored import (
     NodeMonitor,
     WatchedNode,
 )
-from ravenchart.running.snapshots import parsed
+from ravenchart.running.snapshots import parsed_snapshot
 from tests.support.answers import answered
 from tests.support.recorded import MODEL
 from tests.support.snapshot_files import PUMP, held, number, processors, snapshot, trace_map
@@ -51,7 +51,7 @@ def analysis() -> Analysis:
 
 def seen(monitor: NodeMonitor, *lines: str, sequence: int = 1) -> WatchedNode:
     """What is shown of a snapshot with these lines."""
-    return monitor.shown(parsed(snapshot(sequence, *lines), trace_map(), "file"), None)
+    return monitor.shown(parsed_snapshot(snapshot(sequence, *lines), trace_map(), "file"), None)
 
 
 def tally(kind: str, name: str, of: str, count: int, at: int = 1000, value: int = 0) -> str:
@@ -137,7 +137,7 @@ def test_the_last_recorded_value_is_shown_in_its_unit(tmp_path: Path) -> None:
     lines = (f"C VALUE {heat} 7 5000 -397", f"C VALUE {hue} 9 6000 2", "N 1000006000")
     whole = snapshot(1, *lines, digest=own.digest)
     monitor = NodeMonitor(checking.check(model).analysis, "board")
-    node = monitor.shown(parsed(whole, own, "file"), None)
+    node = monitor.shown(parsed_snapshot(whole, own, "file"), None)
     assert [(v.name, v.value, v.unit, v.count, v.last) for v in node.values] == [
         ("taker.heat", "-39.7", "degC", 7, 5000), ("giver.hue", "Blue", "", 9, 6000),
     ]  # fmt: skip

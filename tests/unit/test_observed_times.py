@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.analysis.present.report import RunReport, render
+from ravenchart.analysis.present.report import RunReport, render_report
 from ravenchart.analysis.system.journeys import Journey
 from ravenchart.building import checking
 from ravenchart.command_line import main
@@ -64,7 +64,7 @@ def test_reactions_are_drawn_beside_their_bound() -> None:
         "flow", 3, 5_000_000, 9_000_000, 12_000_000, 3, (3_000_000, 5_000_000, 5_000_000)
     )
     run = RunReport("A run", True, "all good", (), (), (), True, None, (took,))
-    text = render(checking.check(MODEL).analysis, run)
+    text = render_report(checking.check(MODEL).analysis, run)
     assert "flow: how often each reaction was observed, beside its bound" in text
 
 

@@ -17,9 +17,9 @@ from typing import Any
 import pytest
 
 from ravenchart.analysis.core import holistic
-from ravenchart.analysis.plain.build import PlainSystem, load
+from ravenchart.analysis.plain.build import PlainSystem, load_plain
 from ravenchart.analysis.plain.columns import KINDS, LARGEST
-from ravenchart.analysis.plain.results import analyse, everything
+from ravenchart.analysis.plain.results import analyse_plain, everything
 from ravenchart.analysis.units import ratio
 from ravenchart.command_line import main
 from tests.support.core_cases import two_nodes
@@ -30,13 +30,13 @@ JSON = (HERE / "two_nodes.json").read_text(encoding="utf-8")
 
 
 def system(text: str, file: str = "a.csv") -> PlainSystem:
-    found = load(text, file)
+    found = load_plain(text, file)
     assert isinstance(found, PlainSystem), [str(problem) for problem in found]
     return found
 
 
 def problems(text: str, file: str = "a.csv") -> list[str]:
-    found = load(text, file)
+    found = load_plain(text, file)
     assert not isinstance(found, PlainSystem)
     return [str(problem) for problem in found]
 
@@ -52,7 +52,10 @@ def task_file(**columns: str) -> str:
 def test_csv_and_json_hold_the_same_system_as_the_reference() -> None:
     from_csv, from_json = system(CSV), system(JSON, "a.json")
     assert from_csv == from_json
-    found, reference = holistic.analyse(from_csv.network), holistic.analyse(two_nodes())
+    found, reference = (
+        holistic.analyse(from_csv.network),
+        holistic.analyse(two_nodes()),
+    )
     for name in reference.responses:
         needed = reference.from_event(name)
         assert needed is not None
@@ -242,9 +245,9 @@ def test_a_wrong_value_is_named_by_line_and_column(columns: dict[str, str], mess
 )
 def test_what_does_not_go_together_is_refused_by_line(text: str, message: str) -> None:
     try:
-        found = load(text, "a.csv")
+        found = load_plain(text, "a.csv")
         if isinstance(found, PlainSystem):
-            analyse(found)
+            analyse_plain(found)
             pytest.fail("accepted")
         shown = [str(problem) for problem in found]
     except ValueError as fault:
@@ -284,7 +287,7 @@ def test_wrong_json_is_refused_by_line(text: str, message: str) -> None:
 
 
 def verdict(text: str, file: str = "a.csv") -> Any:
-    return json.loads(json.dumps(everything(analyse(system(text, file)))))
+    return json.loads(json.dumps(everything(analyse_plain(system(text, file)))))
 
 
 def test_a_blocking_of_the_literature_is_taken_as_it_stands() -> None:
@@ -483,7 +486,7 @@ def test_every_column_is_described() -> None:
 
 def test_messages_of_one_priority_may_go_before_each_other() -> None:
     text = "bus,bit_rate\nb,1000000\n\nmessage,bus,priority,cost_us,period_ms\n"
-    found = load(text + "m,b,7,100,9\nn,b,7,200,9\nk,b,-1,50,9\n", "a.csv")
+    found = load_plain(text + "m,b,7,100,9\nn,b,7,200,9\nk,b,-1,50,9\n", "a.csv")
     assert isinstance(found, PlainSystem)
-    responses = analyse(found).found.responses
+    responses = analyse_plain(found).found.responses
     assert [responses[name].bound for name in "mnk"] == [350_000, 350_000, 350_000]

@@ -31,7 +31,7 @@ from ravenchart.workbench.play.requests import (
     WaitWish,
 )
 from ravenchart.workbench.play.session import Play
-from ravenchart.workbench.play.view import arrows, view
+from ravenchart.workbench.play.view import arrows, play_view
 from ravenchart.workbench.publishing import RefusedRequestError
 from ravenchart.workbench.requests import Rewind
 from tests.support.interpreted import chart_system, stimuli_of
@@ -124,23 +124,23 @@ def test_the_event_file_gives_the_same_trace(name: str, monkeypatch: pytest.Monk
 
 def test_undo_takes_back_all_that_an_act_did_and_redo_does_it_again() -> None:
     play = play_of("pump")
-    seen = [{**view(play), "redo": None, "number": 0}]
+    seen = [{**play_view(play), "redo": None, "number": 0}]
     for wish in wishes(play.system, random.Random(3), list(play.charts), 25):
         if not isinstance(wish, Rewind):
             try:
                 play.do(wish)
             except RefusedRequestError:
                 continue
-            seen.append({**view(play), "redo": None, "number": 0})
+            seen.append({**play_view(play), "redo": None, "number": 0})
     assert len(seen) > 10
     for before in reversed(seen[:-1]):
         back(play)
-        assert {**view(play), "redo": None, "number": 0} == before
+        assert {**play_view(play), "redo": None, "number": 0} == before
     back(play)
     assert play.undo_label is None
     for after in seen[1:]:
         back(play, "redo")
-        assert {**view(play), "redo": None, "number": 0} == after
+        assert {**play_view(play), "redo": None, "number": 0} == after
     assert play.redo_label is None
 
 
@@ -164,17 +164,17 @@ transitions:
 
 def chart_of(play: Play) -> dict[str, object]:
     """The only chart, as the page gets it."""
-    (found,) = view(play)["charts"]
+    (found,) = play_view(play)["charts"]
     assert isinstance(found, dict)
     return found
 
 
 def test_what_the_page_gets_of_an_event_and_a_time_out() -> None:
     play = small(SWITCH)
-    assert view(play)["now"] is None and chart_of(play)["last"] is None
+    assert play_view(play)["now"] is None and chart_of(play)["last"] is None
     go(play)
     give(play, "Go")
-    shown = view(play)
+    shown = play_view(play)
     assert (shown["now"], shown["next"], shown["waiting"]) == ("0.000 s", "0.010 s", 1)
     assert chart_of(play)["queue"] == ["Go"]
     assert play.event_file() == (
@@ -196,7 +196,7 @@ def test_what_the_page_gets_of_an_event_and_a_time_out() -> None:
         "not yet due: 20 ms left (2 executions)"
     ]
     go(play, "time_out")
-    assert view(play)["trace"][-1] == "0.040 unit.Main: Lit.exit, off.effect, Off.entry"
+    assert play_view(play)["trace"][-1] == "0.040 unit.Main: Lit.exit, off.effect, Off.entry"
     with pytest.raises(RefusedRequestError, match="no time-out runs in the active states"):
         go(play, "time_out")
     assert play.event_file() == (
@@ -251,10 +251,10 @@ def test_time_that_does_not_reach_what_was_wished_says_where_it_stopped(
 def test_what_cannot_be_done_is_refused_in_words(wish: PlayRequest, text: str) -> None:
     play = small(SWITCH)
     go(play)
-    before = view(play)
+    before = play_view(play)
     with pytest.raises(RefusedRequestError, match=text.replace("`", ".")):
         play.do(wish)
-    assert view(play) == before
+    assert play_view(play) == before
 
 
 def test_a_value_out_of_range_is_refused_with_the_range() -> None:
@@ -277,10 +277,10 @@ transitions:
 """)
     go(play)
     give(play, "Go")
-    before = view(play)
+    before = play_view(play)
     with pytest.raises(RefusedRequestError, match="C has no way out"):
         go(play)
-    assert view(play) == before
+    assert play_view(play) == before
 
 
 def test_an_event_file_is_gone_on_from() -> None:

@@ -14,7 +14,7 @@ import e2e
 import pytest
 
 from ravenchart.analysis.present.figures import figures
-from ravenchart.analysis.present.report import render
+from ravenchart.analysis.present.report import render_report
 from ravenchart.analysis.system.protection import protected, residual_probability
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.gen.model.protection import PROFILES, ProfileName, Protection, crc_8
@@ -80,7 +80,7 @@ def test_the_report_has_them(system: System) -> None:
     found = json.loads(json.dumps(figures(analysis)))["protected"]
     assert [row["message"] for row in found] == [m.name for m in system.messages]
     assert found[0]["tolerated"] == 40 * MS
-    text = render(analysis)
+    text = render_report(analysis)
     assert ">End-to-end protection</h2>" in text
     assert "<td>first_in</td><td>e2e_p1</td>" in text
 

@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import pytest
 
 from ravenchart.analysis.findings.claims import claims_of
-from ravenchart.analysis.system.observed import TraceError, TraceMap, read_map, read_trace, together
+from ravenchart.analysis.system.observed import TraceError, TraceMap, merged, read_map, read_trace
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.command_line import main
 from ravenchart.gen.emit.clashes import clashes
@@ -196,7 +196,7 @@ def test_values_are_read_with_their_losses(trace_map: TraceMap) -> None:
         (100, "giver.height", "-993"), (200, "giver.hue", "Green"),
     ]  # fmt: skip
     assert seen.records == []
-    both = together({"left": seen, "right": seen})
+    both = merged({"left": seen, "right": seen})
     assert both.values_lost == 6 and len(both.values) == 2 * len(seen.values)
 
 

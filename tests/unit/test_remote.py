@@ -15,7 +15,7 @@ import can
 import pytest
 
 from ravenchart.failures import Refused, Unusable
-from ravenchart.hw_can.bench.interfaces import BusEnd, joined
+from ravenchart.hw_can.bench.interfaces import BusEnd, joined_peer
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem, Sent, connect
 from ravenchart.running.vocabulary import WordError
@@ -37,7 +37,7 @@ def far(request: pytest.FixtureRequest) -> Iterator[FarEnd]:
 @pytest.fixture
 def near(far: FarEnd, request: pytest.FixtureRequest) -> Iterator[RemoteSystem]:
     words = robot()
-    with RemoteSystem(words, joined(BusEnd("virtual", request.node.name), words.codec)) as one:
+    with RemoteSystem(words, joined_peer(BusEnd("virtual", request.node.name), words.codec)) as one:
         yield one
 
 
@@ -189,7 +189,9 @@ def test_a_bus_that_breaks_ends_who_waits_and_names_itself() -> None:
     server = BusServer()
     words = robot()
     try:
-        with RemoteSystem(words, joined(BusEnd("ravenchart", server.channel), words.codec)) as it:
+        with RemoteSystem(
+            words, joined_peer(BusEnd("ravenchart", server.channel), words.codec)
+        ) as it:
             threading.Timer(0.1, server.cut).start()
             with pytest.raises(BenchError, match=rf"^ravenchart '{server.channel}': the bus serv"):
                 it.wait_for("condition", "Ready", 30)

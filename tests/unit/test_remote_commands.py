@@ -12,7 +12,7 @@ import pytest
 
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.findings.deadlines import findings
-from ravenchart.analysis.present.report import render as render_report
+from ravenchart.analysis.present.report import render_report
 from ravenchart.analysis.system.commands import command_times
 from ravenchart.analysis.system.depths import depths
 from ravenchart.analysis.system.timing import analyse

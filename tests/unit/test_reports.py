@@ -14,10 +14,10 @@ import pytest
 
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.findings.differences import Wording, differences
-from ravenchart.analysis.plain.build import PlainSystem, load
-from ravenchart.analysis.plain.results import PlainResult, analyse, everything
+from ravenchart.analysis.plain.build import PlainSystem, load_plain
+from ravenchart.analysis.plain.results import PlainResult, analyse_plain, everything
 from ravenchart.analysis.present.page import both
-from ravenchart.analysis.present.plots import histogram, hop_pieces, svg
+from ravenchart.analysis.present.plots import figure_svg, histogram, hop_pieces
 from ravenchart.analysis.system.critical import frame_schedule
 from ravenchart.analysis.units import milliseconds
 from ravenchart.command_line import main
@@ -39,9 +39,9 @@ e,can,5,8,10000,,
 
 
 def result(text: str) -> PlainResult:
-    found = load(text, "a.csv")
+    found = load_plain(text, "a.csv")
     assert isinstance(found, PlainSystem)
-    return analyse(found)
+    return analyse_plain(found)
 
 
 def test_the_critical_instant_of_a_frame_takes_exactly_its_window() -> None:
@@ -64,9 +64,9 @@ def test_the_hops_of_a_chain_add_up_to_its_reaction() -> None:
 
 
 def test_a_histogram_is_a_picture_with_the_bound() -> None:
-    text = svg(histogram((4_000_000, 5_000_000, 5_000_000), 9_000_000, 12_000_000))
+    text = figure_svg(histogram((4_000_000, 5_000_000, 5_000_000), 9_000_000, 12_000_000))
     assert text.startswith("<svg") and ">bound<" in text and ">limit<" in text
-    assert ">limit<" not in svg(histogram((4_000_000,), 9_000_000, 100_000_000))
+    assert ">limit<" not in figure_svg(histogram((4_000_000,), 9_000_000, 100_000_000))
 
 
 def test_milliseconds_stand_beside_microseconds_from_1_ms_on() -> None:

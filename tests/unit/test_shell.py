@@ -18,7 +18,7 @@ from ravenchart.command_line import main
 from ravenchart.commands import running
 from ravenchart.commands import shell as shell_command
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
-from ravenchart.hw_can.bench.interfaces import BusEnd, joined
+from ravenchart.hw_can.bench.interfaces import BusEnd, joined_peer
 from ravenchart.hw_can.bench.peer import BenchError, Peer
 from ravenchart.running.process import Ended, StartError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem
@@ -42,7 +42,7 @@ def far(request: pytest.FixtureRequest) -> Iterator[FarEnd]:
 @pytest.fixture
 def shell(far: FarEnd, request: pytest.FixtureRequest) -> Iterator[Shell]:
     words = robot()
-    with RemoteSystem(words, joined(BusEnd("virtual", request.node.name), words.codec)) as it:
+    with RemoteSystem(words, joined_peer(BusEnd("virtual", request.node.name), words.codec)) as it:
         yield Shell(it, Console(file=io.StringIO(), width=80, highlight=False))
 
 
@@ -259,7 +259,7 @@ def stopped(controller: Ended) -> Callable[..., AbstractContextManager[tuple[Pee
     ) -> Iterator[tuple[Peer, list[Ended]]]:
         if controller.killed:
             raise StartError("the controller did not open its bus within 10 s")
-        yield joined(BusEnd("virtual", "own"), words.codec), [controller]
+        yield joined_peer(BusEnd("virtual", "own"), words.codec), [controller]
 
     return started
 

@@ -11,7 +11,7 @@ import random
 import pytest
 from rich.console import Console
 
-from ravenchart.hw_can.bench.interfaces import BusEnd, joined
+from ravenchart.hw_can.bench.interfaces import BusEnd, joined_peer
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.paths import ROOT
 from ravenchart.running.remote import NoAnswerError, RemoteSystem
@@ -40,7 +40,7 @@ def test_no_line_gets_another_exception(feature: str, monkeypatch: pytest.Monkey
     verbs = [verb for verb in USAGES if verb != "wait"]
     known = [*verbs, *words.commands, *words.messages, *words.observable(), *ODD]
     chance, done = random.Random(feature), 0
-    with RemoteSystem(words, joined(BusEnd("virtual", feature, fd=True), words.codec)) as far:
+    with RemoteSystem(words, joined_peer(BusEnd("virtual", feature, fd=True), words.codec)) as far:
         shell = Shell(far, Console(file=io.StringIO(), width=80))
         monkeypatch.setattr("ravenchart.running.shell.PATIENCE", 0.0)
         for _ in range(LINES):

@@ -13,7 +13,7 @@ import pytest
 from ravenchart.analysis.core import can, holistic
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.bus import Bus, Errors, Frame
-from ravenchart.analysis.core.fixed_priority import analyse, response_under
+from ravenchart.analysis.core.fixed_priority import analyse_tasks, response_under
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Response
@@ -189,7 +189,7 @@ def test_every_task_attains_a_bound_that_comes_of_offsets() -> None:
             for number, task in enumerate(plain.tasks)
         )
         network = with_offsets(replace(plain, tasks=tasks), chance)
-        for response in analyse(network.tasks):
+        for response in analyse_tasks(network.tasks):
             known = {t.name for t in network.tasks if t.offset is not None}
             level = response.level.order[: response.level.reach]
             tables = [t for t in level if t.rows and t.name not in known]
@@ -213,7 +213,7 @@ def test_every_task_attains_its_bound_where_theory_has_such_phases() -> None:
     for seed in range(SYSTEMS // 2):
         chance = random.Random(seed)
         network = random_network(chance, plain=True)
-        for response in analyse(network.tasks, network.sections):
+        for response in analyse_tasks(network.tasks, network.sections):
             if response.bound is None:
                 continue
             case = worst.of_task(response)
@@ -265,7 +265,7 @@ def test_a_simulation_that_only_starts_together_would_not_show_blocking() -> Non
         (Task("high", 2, 100, 100, 5), Task("low", 1, 100, 100, 20)),
         sections=(Section("o", "low", 9), Section("o", "high", 1)),
     )
-    response = analyse(network.tasks, network.sections)[0]
+    response = analyse_tasks(network.tasks, network.sections)[0]
     assert response.bound == 14
     case = worst.of_task(response)
     assert simulate(network, PhaseScenario(), 90).longest["high"] == 5

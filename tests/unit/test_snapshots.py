@@ -13,7 +13,7 @@ import pytest
 
 from ravenchart.analysis.system.observed import TraceError
 from ravenchart.running import snapshots
-from ravenchart.running.snapshots import SnapshotFile, parsed
+from ravenchart.running.snapshots import SnapshotFile, parsed_snapshot
 from tests.support.snapshot_files import held, number, processors, snapshot, trace_map
 
 
@@ -26,7 +26,7 @@ def test_a_whole_snapshot_is_read(path: Path) -> None:
     path.write_text(snapshot(7, *processors(40)))
     text = SnapshotFile(path).text()
     assert text is not None
-    found = parsed(text, trace_map(), "file")
+    found = parsed_snapshot(text, trace_map(), "file")
     assert found.sequence == 7
     assert found.seen.processors["control"].releases == 40
     assert found.seen.now == 2_000_000_000
@@ -55,7 +55,7 @@ def test_a_snapshot_over_which_another_is_being_written_is_none(path: Path) -> N
 def test_records_are_counted_and_the_last_one_is_known(path: Path) -> None:
     region = number("bed.Infusion", "region")
     text = snapshot(1, f"C STATE {region} 12 1050103723 2", *processors(1))
-    (tally,) = parsed(text, trace_map(), "file").tallies
+    (tally,) = parsed_snapshot(text, trace_map(), "file").tallies
     assert (tally.count, tally.last.kind, tally.last.time) == (12, "state", 1_050_103_723)
     assert tally.last.text == trace_map().named("bed.Infusion", "region").leaves[2]
 
@@ -70,7 +70,7 @@ def test_records_are_counted_and_the_last_one_is_known(path: Path) -> None:
 )
 def test_a_line_that_cannot_be_read_is_named(line: str, problem: str) -> None:
     with pytest.raises(TraceError, match=r"^file:4: error: ") as found:
-        parsed(snapshot(1, line), trace_map(), "file")
+        parsed_snapshot(snapshot(1, line), trace_map(), "file")
     assert problem in str(found.value)
 
 
@@ -91,8 +91,8 @@ def test_only_files_that_are_written_are_found_the_newest_first(tmp_path: Path) 
         one.write_text("")
         os.utime(one, (time.time() - age,) * 2)
     with held(first), held(second):
-        assert snapshots.written([tmp_path], "pump_main") == [second, first]
-        assert snapshots.written([tmp_path], "other_main") == []
+        assert snapshots.snapshot_files([tmp_path], "pump_main") == [second, first]
+        assert snapshots.snapshot_files([tmp_path], "other_main") == []
 
 
 def test_a_new_file_takes_those_away_that_a_killed_run_has_left(tmp_path: Path) -> None:

@@ -20,8 +20,8 @@ from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.exchange import cheddar, mast, pycpa
 from ravenchart.analysis.findings.deadlines import findings
-from ravenchart.analysis.plain.build import PlainSystem, load
-from ravenchart.analysis.plain.results import analyse
+from ravenchart.analysis.plain.build import PlainSystem, load_plain
+from ravenchart.analysis.plain.results import analyse_plain
 from ravenchart.analysis.simulation.engine import simulate
 from ravenchart.analysis.simulation.phases import Phase, PhaseScenario
 from tests.support.certificates import certificate, compiled
@@ -162,9 +162,9 @@ way,act,sampled
 def test_a_plain_file_says_which_messages_are_sporadic(
     word: str, hop: str, reaction: bool, age: bool
 ) -> None:
-    system = load(PLAIN.format(word, hop), "a.csv")
+    system = load_plain(PLAIN.format(word, hop), "a.csv")
     assert isinstance(system, PlainSystem), system
-    (found,) = analyse(system).latencies
+    (found,) = analyse_plain(system).latencies
     assert (found.reaction is not None, found.age is not None) == (reaction, age)
 
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 import pytest
 
 from ravenchart.analysis.present.page import both
-from ravenchart.analysis.present.report import Comparison, render
+from ravenchart.analysis.present.report import Comparison, render_report
 from ravenchart.analysis.system.observed import Observation, Releases, TraceMap, read_trace
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.gen.emit.nodes.supervision import END_MARGIN
@@ -93,12 +93,12 @@ def test_a_model_without_supervision_has_no_such_task() -> None:
 
 @pytest.mark.slow
 def test_the_report_says_how_soon_silence_is_found_or_that_nothing_looks_for_it() -> None:
-    text = render(analyse(example("three_components")))
+    text = render_report(analyse(example("three_components")))
     #  deadline and margin; then a period of the supervisor and its response
     cells = f'<td class="n">{both(260_000_000)}</td><td class="n">{both(270_075_000)}</td>'
     assert f"<td>processor_2</td>{cells}" in text
     assert "<td>one.Station_Silent</td>" in text
-    bare = render(analyse(example("pump")))
+    bare = render_report(analyse(example("pump")))
     assert "Nothing supervises board: no task finds a processor" in bare
 
 

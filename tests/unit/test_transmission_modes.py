@@ -14,7 +14,7 @@ import pytest
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.present.figures import figures
-from ravenchart.analysis.present.report import render
+from ravenchart.analysis.present.report import render_report
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.emit.program import generate
@@ -175,4 +175,4 @@ def test_report_and_figures_name_the_mode(tmp_path: Path) -> None:
             "longest": 200 * MS,
         }
     ]
-    assert "periodically and on change" in render(analysis)
+    assert "periodically and on change" in render_report(analysis)

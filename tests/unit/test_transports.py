@@ -14,7 +14,7 @@ import pytest
 
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.present.figures import figures
-from ravenchart.analysis.present.report import render
+from ravenchart.analysis.present.report import render_report
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.analysis.system.transport import Transfer
 from ravenchart.gen.language.terms import Ns
@@ -178,4 +178,4 @@ def test_report_and_figures_have_the_transfers(tmp_path: Path) -> None:
         "cycle": table.cycle,
         "timeout": 500 * MS,
     }
-    assert ">Values in several frames</h2>" in render(analysis)
+    assert ">Values in several frames</h2>" in render_report(analysis)

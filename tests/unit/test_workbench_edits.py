@@ -12,7 +12,7 @@ import pytest
 
 from ravenchart.editing import edits
 from ravenchart.editing.edits import Document, LayoutError, TakenItem
-from ravenchart.gen.files.spans import Sequence, YamlMapping, plain
+from ravenchart.gen.files.spans import Sequence, YamlMapping, plain_tree
 from ravenchart.paths import ROOT
 
 BLOCK = """\
@@ -171,7 +171,7 @@ def test_brackets_over_several_lines_keep_their_comments() -> None:
     ],
 )
 def test_other_layouts_are_changed_to_what_was_meant(text: str) -> None:
-    made = plain(document(moved(text, "p", 0, "q", 1)).root)
+    made = plain_tree(document(moved(text, "p", 0, "q", 1)).root)
     assert made == {
         "processors": {"p": {"activities": ["a.y"]}, "q": {"activities": ["b.x", "a.x"]}}
     }

@@ -9,7 +9,7 @@ safe where the main program cannot.
 
 from __future__ import annotations
 
-from ravenchart.gen.derive.calls import started
+from ravenchart.gen.derive.calls import devices_with_ends
 from ravenchart.gen.emit.ada.naming import ada_case, root_package
 from ravenchart.gen.emit.ada.syntax import (
     FALSE,
@@ -55,7 +55,7 @@ RUNTIME_FOLDER = "spark_runtime/devices"
 
 def has_lifecycle(system: System) -> bool:
     """Whether the program of a system starts or ends any device."""
-    return bool(started(system))
+    return bool(devices_with_ends(system))
 
 
 def ends_devices(system: System) -> bool:
@@ -64,12 +64,14 @@ def ends_devices(system: System) -> bool:
 
 
 def _ended(system: System) -> tuple[Device, ...]:
-    return tuple(d for d in started(system) if d.type and d.type.lifecycle.make_safe is not None)
+    return tuple(
+        d for d in devices_with_ends(system) if d.type and d.type.lifecycle.make_safe is not None
+    )
 
 
 def emit_lifecycle(system: System, header: str) -> list[Unit]:
     """The package that starts and ends all devices of a program, where it has such."""
-    devices, ended = started(system), _ended(system)
+    devices, ended = devices_with_ends(system), _ended(system)
     if not devices:
         return []
     root = root_package(system)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.derive.calls import device_types, units_of
+from ravenchart.gen.derive.calls import called_devices, device_types
 from ravenchart.gen.emit.ada.naming import ada_case, root_package, scalar, type_name
 from ravenchart.gen.emit.ada.syntax import (
     SPARK,
@@ -96,7 +96,7 @@ def emit_units(system: System, kind: DeviceType, header: str) -> Iterator[Unit]:
 
 
 def _units(system: System, kind: DeviceType, header: str) -> Unit:
-    devices = units_of(system, kind)
+    devices = called_devices(system, kind)
     items: list[Decl] = [
         Comment(f"[{kind.name}] its devices"),
         EnumType("Unit", tuple(unit_of(device) for device in devices)),
@@ -173,7 +173,7 @@ def _object(device: Device, one: Register) -> str:
 
 def _at_addresses(system: System, kind: DeviceType, header: str) -> Unit:
     root = root_package(system)
-    devices = units_of(system, kind)
+    devices = called_devices(system, kind)
     every = [Ref(_object(device, one)) for device in devices for one in kind.registers]
     constituents = every[0] if len(every) == 1 else Aggregate(arguments(*every))
     items: list[Decl] = []

@@ -13,7 +13,7 @@ from ravenchart.analysis.system.observed import TraceError
 from ravenchart.behaviour.interpreter.traces import (
     StepRecord,
     ValueRecord,
-    parsed,
+    parsed_record,
     parsed_value,
 )
 from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
@@ -146,7 +146,7 @@ def _text(line: str) -> StepRecord | ValueRecord:
         return parsed_value(line)
     if STEP.fullmatch(line) is None:
         raise ValueError(line)
-    return parsed(line)
+    return parsed_record(line)
 
 
 def _json(line: str) -> StepRecord | ValueRecord:

@@ -14,12 +14,12 @@ from starlette.routing import Route
 
 from ravenchart.building import drawings
 
-from ..pages import Pages, error
+from ..pages import Pages, refusal
 from ..publishing import Publisher
 from ..requests import PageRequest
 from . import requests
 from .session import Play
-from .view import arrows, view
+from .view import arrows, play_view
 
 
 class PlayHub(Publisher):
@@ -31,7 +31,7 @@ class PlayHub(Publisher):
         super().__init__(play)
 
     def _dumped(self) -> bytes:
-        return json.dumps(view(self.play)).encode()
+        return json.dumps(play_view(self.play)).encode()
 
     def _do(self, wish: PageRequest) -> None:
         assert isinstance(wish, requests.PLAY_REQUESTS)
@@ -64,6 +64,6 @@ class PlayPages(Pages):
         """The event file of what was done."""
         text = json.loads(self.hub.state)["file"]
         if text is None:
-            return error(404, "nothing was executed yet: there is no event file")
+            return refusal(404, "nothing was executed yet: there is no event file")
         headers = {"content-disposition": 'attachment; filename="events.yaml"'}
         return Response(text, media_type="application/yaml", headers=headers)

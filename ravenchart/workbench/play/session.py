@@ -18,11 +18,17 @@ from ravenchart.behaviour.interpreter.branching import branched
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.observed import ObservedRegion, ObservedStep
 from ravenchart.behaviour.interpreter.region import Stuck, TimeOut
-from ravenchart.behaviour.interpreter.stimuli import Arrived, Raised, Stimuli, read, written
+from ravenchart.behaviour.interpreter.stimuli import (
+    Arrived,
+    Raised,
+    Stimuli,
+    read_stimuli,
+    written_stimuli,
+)
 from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.gen.derive.distribution import as_one
 from ravenchart.gen.diagnostics import Diagnostic
-from ravenchart.gen.language.quantities import LONGEST, duration, shown
+from ravenchart.gen.language.quantities import LONGEST, parsed_duration, shown
 from ravenchart.gen.language.terms import NO_TIME, Ns
 from ravenchart.gen.model.system import Slot, System, Work
 
@@ -138,7 +144,9 @@ class Play:
         found = self.stimuli()
         if found is None:
             return None
-        return written(found, [f"{self.system.name}: recorded in the page of `simulate --open`."])
+        return written_stimuli(
+            found, [f"{self.system.name}: recorded in the page of `simulate --open`."]
+        )
 
     # --- Acts
 
@@ -173,7 +181,7 @@ class Play:
             place = f"{wish.instance}.{wish.port}"
             item = {"at": shown(at), "put": place, "value": wish.value}
         text = json.dumps([item, {"until": shown(at)}], ensure_ascii=False)
-        found, wrong = read(text, "page", self.system)
+        found, wrong = read_stimuli(text, "page", self.system)
         if found is None:
             raise RefusedRequestError("; ".join(_words(one) for one in wrong))
         machine = branched(self.now.machine)
@@ -211,7 +219,7 @@ class Play:
 
     def _wait(self, text: str) -> None:
         """Execute all releases of a duration."""
-        length = duration(text.strip())
+        length = parsed_duration(text.strip())
         if length is None or not 0 < length <= LONGEST:
             raise RefusedRequestError(
                 f"`{text}` is not a duration up to one hour: write a number and ns, us, ms or s, "

@@ -30,7 +30,7 @@ MOST_LINES = 200
 """Of the trace, the last ones."""
 
 
-def view(play: Play) -> Json:
+def play_view(play: Play) -> Json:
     """All that the page shows."""
     now, records = play.now, list(play.records())
     return {
