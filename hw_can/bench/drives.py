@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from .peer import BenchError, FrameValues, Peer
 from .plant import STEP, UM, Drive, DriveMode, Push
 from .replay import Timed
-from .scenario import DriveForm
+from .scenario_forms import DriveForm
 
 PERIOD = 0.005
 """Time between two feedback frames of a drive, in s."""

@@ -11,7 +11,7 @@ from pydantic import TypeAdapter
 
 from ravenchart.described import untitled
 
-from .scenario import BUS_EVENTS, EXPECTED, STEPS, DriveForm, TraceCheck, WholeForm
+from .scenario_forms import BUS_EVENTS, EXPECTED, STEPS, DriveForm, TraceCheck, WholeForm
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 TITLE = "Ravenchart: a scenario"

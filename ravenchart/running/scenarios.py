@@ -26,19 +26,17 @@ from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
 from ravenchart.hw_can.bench.peer import BenchError, Value
 from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
 from ravenchart.hw_can.bench.replay import from_outside, read_log
-from ravenchart.hw_can.bench.scenario import (
+from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
+from ravenchart.hw_can.bench.scenario_forms import (
     Cut,
     Expected,
     Lost,
     Missed,
     Overran,
     Replay,
-    Scenario,
-    ScenarioError,
     SendStep,
     TraceCheck,
     WaitFor,
-    load_scenario,
 )
 
 from .vocabulary import BusVocabulary

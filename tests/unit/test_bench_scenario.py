@@ -9,17 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.hw_can.bench.scenario import (
-    STEPS,
-    Expect,
-    Hold,
-    LetGo,
-    ScenarioError,
-    SendStep,
-    WaitFor,
-    load_scenario,
-    parse_scenario,
-)
+from ravenchart.hw_can.bench.scenario import ScenarioError, load_scenario, parse_scenario
+from ravenchart.hw_can.bench.scenario_forms import STEPS, Expect, Hold, LetGo, SendStep, WaitFor
 from tests.support.bench_files import scenario_text
 
 ROBOT = Path(__file__).parents[2] / "examples" / "cartesian_robot"

@@ -15,13 +15,8 @@ import pytest
 from ravenchart.behaviour.interpreter.stimuli import FORMS
 from ravenchart.building import checking
 from ravenchart.command_line import main
-from ravenchart.hw_can.bench.scenario import (
-    BUS_EVENTS,
-    STEPS,
-    DriveForm,
-    TraceCheck,
-    parse_scenario,
-)
+from ravenchart.hw_can.bench.scenario import parse_scenario
+from ravenchart.hw_can.bench.scenario_forms import BUS_EVENTS, STEPS, DriveForm, TraceCheck
 from ravenchart.running import scenarios
 from ravenchart.tools import toolchain
 from tests.support.processes import ROOT
