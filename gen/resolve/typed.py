@@ -30,14 +30,7 @@ from ravenchart.gen.language.terms import (
 )
 from ravenchart.gen.origins import Origin
 
-from .vocabulary import (
-    EVENT,
-    CheckedExpression,
-    Vocabulary,
-    interval_in_words,
-    literal_use,
-    result_in_words,
-)
+from .vocabulary import EVENT, CheckedExpression, Vocabulary, literal_use, range_text, yielded
 
 FUNCTIONS: Mapping[str, int] = {
     "abs": 1,
@@ -265,7 +258,7 @@ class Checker:
         wrong = False
         for operand, item in zip(operands, sound, strict=True):
             if item.type is not None:
-                message = f"`{term.word}` takes numbers, but this is {result_in_words(item)}"
+                message = f"`{term.word}` takes numbers, but this is {yielded(item)}"
                 self.refuse("RV-0404", operand, message)
                 wrong = True
         return None if wrong else sound
@@ -294,7 +287,7 @@ class Checker:
         else:
             unit = next((item.unit for item in operands if not item.bare), None)
         if operator == "/" and operands[1].bounds[0] <= 0 <= operands[1].bounds[1]:
-            shown = interval_in_words(operands[1].bounds)
+            shown = range_text(operands[1].bounds)
             hint = "exclude 0 by `max(..., 1)`, or by `if` around the division"
             self.refuse("RV-0406", term, f"the divisor may be 0: it is {shown}", hint)
             return None
@@ -338,7 +331,7 @@ class Checker:
         """A condition."""
         checked = self.check(term, BOOLEAN)
         if checked is not None and checked.type is not BOOLEAN:
-            message = f"{taker} takes a condition, but this is {result_in_words(checked)}"
+            message = f"{taker} takes a condition, but this is {yielded(checked)}"
             self.refuse("RV-0404", term, message)
             return None
         return checked
@@ -362,8 +355,7 @@ class Checker:
             return None
         wrong = left.type is not right.type or isinstance(left.type, RecordType)
         if wrong:
-            pair = f"{result_in_words(left)} with {result_in_words(right)}"
-            message = f"`{term.word}` cannot compare {pair}"
+            message = f"`{term.word}` cannot compare {yielded(left)} with {yielded(right)}"
             hint = "compare their fields" if isinstance(left.type, RecordType) else None
             self.refuse("RV-0404", term, message, hint)
             return None
@@ -400,7 +392,7 @@ class Checker:
         if condition is None or checked is None or other is None:
             return None
         if checked.type is not other.type or isinstance(checked.type, RecordType):
-            message = f"`if` cannot yield {result_in_words(checked)} or {result_in_words(other)}"
+            message = f"`if` cannot yield {yielded(checked)} or {yielded(other)}"
             self.refuse("RV-0404", term, message)
             return None
         terms = (condition.expression, checked.expression, other.expression)
@@ -458,7 +450,7 @@ def condition(
     if checked is None:
         return None
     if checked.type is not BOOLEAN:
-        message = f"`{taker}` takes a condition, but this is {result_in_words(checked)}"
+        message = f"`{taker}` takes a condition, but this is {yielded(checked)}"
         findings.error("RV-0404", place.origin, message)
         return None
     return checked.expression
@@ -480,7 +472,7 @@ def fitting(
     if isinstance(type_, EnumerationType) or checked.type is not None:
         if checked.type is type_:
             return checked.expression
-        message = f"`{target}` is of type {type_.name}, but this is {result_in_words(checked)}"
+        message = f"`{target}` is of type {type_.name}, but this is {yielded(checked)}"
         findings.error("RV-0404", place.origin, message)
         return None
     if not checked.bare and checked.unit != type_.unit:
@@ -491,10 +483,8 @@ def fitting(
     low, high = checked.bounds
     if type_.first <= low and high <= type_.last:
         return checked.expression
-    wanted, given = (
-        interval_in_words((type_.first, type_.last), type_.unit),
-        interval_in_words(checked.bounds),
-    )
+    wanted = range_text((type_.first, type_.last), type_.unit)
+    given = range_text(checked.bounds)
     shown = str(text) if len(str(text)) <= 60 and "\n" not in str(text) else "..."
     if low == high:
         message, hint = f"`{target}` takes {wanted}, but this is {low}", None

@@ -33,7 +33,7 @@ from ravenchart.gen.language.terms import (
 )
 from ravenchart.gen.origins import Origin
 
-from .vocabulary import interval_in_words, literal_use
+from .vocabulary import literal_use, range_text
 
 FIRST, LAST = -(2**62), 2**62 - 1
 """Bounds of every integer type."""
@@ -146,7 +146,7 @@ def constant(
             findings.error("RV-0312", place.origin, message)
             return None
         if not type_.first <= value <= type_.last:
-            shown = interval_in_words((type_.first, type_.last), type_.unit)
+            shown = range_text((type_.first, type_.last), type_.unit)
             message = f"`{what}` must be of type {type_.name}, {shown}, not {value}"
             findings.error("RV-0312", place.origin, message)
             return None

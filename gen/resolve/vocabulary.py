@@ -91,7 +91,7 @@ def literal_use(literal: str, of_type: EnumerationType, origin: Origin) -> NameU
     )
 
 
-def result_in_words(checked: CheckedExpression) -> str:
+def yielded(checked: CheckedExpression) -> str:
     """What an expression yields, in words."""
     if checked.type is not None:
         kind = "a record" if isinstance(checked.type, RecordType) else "a value"
@@ -99,6 +99,6 @@ def result_in_words(checked: CheckedExpression) -> str:
     return "a number"
 
 
-def interval_in_words(bounds: Interval, unit: str | None = None) -> str:
+def range_text(bounds: Interval, unit: str | None = None) -> str:
     """An interval in words."""
     return f"{bounds[0]} .. {bounds[1]}" + (f" {unit}" if unit else "")
