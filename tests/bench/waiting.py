@@ -4,9 +4,10 @@
 """How long a user waits: start, check, generate, and generate and build where nothing changed.
 
 Beside the aims, and the figures before the commands imported what they need when they are called,
-and kept what an unchanged model comes to. Each is the best of some calls in a process of its own, with what other calls have kept. It is the
-processor time, its children's included: other programs on the machine change that little. Modules
-are compiled before, as those of an installed package are.
+and kept what an unchanged model comes to. Each is the best of some calls in a process of its own,
+with what other calls have kept. It is the processor time, its children's included: other programs
+on the machine change that little. Modules are compiled before, as those of an installed package
+are.
 """
 
 from __future__ import annotations
