@@ -8,8 +8,9 @@ Apart from the rules, which import a solver: a result that is kept needs none.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from ravenchart.gen.diagnostics import Diagnostic
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.safety import SafeRegion
 
 EFFORT = 10_000
@@ -26,7 +27,7 @@ ON_MODEL = "RV-1111"
 """The code of an invariant that is checked on the model alone."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Behaviour:
     """What the rules of behaviour find in a model."""
 

@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.statechart import (
     After,
     Completion,
@@ -36,7 +35,7 @@ RegionKey = tuple[str | None, str]
 TOP: RegionKey = (None, "")
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Occurrence:
     """What a step is made for: ``kind`` and the state, transition or event."""
 

@@ -10,10 +10,8 @@ given a second meaning, and one that falls out of use is not given again.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
-
-from ravenchart.gen.frozen import frozen
 
 from .origins import Origin
 
@@ -251,7 +249,7 @@ CODES: Mapping[str, str] = {
 """Every code with what it says; docs/errors.md is written from this table."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Diagnostic:
     """One finding about a model.
 

@@ -9,14 +9,13 @@ it, is looked for where a program is wanted (`emit.clashes`).
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ravenchart.gen.derive.completion import completed
 from ravenchart.gen.diagnostics import Diagnostic, Sources, in_order
 from ravenchart.gen.files.load import Reader, read_file, read_model
 from ravenchart.gen.files.schema import ModelFile
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import Findings, NameUse, Unknown
 from ravenchart.gen.model.system import System
 from ravenchart.gen.resolve.system import resolve
@@ -27,7 +26,7 @@ from ravenchart.gen.rules.sections import sections_are_part_of_tasks
 from ravenchart.gen.rules.system import violations
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Loaded:
     """A model: the system when there is no error, what was found, and the lines read."""
 

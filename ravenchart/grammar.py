@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
-
-from ravenchart.gen.frozen import frozen
 
 
 class ArgumentKind(Enum):
@@ -39,7 +38,7 @@ ENDINGS = ("yaml", "yml", "csv", "json")
 """How the names of models end, and of the plain files that `analyse` takes too."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Word:
     """An option, or an argument where there are no ``flags``."""
 
@@ -52,7 +51,7 @@ class Word:
     repeated: bool
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class CommandWords:
     """A command; ``words`` are its options, then its arguments."""
 
@@ -78,7 +77,7 @@ class CommandWords:
         return (self.name, *self.aliases)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Grammar:
     """The whole command line."""
 

@@ -20,11 +20,9 @@ phases at which least is executed.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
-
-from ravenchart.gen.frozen import frozen
 
 from .blocking import Section
 from .checks import distinct, positive
@@ -40,7 +38,7 @@ TRIALS = 20_000
 """Tables that one search may analyse; then the best one so far is the answer."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Movable:
     """A piece of work, all times in ticks above 0; ``owner`` is the instance that it is part of."""
 
@@ -70,7 +68,7 @@ Table = tuple[Movable, ...]
 """Activities of one task, in the order in which it executes them."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Allocation:
     """Tables with the tasks that execute them and what the analysis says of these.
 

@@ -14,10 +14,8 @@ holds for ceiling blocking too, which depends on the same two sets.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeVar
-
-from ravenchart.gen.frozen import frozen
 
 from . import can
 from .blocking import Section
@@ -31,7 +29,7 @@ from .tasks import Task
 Item = TypeVar("Item", Task, Frame)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Order:
     """Names, most urgent first, when ``complete``; else ``names`` are those that fit.
 

@@ -16,14 +16,13 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
 
 from .checks import positive
 from .tasks import Task
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Section:
     """The longest time (ticks, above 0) that one call of ``user`` spends inside ``resource``.
 

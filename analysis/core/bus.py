@@ -5,9 +5,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
-
-from ravenchart.gen.frozen import frozen
 
 from .checks import at_most, natural, positive
 
@@ -24,7 +23,7 @@ INTERMISSION = 3
 """Bits between two frames: they count as part of the first, and its receivers do not wait."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Frame:
     """A message as the bus sees it; all times in ticks.
 
@@ -67,7 +66,7 @@ class Frame:
         return Fraction(self.cost, self.period)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Errors:
     """At most ``burst`` errors at once, and one more every ``period`` ticks.
 
@@ -84,7 +83,7 @@ class Errors:
         positive("the error model", period=self.period, burst=self.burst, bits=self.bits)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Bus:
     """What delays frames apart from each other; times in ticks.
 

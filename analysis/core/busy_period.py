@@ -6,8 +6,7 @@
 from __future__ import annotations
 
 import math
-
-from ravenchart.gen.frozen import frozen, slotted
+from dataclasses import dataclass
 
 from .blocking import Section, held_up
 from .multiframe import Demand
@@ -23,7 +22,7 @@ Goal = tuple[int, int, int]
 """What a job has executed when something is complete: that cost, its frame, the row."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Contender:
     """One task with what its releases cost, overheads included, and its goals by cost."""
 
@@ -64,7 +63,7 @@ def _row_goals(task: Task, before: int) -> list[Goal]:
     return goals
 
 
-@slotted
+@dataclass(slots=True)
 class Worst:
     """The longest response found so far to one completion."""
 

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
-
-from ravenchart.gen.frozen import frozen
 
 from .bus import Bus, Frame
 from .responses import Reason
@@ -19,7 +18,7 @@ ERRORS = 1 << 40
 """Serial number of the errors; those of frames are below."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class FrameInterference:
     """What one other message takes of the time before transmission."""
 
@@ -28,7 +27,7 @@ class FrameInterference:
     time: int
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class FrameLevel:
     """What is sent before a frame: the first ``reach`` of ``order``, most urgent first.
 
@@ -72,7 +71,7 @@ class FrameLevel:
         return frame.jitter + self.delays.get(frame.name, 0)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class FrameResponse:
     """The worst-case response of one frame; all times in ticks.
 

@@ -38,9 +38,8 @@ of any clocks.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
-
-from ravenchart.gen.frozen import frozen
 
 from .checks import positive
 from .holistic import Holistic, Network
@@ -62,7 +61,7 @@ class HopKind(Enum):
     """An item in its queue releases it, its period after the release before at the earliest."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class ChainStep:
     """A task or frame of a chain.
 
@@ -94,7 +93,7 @@ class ChainStep:
             raise ValueError(f"step {self.name} takes several items or is given several, not both")
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class TimedChain:
     """Steps from input to output; the limits are in ticks, 0 where there is none."""
 
@@ -104,7 +103,7 @@ class TimedChain:
     age_limit: int = 0
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class HopLatency:
     """What one step adds, in ticks; None where there is no bound.
 
@@ -123,7 +122,7 @@ class HopLatency:
     backlog: int | None = 0
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Latency:
     """The latencies of a chain, with the hops that they are the sums of."""
 

@@ -13,11 +13,9 @@ inherited from others the latter may miss an order that there is, never accept a
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
-
-from ravenchart.gen.frozen import frozen
 
 from . import holistic
 from .bus import Frame
@@ -44,7 +42,7 @@ class ChangeKind(Enum):
     PLACE = "place"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Change:
     """One change; ``enough`` when it meets all deadlines alone.
 

@@ -11,7 +11,7 @@ up to three bits earlier, never later.
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
 
 from .checks import natural, positive
 
@@ -27,7 +27,7 @@ UNSTUFFED = 13
 STANDARD_BITS, EXTENDED_BITS = 11, 29
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Bits:
     """The length of a frame: bits at the nominal and at the data bit rate."""
 

@@ -17,9 +17,7 @@ A best case is the sum of the best cases (`best`) along the chain, 0 unless give
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field, replace
-
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass, field, replace
 
 from . import can, fixed_priority
 from .blocking import Section
@@ -41,7 +39,7 @@ LATEST = 1_000
 """Periods of jitter above which there is no bound."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Network:
     """Tasks, buses, and what releases what.
 
@@ -112,7 +110,7 @@ class Network:
         return tuple(found)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Holistic:
     """The responses of a network, by name, after so many ``rounds``.
 

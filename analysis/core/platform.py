@@ -5,12 +5,12 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
 
 from .checks import natural
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Platform:
     """Overheads of one core, all in ticks; zero where there is none.
 

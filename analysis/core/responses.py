@@ -5,10 +5,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
-
-from ravenchart.gen.frozen import frozen
 
 from .blocking import Section, held_up
 from .multiframe import Demand
@@ -26,7 +25,7 @@ class Reason(Enum):
     RIVAL = "something that delays it has no bound itself"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Interference:
     """What one other task executes in the window: so many releases, the first in ``frame``."""
 
@@ -36,7 +35,7 @@ class Interference:
     time: int
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Overheads:
     """Time in the window that no task executes: switches of all its jobs, ticks, releases."""
 
@@ -53,7 +52,7 @@ class Overheads:
         return self.switch_time + self.tick_time + self.release_time
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Level:
     """What runs before a task: the first ``reach`` of its core's tasks, most urgent first."""
 
@@ -74,7 +73,7 @@ class Level:
         return load
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Alignment:
     """Where in the pattern of known offsets a response is at its longest.
 
@@ -88,7 +87,7 @@ class Alignment:
     tasks: frozenset[str]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class RowResponse:
     """The longest time from the arrival of a job to the completion of one of its rows.
 
@@ -102,7 +101,7 @@ class RowResponse:
     window: int
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Response:
     """The worst-case response of one task; all times in ticks.
 

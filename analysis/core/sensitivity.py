@@ -11,10 +11,8 @@ time is rounded up, a factor is one that was tried.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
-
-from ravenchart.gen.frozen import frozen
 
 from . import holistic
 from .blocking import Section
@@ -31,7 +29,7 @@ FACTOR_LIMIT = 1_000
 """No larger factor is looked for."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Scaling:
     """The largest ``factor`` of all execution times and sections with every deadline met.
 
@@ -67,7 +65,7 @@ def scaling(
     return Scaling(Fraction(found, steps), failing(found + 1))
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class NetworkScaling:
     """As `Scaling`, over a network; ``binding`` is the task or frame that fails first."""
 

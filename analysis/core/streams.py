@@ -6,13 +6,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
 
 from .multiframe import Demand
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Stream:
     """Jobs that arrive at ``offset`` + k ``period``, of the costs of a cycle, ticks each."""
 

@@ -6,10 +6,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
-
-from ravenchart.gen.frozen import frozen
 
 from .checks import at_most, distinct, natural, positive
 
@@ -17,7 +15,7 @@ FRAME_LIMIT = 1024
 """Releases after which a table must repeat; with more, every row counts in every job."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class TableRow:
     """One row of a task's table: executed in release k when k mod ``every`` is ``phase``.
 
@@ -38,7 +36,7 @@ class TableRow:
             raise ValueError(f"phase of {owner} must be below {self.every}, not {self.phase}")
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Task:
     """A periodic or sporadic task; all times in ticks.
 

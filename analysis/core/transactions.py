@@ -30,9 +30,8 @@ says nothing about when they do. The bound is safe, and may not be attained.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
-
-from ravenchart.gen.frozen import frozen
 
 from .bus import Frame
 from .can_response import FrameResponse
@@ -47,7 +46,7 @@ STEPS_EFFORT = 500_000
 """Terms of windows in one call: what comes after has the bound without transactions."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class LevelItem:
     """An item of a transaction as one level sees it: times from the event, cost of a job."""
 
@@ -62,7 +61,7 @@ class LevelItem:
         return self.period - (first.offset + first.jitter - self.offset) % self.period
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class _Arriving:
     """A step in a busy period: how many jobs wait at its beginning, and when the next arrives."""
 
@@ -82,7 +81,7 @@ class _Arriving:
         return (self.waiting + later) * self.step.cost
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class _Level:
     """What can delay one item: its own transaction, other ones, and sources without offsets."""
 

@@ -15,14 +15,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from xml.etree import ElementTree as Xml
 
 from ravenchart.analysis.core import holistic
 from ravenchart.analysis.core.chains import TimedChain
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.gen.frozen import frozen
 
 from .shapes import (
     Unfit,
@@ -44,7 +43,7 @@ PRIORITIES = 255
 """Cheddar's largest priority."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class _Item:
     """A task of Cheddar, in ns."""
 

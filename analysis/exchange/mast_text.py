@@ -12,9 +12,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TypeAlias
-
-from ravenchart.gen.frozen import frozen
 
 Value: TypeAlias = "str | tuple[Value, ...] | Attributes"
 
@@ -25,7 +24,7 @@ DEPTH = 50
 """Parentheses may be nested as deep."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Attributes:
     """Attributes with their values, in order."""
 
@@ -43,7 +42,7 @@ class Attributes:
         return found
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class MastObject:
     """One object of a model."""
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from ravenchart.analysis.core import holistic
@@ -18,7 +18,6 @@ from ravenchart.analysis.core.fixed_priority import NO_OVERHEAD
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.responses import release_time, switch_time
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.gen.frozen import frozen
 
 HOUR = 3600 * 10**9
 """The period of what comes hardly ever, in ns."""
@@ -248,7 +247,7 @@ def _above_all(network: Network, name: str, core: str, cost: int) -> Task:
     return Task(name, highest + 1, 1, 1, cost, core=core)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class ReleaseTree:
     """An item, and what its completion releases."""
 

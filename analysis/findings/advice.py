@@ -11,7 +11,7 @@ these say what can be changed, `core.changes` how much of it.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,6 @@ from ravenchart.analysis.core.changes import Change, ChangeKind, Met, Part
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling, scaled_network
 from ravenchart.analysis.units import microseconds, percent
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.nodes import PROBE, SUPERVISOR
 
 if TYPE_CHECKING:
@@ -42,7 +41,7 @@ WEIGHED = 6
 """Parts of most load of which it is told what they are worth where nothing is enough."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Choices:
     """What of a network can be changed.
 
@@ -55,7 +54,7 @@ class Choices:
     order: Sequence[str]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Advice:
     """The changes, best first, and whether they are for ``room`` or to meet deadlines.
 

@@ -10,13 +10,12 @@ answer, a model and a plain file can all be compared. Times are whole ns.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from enum import Enum
 from fractions import Fraction
 from typing import Any
 
 from ravenchart.analysis.units import duration, percent
-from ravenchart.gen.frozen import frozen
 
 Figures = Mapping[str, Any]
 """An object of `analyse --json`."""
@@ -32,7 +31,7 @@ class Wording(Enum):
     REMOVED = "removed"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Difference:
     """One figure of an element that is not what it was, in words."""
 
@@ -52,7 +51,7 @@ class Difference:
         return f"{self.element}: {self.figure} {self.before} -> {self.now}{by}, {self.word.value}"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Differences:
     """All that changed since the version called ``earlier``."""
 
@@ -71,7 +70,7 @@ class Differences:
         yield from (row.line for row in self.rows)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class _Figure:
     """A figure to compare: ``larger`` says what more of it is; None of no bound is the most."""
 

@@ -9,7 +9,8 @@ time, or cycles and the rate of their clock.
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
+
 from ravenchart.gen.language.names import identifier
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Slot, System, Work
@@ -25,7 +26,7 @@ SECOND = 10**9
 """In ns."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Bound:
     """The bound of a row in ns, and where it stands."""
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import groupby
 from typing import TypeVar
 
@@ -17,7 +18,6 @@ from ravenchart.analysis.core.chains import ChainStep, HopKind, TimedChain
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.tasks import TableRow, Task
-from ravenchart.gen.frozen import frozen
 
 from .columns import RowValues, values
 from .entries import Problem, ReadFile, read_rows
@@ -27,7 +27,7 @@ SECOND = 10**9
 Made = TypeVar("Made")
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class PlainSystem:
     """What a plain file holds; all times in ns."""
 

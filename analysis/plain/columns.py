@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
-
-from ravenchart.gen.frozen import frozen
 
 from .entries import Entry, ReadFile
 
@@ -40,7 +39,7 @@ class Form(Enum):
         return self in (Form.TIME_UP, Form.TIME_DOWN)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Column:
     """A column; what is ``required`` has no default. Numbers and times are at least ``least``."""
 
@@ -129,7 +128,7 @@ KINDS: Kinds = {
 """The columns of each kind of row besides the one that is named like the kind."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class RowValues:
     """A row with its values by column; times in ns and without the unit in the name."""
 

@@ -14,15 +14,14 @@ import csv
 import json
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
-
-from ravenchart.gen.frozen import frozen, slotted
 
 TOO_LONG = 64 * 2**20
 """Characters that a file may have."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Problem:
     """What is wrong with a file, at a line from 1 on; 0 where it is no line's fault."""
 
@@ -36,7 +35,7 @@ class Problem:
         return f"{place}: error: {self.text}"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Entry:
     """One row: its kind, its line, and its columns; empty ones are left out."""
 
@@ -45,7 +44,7 @@ class Entry:
     columns: dict[str, str]
 
 
-@slotted
+@dataclass(slots=True)
 class ReadFile:
     """The rows of a file and what is wrong with it."""
 

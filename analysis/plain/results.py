@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
 from ravenchart.analysis.core import chains, holistic
@@ -15,7 +16,6 @@ from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling
 from ravenchart.analysis.units import ratio
-from ravenchart.gen.frozen import frozen
 
 from .build import PlainSystem
 
@@ -25,7 +25,7 @@ DETAILED = 300
 Json = dict[str, object]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class PlainResult:
     """The responses and latencies of a system; ``scaling`` is None where there is none."""
 

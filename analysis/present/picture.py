@@ -5,11 +5,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from xml.etree import ElementTree as Xml
 
 import networkx as nx
-
-from ravenchart.gen.frozen import frozen
 
 BOX_WIDTH = 150
 BOX_HEIGHT = 34
@@ -22,7 +21,7 @@ LEGIBLE = 60
 """With more boxes than this a picture says nothing."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class NodeBox:
     """Where a node stands: its left upper corner, in px."""
 

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -23,7 +24,6 @@ from ravenchart.analysis.system.observed import Observation
 from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.supervision import watches
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus
 from ravenchart.stacks.report import Memory
@@ -42,7 +42,7 @@ SCALED = 12
 """Of how many tasks it looks for the factors."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class StepRow:
     """One step of a scenario: what it asked, how it ended, when (s from the start)."""
 
@@ -52,7 +52,7 @@ class StepRow:
     at: float
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class FrameRow:
     """How many frames of one message the bench sent or received."""
 
@@ -61,7 +61,7 @@ class FrameRow:
     count: int
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Comparison:
     """Longest response seen of one task, beside its bound (None: none known).
 
@@ -101,7 +101,7 @@ class Comparison:
         return self.observed / self.bound if self.bound else 0.0
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class RunReport:
     """What a run adds to the report. ``pictures`` are (caption, SVG text).
 
@@ -121,7 +121,7 @@ class RunReport:
     pictures: tuple[tuple[str, str], ...] = ()
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Execution:
     """Longest execution seen of one row, beside its WCET."""
 

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
 from ravenchart.analysis.core.can_response import FrameResponse
@@ -14,13 +15,12 @@ from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.system.critical import GIVEN
 from ravenchart.analysis.system.timing import Analysis, Verdict
 from ravenchart.analysis.units import microseconds, percent
-from ravenchart.gen.frozen import frozen
 
 WORDS = {Verdict.MET: "ok", Verdict.MISSED: "MISS", Verdict.NO_BOUND: "NONE"}
 """The verdict of a row in a word."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class TextPart:
     """Something that a window is made of: its kind, what it is, and how it adds up."""
 

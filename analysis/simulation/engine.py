@@ -14,7 +14,6 @@ from ravenchart.analysis.core.checks import natural
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.gen.frozen import frozen, slotted
 
 from .phases import Phase, PhaseScenario
 from .processor import Job, SimulatedProcessor, segments_of
@@ -24,7 +23,7 @@ EVENTS = 5_000_000
 """Events after which a simulation is given up."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Stretch:
     """Instance ``number`` of an item had its core or bus from ``start`` to ``end``."""
 
@@ -35,7 +34,7 @@ class Stretch:
     end: int
 
 
-@slotted
+@dataclass(slots=True)
 class ObservedTimes:
     """What happened, in ticks; names are those of tasks and messages.
 

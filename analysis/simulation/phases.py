@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.bus import Frame
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.gen.frozen import frozen
 
 Choice = Callable[[int], int]
 """A number of ticks for job k, from 0 on."""
@@ -24,7 +23,7 @@ def none(_: int) -> int:
     return 0
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class InsideSection:
     """A job is inside the object of ``section`` from its tick ``start`` on."""
 
@@ -32,7 +31,7 @@ class InsideSection:
     section: Section
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Phase:
     """One way in which a task or message can behave; all times in ticks.
 
@@ -51,7 +50,7 @@ class Phase:
     inside: tuple[InsideSection, ...] = ()
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class PhaseScenario:
     """The phases of a network's items by name (all others arrive at 0, or at their offsets) and
     faults of buses.

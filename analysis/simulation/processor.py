@@ -6,15 +6,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.gen.frozen import slotted
 
 from .phases import InsideSection
 
 
-@slotted
+@dataclass(slots=True)
 class JobStretch:
     """A stretch of a job: ticks left, priority inside, and the row that ends with it."""
 
@@ -24,7 +23,7 @@ class JobStretch:
     begun: bool = False
 
 
-@slotted
+@dataclass(slots=True)
 class Job:
     """A released job of ``task``; ``event`` began its chain, ``arrival`` and ``order`` itself."""
 
@@ -77,7 +76,7 @@ def _rows(task: Task, frame: int) -> Iterator[tuple[int, str]]:
         yield at, row.name
 
 
-@slotted
+@dataclass(slots=True)
 class SimulatedProcessor:
     """The state of one core at the time ``now``."""
 

@@ -5,13 +5,12 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from ravenchart.analysis.core.bus import ERROR_BITS, Bus, Frame
-from ravenchart.gen.frozen import slotted
 
 
-@slotted
+@dataclass(slots=True)
 class QueuedFrame:
     """A queued instance of ``frame``; ``event`` began its chain, ``order`` tells who came first."""
 
@@ -21,7 +20,7 @@ class QueuedFrame:
     order: int
 
 
-@slotted
+@dataclass(slots=True)
 class Wire:
     """The state of one bus.
 

@@ -12,17 +12,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from ravenchart.analysis.core.bus import Frame
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.responses import Alignment, Response
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.gen.frozen import frozen
 
 from .phases import Choice, InsideSection, Phase, PhaseScenario
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class WorstCase:
     """A scenario and how long it must run for the worst completion to be seen."""
 

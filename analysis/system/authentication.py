@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
+
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.buses import Message
@@ -14,7 +15,7 @@ from .protection import PortSilence, silences
 from .timing import Analysis
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Authenticated:
     """An authenticated message."""
 

@@ -11,10 +11,10 @@ release of the caller.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ravenchart.gen.derive.calls import published_by
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.commands import Binding, Device, Remote, RemoteRead, Server, wcet_of
 from ravenchart.gen.model.system import Carried, Stop
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .timing import Analysis
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class CommandTimes:
     """A required command of a row; times in ns, None where there is no bound.
 

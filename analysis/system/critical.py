@@ -11,13 +11,13 @@ response's window.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.responses import Response, demand_of, release_time
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.core.window import releases_in
-from ravenchart.gen.frozen import frozen
 
 GIVEN = "its given blocking"
 """The name of what holds a task up besides the sections."""
@@ -26,7 +26,7 @@ MOST_JOBS = 400
 """A schedule of more jobs than this says nothing to the eye."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class RunningSlice:
     """Something that runs without a break, in ticks from the beginning of the busy period."""
 

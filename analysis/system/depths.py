@@ -12,11 +12,11 @@ together waits (n - 1) S: so there are no more than W / S + 1.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
 from ravenchart.gen.derive.calls import callers_of, calls_from_afar
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.commands import Provided
 from ravenchart.gen.model.component import Port, PortKind
 from ravenchart.gen.model.instances import Connection, Instance
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from .timing import Analysis
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Depth:
     """A queue; ``needed`` is the depth that loses nothing, None where none is known to.
 

@@ -12,10 +12,10 @@ or from a processor to the rows it ``runs`` and an instance to its component (``
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import networkx as nx
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.component import Activity, Component, Direction
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
@@ -53,7 +53,7 @@ def dependencies(system: System) -> nx.DiGraph[Stop]:
     return graph
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Ways:
     """The ways that values can take through messages, ports, rows and data."""
 

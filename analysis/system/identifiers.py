@@ -16,6 +16,7 @@ are left or for none, an order is found whenever there is one; otherwise perhaps
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 from ravenchart.analysis.core.assignment import Order, audsley_frames, responses_in_place
 from ravenchart.analysis.core.bus import Frame
@@ -23,7 +24,6 @@ from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.frames import leading_of_rank
 from ravenchart.analysis.units import duration, microseconds, percent
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import System
 
@@ -39,7 +39,7 @@ PLACES = 1 << 11
 """Values of the 11 bits that decide between frames first; others count from 1."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class IdentifierPlaces:
     """Where the frames of a bus may go; ``given`` are those whose rank is bound."""
 

@@ -15,16 +15,15 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.system import Carried, Chain, System
 
 from .observed import Observation
 from .timing import Analysis
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Journey:
     """The longest reaction that a run showed of a chain, of so many, beside its bound, in ns."""
 

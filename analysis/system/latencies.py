@@ -19,7 +19,7 @@ period and its response inside the job.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 from ravenchart.analysis.core import can
 from ravenchart.analysis.core.bus import Bus, Frame
@@ -28,7 +28,6 @@ from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Level, Response
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns, named
 from ravenchart.gen.model.buses import Message, Reception
@@ -41,7 +40,7 @@ from .transport import Transfer, transfers
 __all__ = ["Delivery", "HopKind", "Latencies", "Latency", "deliveries"]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Delivery:
     """How long a received message takes from its event until it is handed over on a node.
 
@@ -97,7 +96,7 @@ def reception_frames(processor: Processor, system: System, found: Holistic) -> l
     return frames
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Latencies:
     """Rows, drivers, frames and deliveries as items of chains, with their responses."""
 

@@ -17,10 +17,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.language.terms import NO_TIME, Ns
 
 KINDS = frozenset(
@@ -45,7 +44,7 @@ class TraceError(Exception):
     """A trace or map that cannot be read; the text names the file's line."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class NumberedElement:
     """One numbered element; ``leaves`` are a region's or bus's, ``transitions`` a region's.
 
@@ -62,7 +61,7 @@ class NumberedElement:
     unit: str | None = None
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class TraceMap:
     """The generator's map: which model, and its numbered elements."""
 
@@ -82,7 +81,7 @@ class TraceMap:
         return tuple(e for _, e in sorted(self.elements.items()) if e.kind == kind)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class TraceRecord:
     """One T or V line; ``kind`` in lower case, ``text`` the state or transition it tells of."""
 
@@ -98,7 +97,7 @@ class TraceRecord:
         return choices[self.value] if choices else str(self.value)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Releases:
     """How one processor fared: releases, deadlines missed, longest response.
 
@@ -111,7 +110,7 @@ class Releases:
     now: Ns | None = None
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Visit:
     """A stay in one leaf state; ``end`` is None for the last one."""
 
@@ -120,7 +119,7 @@ class Visit:
     end: Ns | None
 
 
-@slotted
+@dataclass(slots=True)
 class Observation:
     """Everything that one trace file says; keys are element names or words of the file."""
 

@@ -9,10 +9,10 @@ itself counts, not the CRC of CAN. docs/protection.md has the formulas and their
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 from math import comb
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.instances import End
@@ -27,7 +27,7 @@ HOUR = 3_600_000_000_000
 """In ns."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class PortSilence:
     """A port that receives the message, and how long after the last good frame it is stale.
 
@@ -40,7 +40,7 @@ class PortSilence:
     found: Ns | None
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class ProtectedMessage:
     """A protected message."""
 

@@ -5,14 +5,15 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
+
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.nodes import SUPERVISOR
 
 from .timing import Analysis
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Silence:
     """One processor under supervision; times from when a release was due.
 
@@ -26,7 +27,7 @@ class Silence:
     raises: tuple[str, ...]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Watch:
     """A node with its processors; ``silences`` is None where nothing supervises them."""
 

@@ -18,9 +18,9 @@ the port region, D and F the delivery of a segment and of flow control, from the
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.system import System
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from .latencies import Delivery
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Transfer:
     """The transfer of one value; the times are None where a frame has no bound."""
 

@@ -23,7 +23,6 @@ from itertools import combinations
 
 from ravenchart.behaviour.interpreter.expressions import View, holds
 from ravenchart.behaviour.tree import ChartTree
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import BOOLEAN, Expression, Operation
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import (
@@ -60,7 +59,7 @@ class GoalKind(Enum):
     LEFT = "states left by transitions around them"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Goal:
     """One thing to be shown. ``detail``: number of the condition, the event, or the state."""
 

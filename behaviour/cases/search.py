@@ -22,7 +22,6 @@ from ravenchart.behaviour.interpreter.machine import InstanceRun, Machine
 from ravenchart.behaviour.interpreter.region import Stuck
 from ravenchart.behaviour.interpreter.stimuli import Arrived, Raised, Stimuli
 from ravenchart.behaviour.rules.cells import every
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns, Raise, Value
 from ravenchart.gen.model.component import Component, PortKind
 from ravenchart.gen.model.instances import End
@@ -79,7 +78,7 @@ class Feed:
             yield replace(self.entry, at=now)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class FoundCase:
     """Stimuli, and the goals that this case is the first of all to show."""
 

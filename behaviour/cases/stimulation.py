@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from ravenchart.behaviour.interpreter.stimuli import Arrived, Raised
 from ravenchart.behaviour.rules.cells import actions, expressions
 from ravenchart.behaviour.rules.outside import external_events
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import (
     EnumerationType,
     Expression,
@@ -30,7 +30,7 @@ from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.system import System
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Choice:
     """An event of an instance, or an input port; ``type`` is that of the value."""
 

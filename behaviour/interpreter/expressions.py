@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import (
     EnumerationType,
     Expression,
@@ -36,7 +35,7 @@ from ravenchart.gen.language.terms import (
 TRUE, FALSE = "True", "False"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class PortReading:
     """An input port as its readers see it; ``state`` is worded as the test for it."""
 

@@ -10,10 +10,9 @@ anything fires. So the values are those that the guards had.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import (
     Expression,
     InState,
@@ -70,7 +69,7 @@ class FiringReason(Enum):
     """A transition that was taken before has left its source."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class FalseGuard:
     """A guard or condition that did not hold."""
 
@@ -78,7 +77,7 @@ class FalseGuard:
     reads: Reads
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Judgement:
     """A transition, and why it fired or did not."""
 
@@ -92,7 +91,7 @@ class Judgement:
     """To go until it is due."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class ObservedStep:
     """One step; ``occurrence`` is None of the first, and of a region that has terminated."""
 

@@ -15,7 +15,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Flow, Value
 from ravenchart.gen.model.statechart import (
     After,
@@ -49,21 +48,21 @@ class Stuck(Exception):  # noqa: N818
 # --- Occurrences -------------------------------------------------------------------
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Completed:
     """A state has completed."""
 
     state: str
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class TimeOut:
     """The time-out of a transition is due."""
 
     transition: Transition
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Happened:
     """An event of the component, with its value."""
 
@@ -71,7 +70,7 @@ class Happened:
     value: Value | None = None
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Nothing:
     """Nothing waits: conditions are looked at."""
 
@@ -82,7 +81,7 @@ Occurrence = Completed | TimeOut | Happened | Nothing
 # --- What a step does ----------------------------------------------------------------
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class NamedGoal:
     """A vertex to enter, and the segment of a fork that leads to it."""
 
@@ -90,7 +89,7 @@ class NamedGoal:
     segment: Transition | None = None
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class ExecutedTransition:
     """A compound transition, ready to fire: its guards have been read."""
 
@@ -102,7 +101,7 @@ class ExecutedTransition:
     internal: bool = False
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Deferral:
     """A state defers the event."""
 

@@ -20,7 +20,6 @@ from typing import TypeVar
 
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.files.located import Map, grow_list
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.quantities import parsed_duration, shown
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -44,7 +43,7 @@ from ravenchart.gen.origins import Origin
 N = TypeVar("N", bound=Named)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Raised:
     """An event of an instance, with its value if it carries one."""
 
@@ -59,7 +58,7 @@ class Raised:
         return self.instance, self.event
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Arrived:
     """A value for an input port."""
 
@@ -73,7 +72,7 @@ class Arrived:
         return self.end.instance, self.end.port
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Stimuli:
     """What comes in, in order of time, and the last instant."""
 

@@ -11,12 +11,12 @@ records has one, `0.020 motor.speed = 12`, behind the steps of the same instant.
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns, Scalar
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class StepRecord:
     """The behaviours that one step of a region executed, in order."""
 
@@ -40,7 +40,7 @@ class StepRecord:
         return json.dumps(fields)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class ValueRecord:
     """A recorded value, as the model counts it: an integer, or the name of a literal."""
 
@@ -57,7 +57,7 @@ class ValueRecord:
         return json.dumps({"at_ns": self.at, "element": self.element, "value": self.value})
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Played:
     """All that happened under stimuli."""
 

@@ -21,7 +21,6 @@ import z3
 from ravenchart.behaviour.limits import ON_MODEL
 from ravenchart.behaviour.tree import ChartTree
 from ravenchart.gen.diagnostics import Diagnostic, warning
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     Expression,
@@ -47,7 +46,7 @@ Held = tuple[str, Variable]
 """A vertex, and a data item of which a fact speaks there."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Contracts:
     """What the code of a system is proved to keep, and the invariants that it is not."""
 

@@ -10,11 +10,11 @@ it holds at the start and no step of any thread breaks it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import z3
 
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import ScalarType
 from ravenchart.gen.model.component import Invariant
 from ravenchart.gen.model.system import System
@@ -113,7 +113,7 @@ def _written_by_users(reach: Reachable) -> list[Term]:
     ]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Broken:
     """A step that breaks an invariant, where it stands, and data with which it does."""
 

@@ -17,7 +17,6 @@ from dataclasses import dataclass, field
 import z3
 
 from ravenchart.behaviour.tree import START, TOP, ChartTree, RegionKey
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Expression, Flow, If, Set
 from ravenchart.gen.model.safety import knows_guards
 from ravenchart.gen.model.statechart import PseudoKind, Segment, Transition, When
@@ -31,7 +30,7 @@ MOST_MOVES = 6_000
 """Nor is one with more moves."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Position:
     """Where a region is between two moves: its active states, and pseudostates on the way."""
 

@@ -6,9 +6,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 
 from ravenchart.behaviour.tree import ChartTree, occurs
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.statechart import Transition
 from ravenchart.gen.origins import Origin
 
@@ -25,7 +25,7 @@ Possible = Callable[[Edge, Term], bool]
 """Whether some data let a step be made and meet a condition besides."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Obstacle:
     """What keeps a transition from firing, as ``NAME is never taken: TEXT``."""
 

@@ -11,10 +11,10 @@ real program may run so, which makes a trace that fits in here a feasible one.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import z3
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.system import System
 
@@ -24,7 +24,7 @@ PORTS = "ports"
 """The row of the port region."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class RowReleases:
     """A row's first release, its period in ns, and its turn among those released at once."""
 

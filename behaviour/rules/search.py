@@ -20,7 +20,6 @@ from types import MappingProxyType
 import z3
 
 from ravenchart.behaviour.tree import CONDITIONS, START, Occurrence
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import BOOLEAN, Reading
 from ravenchart.gen.model.statechart import DONE, After, Every, Overflow, Transition
 from ravenchart.gen.model.system import System
@@ -74,7 +73,7 @@ class SearchMove:
     """Rows one of which must have run just before, as it raised the event."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Violation:
     """A feasible way to a bad situation, and the data that take it."""
 

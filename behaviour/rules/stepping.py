@@ -17,14 +17,13 @@ from enum import Enum
 import z3
 
 from ravenchart.behaviour.tree import TOP, ChartTree, Occurrence, RegionKey
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Expression, Flow, If, Raise, Reading, Set
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Transition, TransitionKind, When
 
 from .logic import Questions, Term, Variable, term, variable
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Configuration:
     """Where the control of a region is; all but ``history`` in tree order."""
 
@@ -49,7 +48,7 @@ class Rival:
     """When the second could have fired as well."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class DeferredStep:
     """A state keeps the event for later."""
 
@@ -75,7 +74,7 @@ class Defeat(Enum):
     """A transition that fired before ends the region."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Beaten:
     """A transition that was selected and not fired, for a transition or a deferring state."""
 

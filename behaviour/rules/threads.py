@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from ravenchart.behaviour.tree import ChartTree, Occurrence, RegionKey
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import ScalarType
 
 from .logic import Term, Variable
@@ -30,7 +29,7 @@ MOST_CONFIGURATIONS = 3_000
 """A region of more, data and histories aside, is looked at in parts."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Situation:
     """A situation of one region: its control, and the cells of its own data."""
 
@@ -38,7 +37,7 @@ class Situation:
     cells: Cells
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Edge:
     """A step from one node to another."""
 

@@ -11,10 +11,9 @@ what comes from another is, to it, a message from outside.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import identifier, problem_of
 from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.buses import Bus, Message
@@ -37,7 +36,7 @@ from .identifiers import OPEN
 Check = TypeVar("Check", Protection, Authentication)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Carrier:
     """Makes messages of the connections between nodes.
 

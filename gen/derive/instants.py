@@ -11,8 +11,8 @@ is released, so a certificate looks at these instants.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System, Task
 
@@ -23,7 +23,7 @@ TRIED = 20_000
 """Releases in a cycle that are looked at for them at most."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Instant:
     """At ``time``, ns from the epoch, all is released that may be so late.
 

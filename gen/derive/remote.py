@@ -17,9 +17,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import identifier, problem_of
 from ravenchart.gen.language.terms import (
     BUILT_IN,
@@ -142,7 +141,7 @@ def _bound(
     return replace(binding, provider=None) if idle and is_across(system, binding) else binding
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class _Call:
     """What carries one command."""
 

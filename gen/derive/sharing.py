@@ -6,9 +6,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Set
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.commands import Remote, RemoteRead
@@ -35,7 +34,7 @@ MAIN = "main"
 """The environment task: priority 0, below all tasks, and not among them."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class _Sharing:
     """Who calls what, worked out over a system whose priorities are known."""
 

@@ -12,13 +12,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from lark import Lark, Token, Transformer, v_args
 from lark.exceptions import LarkError
 from lark.tree import Meta
-
-from ravenchart.gen.frozen import frozen
 
 GRAMMAR = r"""
 enumeration: "type" NAME "is" "(" NAME ("," NAME)* ")"
@@ -57,7 +56,7 @@ class NotDeclaredError(ValueError):
     """The text is not that of a generated region; the message says what is missing."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class DeclaredComposite:
     """A composite state: the range of leaves of ``outer``, a composite or a lane's type."""
 
@@ -67,7 +66,7 @@ class DeclaredComposite:
     last: str
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class DrawnLane:
     """A component of the configuration: the type of its leaves, the leaf it starts with."""
 
@@ -76,7 +75,7 @@ class DrawnLane:
     default: str
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Declared:
     """The declared form: the states, and for each transition its conditions and its move.
 

@@ -6,14 +6,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Box:
     """A composite instance by its path, with the boxes and instances inside."""
 

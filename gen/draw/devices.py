@@ -6,9 +6,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from ravenchart.gen.derive.calls import called
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Device, Server
 from ravenchart.gen.model.instances import End, Instance
@@ -22,7 +22,7 @@ DASHED: Attributes = {"style": "dashed"}
 """Of a binding: who requires depends on who provides."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class DeviceLink:
     """A required interface, and the device or provided interface that something of it is bound to.
 

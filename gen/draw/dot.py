@@ -7,10 +7,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from html import escape
-
-from ravenchart.gen.frozen import frozen
 
 Attributes = dict[str, "str | Html"]
 
@@ -21,7 +19,7 @@ class Html(str):
     __slots__ = ()
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Defaults:
     """Attributes of everything of a kind (``graph``, ``node``, ``edge``) from here on."""
 
@@ -29,7 +27,7 @@ class Defaults:
     attributes: Attributes
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class DotNode:
     """A node."""
 
@@ -37,7 +35,7 @@ class DotNode:
     attributes: Attributes = field(default_factory=dict)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class DotEdge:
     """An edge."""
 
@@ -46,7 +44,7 @@ class DotEdge:
     attributes: Attributes = field(default_factory=dict)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Group:
     """A graph inside another; a cluster has a border and a name of its own."""
 

@@ -10,9 +10,9 @@ Every back end draws a `Picture`. `picture` makes one of a region of the model;
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from enum import Enum
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.component import Activity, Component, StateRef
 from ravenchart.gen.model.statechart import Initial, Region, State, Transition, TransitionKind
@@ -37,7 +37,7 @@ class Shape(Enum):
     TERMINATE = "terminate"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Label:
     """``trigger [guard] / effect``; any part may be missing."""
 
@@ -53,7 +53,7 @@ class Label:
         return " ".join(filter(None, (self.trigger, guard, effect)))
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Arrow:
     """A transition between two vertices; a local one does not leave its source."""
 
@@ -63,7 +63,7 @@ class Arrow:
     local: bool = False
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class DrawnVertex:
     """A state or pseudostate; a composite state has areas.
 
@@ -82,7 +82,7 @@ class DrawnVertex:
         return bool(self.areas)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Area:
     """A region: where its initial pseudostate leads (None: not known) and what stands in it."""
 
@@ -92,7 +92,7 @@ class Area:
     vertices: tuple[DrawnVertex, ...]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Picture:
     """A whole chart; ``remark`` is a line below its title."""
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 import difflib
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from typing import Any
@@ -24,7 +25,6 @@ from typing import Any
 import yaml
 
 from ravenchart.gen.diagnostics import CODES, GROUPS
-from ravenchart.gen.frozen import frozen
 
 WIDTH = 80
 """Longest line of an explanation, in characters."""
@@ -41,7 +41,7 @@ ENCODING = ("utf-8", "surrogateescape")
 """How the text of a file becomes its bytes: one file is wrong because it is not UTF-8."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Example:
     """Files by their names, the model among them, and what is called beside them."""
 
@@ -55,7 +55,7 @@ class Example:
         return tuple(f"ravenchart {line}" for line in self.command.splitlines())
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Explanation:
     """What a code means, why it matters, and two examples: with the error and without."""
 

@@ -9,8 +9,8 @@ Read from the forms, so nothing that the emitter, the analysis or the rules see 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.origins import Origin
 
 from .reference import TITLES
@@ -21,7 +21,7 @@ PathPart = str | int
 """A key of a mapping, or the number of an item of a list."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Link:
     """An element of a model, and the requirements that it names."""
 

@@ -11,11 +11,10 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 
 from ravenchart.gen.diagnostics import Diagnostic, Sources, error
-from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.origins import Origin
 
 from . import deployments
@@ -32,7 +31,7 @@ Reader = Callable[[Path, int], bytes]
 """Reads a file, at most so many bytes; raises OSError."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Content:
     """The forms of a model's files, main file first; none when that one could not be read.
 
@@ -56,7 +55,7 @@ def read_file(path: Path, limit: int) -> bytes:
         return file.read(limit)
 
 
-@slotted
+@dataclass(slots=True)
 class _Reading:
     """The files read so far."""
 

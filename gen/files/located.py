@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 import yaml
 from yaml.events import (
@@ -29,7 +29,6 @@ from yaml.events import (
 )
 
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.origins import Origin
 
 FormPath = tuple[int | str, ...]
@@ -44,7 +43,7 @@ UNLIKE = re.compile("[?!\ufeff]|[|>][-+0-9]*#")
 """What libyaml and PyYAML's own parser read differently in some places."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class TextPlace:
     """Where a key or value begins; ``exact`` when the text stands there as it is, in one line."""
 
@@ -89,7 +88,7 @@ class RefusedError(Exception):
         self.diagnostic = diagnostic
 
 
-@slotted
+@dataclass(slots=True)
 class Builder:
     """The tree under construction: the containers that are open, innermost last."""
 

@@ -15,10 +15,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import lru_cache
-
-from ravenchart.gen.frozen import frozen, slotted
 
 LONGEST_TEXT = 2_000
 """Characters of an expression at most."""
@@ -41,7 +39,7 @@ TOKEN = re.compile(
 )
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Term:
     """One operator, function, name or number, and where it stands in the text.
 
@@ -57,7 +55,7 @@ class Term:
     depth: int = 0
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Malformed:
     """Why a text is no expression, and where."""
 
@@ -78,7 +76,7 @@ def _term(kind: str, at: int, word: str, *operands: Term, member: str = "") -> T
     return Term(kind, at, word, member, operands, depth)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Token:
     """A number, word or sign; ``kind`` is ``end`` of the one behind the last."""
 
@@ -96,7 +94,7 @@ class MisplacedError(Exception):
         self.token = token
 
 
-@slotted
+@dataclass(slots=True)
 class Waiting:
     """An operator, function, ``if`` or parenthesis whose last operand is still to come."""
 

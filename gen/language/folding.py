@@ -9,7 +9,7 @@ leaves here; comparisons that nothing can change are reported by `decided`.
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
 
 from .terms import (
     BOOLEAN,
@@ -102,7 +102,7 @@ def chosen(operation: Operation) -> Expression:
     return operation
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Decided:
     """The outcome of a comparison that nothing can change, and why."""
 

@@ -8,11 +8,10 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Generic, Protocol, TypeVar
 
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.origins import Origin
 
 IDENTIFIER = r"^[A-Za-z](_?[A-Za-z0-9])*$"
@@ -158,7 +157,7 @@ def meant(name: str, known: Iterable[str]) -> str | None:
     return f"one of: {', '.join(names)}" if 0 < len(names) <= 12 else None
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class NameUse:
     """A name that is used: what it names, and where that is declared.
 
@@ -174,7 +173,7 @@ class NameUse:
     within: bool = False
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Unknown:
     """A name that is not declared, and the names that could stand there."""
 
@@ -183,7 +182,7 @@ class Unknown:
     known: tuple[str, ...]
 
 
-@slotted
+@dataclass(slots=True)
 class Findings:
     """The diagnostics of one model, as they are found, and the names that were looked up.
 
@@ -217,7 +216,7 @@ class Findings:
         return len(self.items) + self.losses
 
 
-@slotted
+@dataclass(slots=True)
 class NameScope(Generic[T]):
     """The names of one kind that can be used in one place, without regard to case.
 

@@ -10,10 +10,10 @@ and typed: their names are known, their integer bounds computed.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from enum import Enum
 from typing import NewType, Protocol, TypeVar
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.origins import Origin
 
 Ns = NewType("Ns", int)
@@ -49,7 +49,7 @@ def named(items: tuple[N, ...], name: str) -> N:
 # --- Types -------------------------------------------------------------------
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class IntegerType:
     """An integer range ``first .. last``, both included, counted in ``unit``."""
 
@@ -60,7 +60,7 @@ class IntegerType:
     unit: str | None = None
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class EnumerationType:
     """An enumeration; ``Boolean`` is the one that every system has."""
 
@@ -69,7 +69,7 @@ class EnumerationType:
     literals: tuple[str, ...]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Field:
     """One scalar field of a record."""
 
@@ -78,7 +78,7 @@ class Field:
     type: IntegerType | EnumerationType
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class RecordType:
     """A flat record: the type of what ports carry and blackboards hold."""
 
@@ -121,7 +121,7 @@ class Reading(Enum):
     """Whether an execution sends on an output port, or calls a command."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Literal:
     """A number or an enumeration literal; ``type`` is None for a bare number."""
 
@@ -129,7 +129,7 @@ class Literal:
     type: ScalarType | None
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Name:
     """A data item, parameter or input port of the component, or a field of one."""
 
@@ -139,7 +139,7 @@ class Name:
     type: Type
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class PortTest:
     """``fresh(port)``, ``stale(port)`` or ``never_received(port)``."""
 
@@ -147,7 +147,7 @@ class PortTest:
     state: str
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class InState:
     """``in(Region.State)``: what the region last published is that state or inside it."""
 
@@ -155,7 +155,7 @@ class InState:
     state: str
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Operation:
     """An operator or function applied to its operands.
 
@@ -187,7 +187,7 @@ def leaves(expression: Expression) -> Iterator[Leaf]:
         yield expression
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Set:
     """``set: data[.field]`` ``to: expression``; the expression fits the target's range."""
 
@@ -197,7 +197,7 @@ class Set:
     value: Expression
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Send:
     """``send: port``: one value on an output port; every field is given."""
 
@@ -207,7 +207,7 @@ class Send:
     """(field, expression) in the type's field order; field None for a scalar port."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Raise:
     """``raise: event``: offered to every region of the component that names it.
 
@@ -219,7 +219,7 @@ class Raise:
     values: tuple[tuple[str | None, Expression], ...] = ()
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class If:
     """``if: condition`` ``then: [...]`` ``else: [...]``."""
 

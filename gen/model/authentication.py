@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 
 AuthenticationName = Literal["secoc"]
@@ -22,7 +22,7 @@ FRESHNESS_BITS = 64
 """Bits of the whole freshness value."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class TrailerField:
     """A field of the trailer: its first byte in the frame and its bytes, the highest first."""
 
@@ -36,7 +36,7 @@ def trailer_bytes(freshness_bits: int, mac_bits: int) -> int:
     return (freshness_bits + mac_bits) // 8
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Authentication:
     """The authentication of one message."""
 

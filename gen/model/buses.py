@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
+
 from ravenchart.gen.language.terms import Ns, Type
 from ravenchart.gen.origins import Origin
 
@@ -19,7 +20,7 @@ from .transmission import Transmission
 from .transport import Transport
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class BusErrors:
     """At most ``burst`` errors at once, and one more every ``period``."""
 
@@ -27,7 +28,7 @@ class BusErrors:
     burst: int
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Bus:
     """A CAN bus and the WCETs of its driver on a node: one frame in, one frame out."""
 
@@ -76,7 +77,7 @@ class Bus:
         return -(-self.recovers_after // self.watch.period)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Message:
     """A CAN message: a port's value on a bus.
 
@@ -170,7 +171,7 @@ class Message:
         return f"{self.bus}.driver_tx.{self.name}"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Reception:
     """A message as one node receives it; ``several`` do."""
 

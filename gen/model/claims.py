@@ -6,15 +6,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 
 NOTHING = Ns(0)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class ResponseClaim:
     """A response from the event that leads to it, and the windows that show it.
 
@@ -30,7 +29,7 @@ class ResponseClaim:
     since: tuple[Ns, ...] = ()
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class ChainClaim:
     """The latencies of one of the model's chains; ``waits`` in its queues, one after the other."""
 
@@ -39,7 +38,7 @@ class ChainClaim:
     waits: tuple[Ns, ...] = ()
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Claims:
     """All of them, by element; what is not there claims no time at all.
 

@@ -10,10 +10,9 @@ What provides a required command is decided at generation; see docs/devices.md.
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import Enum
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns, Scalar, ScalarType, Type, Value, named
 from ravenchart.gen.origins import Origin
 
@@ -39,7 +38,7 @@ class CommandKind(Enum):
         return self in (CommandKind.READ, CommandKind.QUALIFIED_READ)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Command:
     """An entry of the command dictionary; of one ``per_axis``, the types of one axis."""
 
@@ -51,7 +50,7 @@ class Command:
     per_axis: bool = False
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class StandIn:
     """What stands in for a command: ``activity`` keeps the data item ``item`` up for it."""
 
@@ -59,7 +58,7 @@ class StandIn:
     item: str
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Need:
     """A required command, with the types that it has at the interface's number of axes."""
 
@@ -87,7 +86,7 @@ class Need:
         return None if self.is_read or self.reply is None else f"{self.name}_Reply"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Request:
     """A queued command of a provided interface, with its types there."""
 
@@ -101,7 +100,7 @@ class Request:
         return self.command.name
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Published:
     """A read command of a provided interface: its reply is that data item."""
 
@@ -114,7 +113,7 @@ class Published:
         return self.command.name
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class InterfaceEvent:
     """An event of an interface: it leaves its provider, or comes to who requires it, by a port."""
 
@@ -124,7 +123,7 @@ class InterfaceEvent:
     port: str
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Provided:
     """A provided interface of a component."""
 
@@ -140,7 +139,7 @@ class Provided:
     events: tuple[InterfaceEvent, ...] = ()
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class DriverCommand:
     """A command of a device type, with its types there and its worst-case execution time."""
 
@@ -160,7 +159,7 @@ class DriverCommand:
         return self.command.kind is CommandKind.EVENT
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class DeviceParameter:
     """A constant of each device of a type."""
 
@@ -188,7 +187,7 @@ class Access(Enum):
         return self is not Access.READ
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Register:
     """A register of a device: ``width`` bits, ``offset`` bytes behind the device's address."""
 
@@ -204,7 +203,7 @@ class Register:
         return self.offset + self.width // 8
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Lifecycle:
     """Worst-case execution times of a driver's operations at start and end; None: it has none."""
 
@@ -223,7 +222,7 @@ class Lifecycle:
         return any(one is not None for one in (self.initialise, self.self_test, self.make_safe))
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class DeviceType:
     """A type of device: one driver."""
 
@@ -248,7 +247,7 @@ class DeviceType:
         return not self.simulated and bool(self.parameters or self.registers)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Device:
     """One piece of equipment of a type, or an array of devices as one."""
 
@@ -274,7 +273,7 @@ class Device:
         return named(self.provides, name)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Poll:
     """An event of a device, which the port handler of an instance asks for in each execution."""
 
@@ -291,7 +290,7 @@ class Poll:
         return self.device.command(self.event).wcet
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Server:
     """A provided interface of an instance; ``outside`` is that of the composite around it."""
 
@@ -300,7 +299,7 @@ class Server:
     outside: str | None = field(default=None, compare=False)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Remote:
     """A queued command of an instance on another node: the messages that carry its calls.
 
@@ -326,7 +325,7 @@ class Remote:
         return f"{self.server.instance}.{self.server.interface.server}"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class RemoteRead:
     """A read command of an instance on another node: the message that brings what it publishes.
 
@@ -345,7 +344,7 @@ class RemoteRead:
     """The row of the reader that notices."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Binding:
     """What provides a required command of an instance; None: what stands in for it."""
 

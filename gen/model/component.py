@@ -8,9 +8,9 @@ Parts of a `System`; see `model`.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import (
     Expression,
     Flow,
@@ -43,7 +43,7 @@ class PortKind(Enum):
     QUEUED = "queued"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Port:
     """A typed port. All but name, direction and type matter to inputs only."""
 
@@ -66,7 +66,7 @@ class Port:
     """A command without argument: nothing but that it is called is sent."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Event:
     """An event of a component; ``type`` is that of the value it carries, if any."""
 
@@ -79,7 +79,7 @@ class Event:
     """It may come from outside at any time, though the component raises it."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Invariant:
     """``never``: a condition over states and data that shall hold in no reachable situation."""
 
@@ -88,7 +88,7 @@ class Invariant:
     condition: Expression
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Data:
     """A data item of a component: one writer, any number of readers."""
 
@@ -108,7 +108,7 @@ class Data:
         return dict(self.initial)[field]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Parameter:
     """A constant that each instance of the component may set."""
 
@@ -118,7 +118,7 @@ class Parameter:
     default: Scalar | None
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class StateRef:
     """A state of a region of the same component."""
 
@@ -126,7 +126,7 @@ class StateRef:
     state: str
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Clause:
     """One condition of an activity's contract: of what it requires, or of what it ensures."""
 
@@ -134,7 +134,7 @@ class Clause:
     condition: Expression
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Activity:
     """A named, bounded piece of work: the user's SPARK procedure, or a flow.
 
@@ -166,7 +166,7 @@ class Activity:
         return self.while_in if DONE in self.raises else None
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Component:
     """A component type. ``port_region`` is None exactly when it has no input port."""
 

@@ -5,14 +5,15 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
+
 from ravenchart.gen.language.terms import Scalar
 from ravenchart.gen.origins import Origin
 
 from .component import Component
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class End:
     """One end of a connection: a port of an instance."""
 
@@ -24,7 +25,7 @@ class End:
         return f"{self.instance}.{self.port}"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Delegation:
     """A port or required interface that is reached by one of a composite instance around it."""
 
@@ -35,7 +36,7 @@ class Delegation:
     """Where that composite is named."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Instance:
     """One component instance on a node, its parameters all set.
 
@@ -59,7 +60,7 @@ class Instance:
         return (f"{self.name}.{name}", self.origin) if at is None else (at.outside, at.origin)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Connection:
     """An output port wired to an input port.
 

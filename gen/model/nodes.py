@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
+
 from ravenchart.gen.language.terms import NO_TIME, Ns
 from ravenchart.gen.origins import Origin
 
@@ -19,7 +20,7 @@ SUPERVISOR = "supervisor"
 """The liveness supervision of a node, as a task."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Tick:
     """A timer that interrupts a node every ``period`` for up to ``wcet``."""
 
@@ -27,7 +28,7 @@ class Tick:
     wcet: Ns
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Supervision:
     """The liveness supervision of a node: a task that looks at all processors every ``period``.
 
@@ -39,7 +40,7 @@ class Supervision:
     margin: Ns
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Node:
     """One processor core or several alike, with platform figures, all worst cases in ns."""
 

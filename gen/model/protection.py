@@ -5,9 +5,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal
-
-from ravenchart.gen.frozen import frozen
 
 ProfileName = Literal["e2e_p1", "e2e_p1b", "e2e_p1c", "e2e_p2", "e2e_p5", "e2e_p11", "e2e_p11c"]
 
@@ -17,7 +16,7 @@ NIBBLE = "E2E_Data_ID"
 """The names of the header's fields in a CAN database."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class HeaderField:
     """A field of the header: its first bit and its bits, Intel."""
 
@@ -26,7 +25,7 @@ class HeaderField:
     width: int
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Profile:
     """A profile, as PRS_E2EProtocol has it, with the header at byte 0."""
 
@@ -66,7 +65,7 @@ PROFILES: dict[ProfileName, Profile] = {
 }
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Protection:
     """The protection of one message."""
 

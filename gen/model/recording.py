@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
+
 from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType
 from ravenchart.gen.origins import Origin
 
@@ -16,7 +17,7 @@ OBJECT = "recording"
 """The protected object that holds the recorded values of a node."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class RecordedItem:
     """A port, data item or region of an instance that `record` names.
 
@@ -50,7 +51,7 @@ class RecordedItem:
         )
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class RecordedValue:
     """One scalar of what is recorded: it has a number and a track of its own."""
 

@@ -9,7 +9,8 @@ the states and data of one region, and the facts without which a transition migh
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
+
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     EnumerationType,
@@ -31,7 +32,7 @@ ValueRange = tuple[int, int]
 """First and last value; literals of an enumeration count by their position."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Fact:
     """While ``vertex``, a leaf or a choice or history, is active, a data item is in a span."""
 
@@ -50,7 +51,7 @@ class Fact:
         return _joined("or", parts) if parts else Literal("False", BOOLEAN)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class SafeRegion:
     """The invariants that each step of a region keeps, by proof of its code."""
 

@@ -14,10 +14,9 @@ from __future__ import annotations
 import dataclasses
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Set
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType, Type
 
 FRAME_BITS = 64
@@ -42,7 +41,7 @@ class ByteOrder(Enum):
     """The most significant one."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Piece:
     """Bits of a raw value, from bit ``low`` of it on, that stand together from ``start`` on.
 
@@ -55,7 +54,7 @@ class Piece:
     width: int
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Signal:
     """One scalar in a frame: raw value = value - ``offset``, of an enumeration its code.
 

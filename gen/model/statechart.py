@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Expression, Flow, Ns, named
 from ravenchart.gen.origins import Origin
 
@@ -36,7 +35,7 @@ class Overflow(Enum):
     DROP_OLDEST = "drop_oldest"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Timing:
     """Period, worst-case execution time and relative deadline of an activity."""
 
@@ -45,7 +44,7 @@ class Timing:
     deadline: Ns
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Initial:
     """Default entry of a region: the state it leads to, at any depth, and its effect."""
 
@@ -53,7 +52,7 @@ class Initial:
     effect: Flow = ()
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class NestedRegion:
     """A region of a composite state. The only region of one may have no name (``""``)."""
 
@@ -62,7 +61,7 @@ class NestedRegion:
     initial: Initial
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class State:
     """A state; ``region`` says in which region of ``parent`` it stands.
 
@@ -106,7 +105,7 @@ class PseudoKind(Enum):
     TERMINATE = "terminate"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Pseudostate:
     """A vertex that no execution rests in (terminate excepted)."""
 
@@ -125,14 +124,14 @@ class TransitionKind(Enum):
     INTERNAL = "internal"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class OnEvent:
     """Triggered by an event from the region's queue."""
 
     event: str
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class After:
     """Triggered this long after the source was entered, in whole executions."""
 
@@ -140,7 +139,7 @@ class After:
     executions: int
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Every:
     """Like `After`, again and again while the source is active."""
 
@@ -148,19 +147,19 @@ class Every:
     executions: int
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class When:
     """Triggered by a condition, read when no other occurrence waits."""
 
     condition: Expression
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Completion:
     """Triggered by the completion of its source, a state."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Segment:
     """Leaves a pseudostate: part of the compound transition that reached it."""
 
@@ -168,7 +167,7 @@ class Segment:
 Trigger = OnEvent | After | Every | When | Completion | Segment
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Transition:
     """One transition or segment; internal ones have their source as target.
 
@@ -186,7 +185,7 @@ class Transition:
     otherwise: bool = False
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Lane:
     """A part of the chart in which one leaf is active: ``owner`` None is the top-level region."""
 

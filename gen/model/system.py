@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import NO_TIME, IntegerType, Ns, Type, named
 from ravenchart.gen.origins import Origin
 
@@ -49,7 +48,7 @@ class Work(Enum):
     BUS_WATCH = "watch"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Slot:
     """One row of a processor's table: runs when release mod ``divisor`` = ``phase``."""
 
@@ -74,7 +73,7 @@ class Slot:
         return self.work in (Work.BUS_RECEIVE, Work.BUS_WATCH)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Processor:
     """A command processor: one task. Sporadic when ``released_by`` names what releases it.
 
@@ -131,7 +130,7 @@ class Processor:
         return Ns(sum(slot.timing.wcet for slot in self.slots))
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Task:
     """One schedulable task as the analysis sees it: a processor, or a driver's work.
 
@@ -166,7 +165,7 @@ class Task:
         return 2 if self.sporadic else 1
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class SharedObject:
     """A protected object: its ceiling is the highest priority among its users."""
 
@@ -179,7 +178,7 @@ class SharedObject:
     """Longest time inside it."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Carried:
     """A place on a way: the message that carries the value from node to node."""
 
@@ -194,7 +193,7 @@ Stop = Carried | str
 """A place on a way; rows, ports and data by their elements, ``owner.name``."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Gap:
     """Two places of a chain, as its path names them, between which no values go."""
 
@@ -210,7 +209,7 @@ class Gap:
     """Where values of the second place begin."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Chain:
     """A way that values take, and how long it may take them; None: no limit.
 
@@ -230,7 +229,7 @@ class Chain:
     gap: Gap | None = None
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Shutdown:
     """On a request to stop: raise these (instance, event), wait, end."""
 

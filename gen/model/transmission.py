@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import Ns
 
 
@@ -22,7 +22,7 @@ class Mode(Enum):
     """A value that differs, and the last one again after a period."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Transmission:
     """The transmission mode of a message, in executions of the row that sends it."""
 

@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.frozen import frozen
+from dataclasses import dataclass
+
 from ravenchart.gen.language.terms import Ns
 
 FIRST_BYTES, NEXT_BYTES = 6, 7
@@ -31,7 +32,7 @@ def distance_of(separation: Ns, row: Ns) -> int:
     return -(-(separation // MICROSECOND) // (row // MICROSECOND)) + 1
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Transport:
     """How the value of a message is cut into segments."""
 

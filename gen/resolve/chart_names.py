@@ -6,11 +6,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from ravenchart.gen.files.schema import NestedRegionForm, RegionForm, StateForm
-from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.model.statechart import PseudoKind
 from ravenchart.gen.origins import Origin
@@ -46,7 +45,7 @@ def concurrent_states(states: Mapping[str, StateForm] | None) -> frozenset[str]:
     return frozenset(found)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class NamedVertex:
     """What a name in a chart stands for, as far as its kind tells."""
 
@@ -91,7 +90,7 @@ def vertex_of(name: str, form: StateForm) -> NamedVertex:
     return NamedVertex(name, "state", is_composite=bool(form.states or form.regions))
 
 
-@slotted
+@dataclass(slots=True)
 class States(NameScope[str]):
     """The states of a region; ``vertices`` holds pseudostates and nested regions too."""
 

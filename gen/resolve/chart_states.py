@@ -6,9 +6,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from ravenchart.gen.files.schema import InitialForm, NestedRegionForm, RegionForm, StateForm
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.terms import Flow, Ns
 from ravenchart.gen.model.component import Event
@@ -19,7 +19,7 @@ from .flows import Targets, flow_of
 from .vocabulary import Vocabulary
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Setting:
     """What the parts of one region are resolved in."""
 

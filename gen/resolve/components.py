@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ravenchart.gen.files.schema import (
     ActivityForm,
@@ -16,7 +16,6 @@ from ravenchart.gen.files.schema import (
 )
 from ravenchart.gen.files.schema_deployment import ProbeForm
 from ravenchart.gen.files.schema_frames import WatchForm
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import Findings, NameScope, Unknown, meant
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Flow, Ns, Type
@@ -35,7 +34,7 @@ from .members import Members, Namespace, invariants_of, members_of, outputs_of, 
 from .vocabulary import Vocabulary
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Parts:
     """A component as deployment sees it; what was wrong keeps its name.
 

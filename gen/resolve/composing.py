@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 from ravenchart.gen.diagnostics import warning
@@ -14,7 +14,6 @@ from ravenchart.gen.files.schema import ComponentForm, InputForm
 from ravenchart.gen.files.schema_base import Element
 from ravenchart.gen.files.schema_deployment import InnerConnectionForm
 from ravenchart.gen.files.schema_devices import InnerBindingForm, ProvidedForm, RequiredForm
-from ravenchart.gen.frozen import slotted
 from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.terms import Type
 from ravenchart.gen.model.commands import Command
@@ -64,7 +63,7 @@ def refuse_inner_keys(name: str, form: ComponentForm, findings: Findings) -> Non
             findings.error("RV-0806", form.at_key(key), message, hint=hint)
 
 
-@slotted
+@dataclass(slots=True)
 class Components:
     """The components of a model, each resolved when it is asked for first."""
 

@@ -11,11 +11,10 @@ front, and nothing behind the resolver knows of composites.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ravenchart.gen.files.schema_deployment import InnerInstanceForm
 from ravenchart.gen.files.schema_devices import InnerBindingForm
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import NameScope
 from ravenchart.gen.model.commands import InterfaceEvent, Need, Provided
 from ravenchart.gen.model.component import Component, Parameter, Port
@@ -32,7 +31,7 @@ Ends = tuple[tuple[End, Port], ...]
 """Ports of instances without others inside them."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Interface:
     """An interface of an instance, and who requires or provides it in the end, by paths.
 
@@ -60,7 +59,7 @@ def _joined(path: str, inner: str) -> str:
     return f"{path}.{inner}" if inner else path
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class InnerBinding:
     """A binding inside a composite: who requires, its interface, and who provides."""
 
@@ -75,7 +74,7 @@ class InnerBinding:
         return InnerBinding(self.form, *at, (f"{path}.{self.server[0]}", self.server[1]))
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Inside:
     """An instance inside a composite."""
 
@@ -84,7 +83,7 @@ class Inside:
     of: Parts | Composite
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Composite:
     """A composite component; what was wrong keeps its name.
 

@@ -6,12 +6,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from ravenchart.gen.files.located import TextPlace
 from ravenchart.gen.files.schema import ActivityForm
-from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.language.expressions import Term
 from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.terms import (
@@ -38,7 +37,7 @@ def sent(lists: Lists) -> tuple[str, ...]:
     return (*lists["sends"], *lists["may_send"], *lists["calls"])
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Side:
     """One side of an activity's contract: what it may name."""
 
@@ -54,7 +53,7 @@ class Side:
     """It holds when an execution ends."""
 
 
-@slotted
+@dataclass(slots=True)
 class ContractChecker(Checker):
     """Checks a condition of a contract: names must be those of the activity."""
 

@@ -9,10 +9,9 @@ An array and a facade are decided here: what calls them calls the pieces.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
-from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.language.names import Findings, NameScope, meant
 from ravenchart.gen.language.terms import Ns, Type
 from ravenchart.gen.model.commands import (
@@ -40,7 +39,7 @@ from .interfaces import at_axes
 from .paths import Owners, Placed, owner_at, reached, split
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Facade:
     """Several providers as one; each command belongs to one of them."""
 
@@ -110,7 +109,7 @@ def _seen(scope: NameScope[Interface], path: str) -> NameScope[Interface]:
     return NameScope(scope.kind, items, scope.open)
 
 
-@slotted
+@dataclass(slots=True)
 class Devices:
     """The devices of a model, each resolved when it is asked for first."""
 

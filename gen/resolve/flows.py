@@ -6,11 +6,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from ravenchart.gen.files.located import TextPlace
 from ravenchart.gen.files.schema import CallForm, IfForm, RaiseForm, SendForm, SetForm
-from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.language.names import Findings, NameScope, NameUse, meant
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -42,7 +41,7 @@ from .vocabulary import Vocabulary
 ActionForms = Sequence[SetForm | SendForm | CallForm | RaiseForm | IfForm]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Targets:
     """What the flows of a component may write, send on and raise."""
 
@@ -342,7 +341,7 @@ def _fields_of(kind: Reading, name: str, type_: RecordType) -> FlowValues:
 # --- What flows do ---------------------------------------------------------------
 
 
-@slotted
+@dataclass(slots=True)
 class Use:
     """What flows and conditions read, write, send and raise; keys in order of first use."""
 

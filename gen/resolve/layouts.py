@@ -6,11 +6,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ravenchart.gen.files.located import TextPlace
 from ravenchart.gen.files.schema_frames import MessageForm, SignalForm
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import Findings, NameUse, alike_in_databases, meant
 from ravenchart.gen.language.terms import EnumerationType, IntegerType, RecordType, ScalarType, Type
 from ravenchart.gen.model.authentication import FRESHNESS, MAC, REST
@@ -124,7 +123,7 @@ def size_of(
     return form.bytes
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class _Maker:
     """Makes the signals of one message."""
 

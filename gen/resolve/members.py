@@ -5,10 +5,9 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from ravenchart.gen.files.schema import ComponentForm, InputForm, InvariantForm, OutputForm
-from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.language.names import HIDING, Findings, NameScope
 from ravenchart.gen.language.terms import Ns, Reading, Type
 from ravenchart.gen.model.component import (
@@ -35,7 +34,7 @@ RENAMED = ("state", "transition", "event")
 """Kinds of elements that get another name in Ada where theirs is one of Ada's."""
 
 
-@slotted
+@dataclass(slots=True)
 class Namespace:
     """The one namespace of a component, and the names that nothing in it can have."""
 
@@ -74,7 +73,7 @@ class Namespace:
             self.findings.error("RV-0304", origin, message, hint="choose another name")
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Members:
     """The members of a component by name; those that were wrong keep their names."""
 

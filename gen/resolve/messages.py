@@ -5,13 +5,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from ravenchart.gen.derive.identifiers import OPEN
 from ravenchart.gen.files.schema_frames import (
     AuthenticationForm,
     MessageForm,
     ProtectionForm,
 )
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.terms import BOOLEAN, Ns
 from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.buses import Message
@@ -106,7 +107,7 @@ def message_of(name: str, form: MessageForm, site: DeploymentNames) -> Message |
     )
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class _Travels:
     """How frames of a message go: their bytes, the least time between two, what they carry."""
 

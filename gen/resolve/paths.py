@@ -10,8 +10,8 @@ ports and interfaces are theirs, and from outside they are reached through it al
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.component import Direction
@@ -23,7 +23,7 @@ from .components import Parts
 from .composites import Composite, Ends, connectable, within
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Placed:
     """An instance of a composite component, by its path."""
 
@@ -40,7 +40,7 @@ class Owners(NameScope[Instance | Placed]):
         return [name for name, _, _ in self.items.values() if "." not in name]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class DeploymentNames:
     """What the elements of a deployment may refer to."""
 

@@ -10,10 +10,9 @@ composite names it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ravenchart.gen.files.schema_deployment import ConnectionForm, InnerInstanceForm, InstanceForm
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.names import Findings, NameScope, NameUse
 from ravenchart.gen.language.terms import Scalar
 from ravenchart.gen.model.component import Direction, Parameter
@@ -42,7 +41,7 @@ def place_instance(name: str, form: InstanceForm, site: DeploymentNames) -> None
     _Placing(site, node.name).declare(name, form, of, {}, ())
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class _Placing:
     """One instance of the model, with all that is inside."""
 

@@ -10,7 +10,7 @@ that its uses are not reported as well.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
 from ravenchart.gen.derive.distribution import Carrier, with_nodes
@@ -20,7 +20,6 @@ from ravenchart.gen.derive.remote import calling
 from ravenchart.gen.derive.transport import with_flows
 from ravenchart.gen.files.schema import ComponentForm, ModelFile
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
-from ravenchart.gen.frozen import frozen, slotted
 from ravenchart.gen.language.names import (
     CHILDREN,
     GNAT_PREFIXES,
@@ -57,7 +56,7 @@ from .recording import recorded_of
 from .values import types_of
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Resolved:
     """A system as far as it is sound, and where it is not.
 
@@ -82,7 +81,7 @@ NEEDED = {
 """Sections without which there is no system, and what stands in them."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Merged:
     """The sections of all files of a model, in the order read."""
 
@@ -218,7 +217,7 @@ def _units(model: Merged) -> Iterator[tuple[str, str, Origin]]:
                 yield kind, name, form.origin
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class _Units:
     """The child units of a system: what each is, its name in the model, and where it stands."""
 
@@ -256,7 +255,7 @@ def _parts_of_driver(form: DeviceTypeForm) -> Iterator[tuple[str, str]]:
         yield "registers", "register access"
 
 
-@slotted
+@dataclass(slots=True)
 class _Sections:
     """The sections as they are resolved; ``sound`` names those without an error."""
 

@@ -6,10 +6,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 from ravenchart.gen.files.located import TextPlace
-from ravenchart.gen.frozen import slotted
 from ravenchart.gen.language import folding, intervals
 from ravenchart.gen.language.expressions import Malformed, Term, parse
 from ravenchart.gen.language.names import Findings, NameUse, Unknown, meant, nearest
@@ -49,7 +48,7 @@ SENT = "sent"
 PORT_TESTS = ("fresh", "stale", "never_received")
 
 
-@slotted
+@dataclass(slots=True)
 class Checker:
     """Checks the expressions of one text, at one place."""
 

@@ -6,9 +6,8 @@
 from __future__ import annotations
 
 from collections.abc import Container
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
-from ravenchart.gen.frozen import frozen
 from ravenchart.gen.language.intervals import Interval
 from ravenchart.gen.language.names import NameScope, NameUse
 from ravenchart.gen.language.narrowing import Known, narrowed
@@ -26,7 +25,7 @@ EVENT = "event"
 """What expressions call the value of the triggering event."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Vocabulary:
     """What expressions of one region or activity may name."""
 
@@ -69,7 +68,7 @@ class Vocabulary:
         return replace(self, no_event=reason)
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class CheckedExpression:
     """A sound expression; an integer has no ``type`` but bounds and a unit.
 

@@ -12,7 +12,7 @@ import re
 from collections.abc import Hashable, Iterable, Iterator, Sequence
 from typing import NamedTuple, TypeVar
 
-from ravenchart.gen.frozen import trusted as frozen
+from ravenchart.gen.frozen import frozen
 
 Result = TypeVar("Result", bound=Hashable)
 
