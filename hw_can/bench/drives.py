@@ -12,10 +12,10 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from .forms import DriveForm
 from .peer import BenchError, FrameValues, Peer
 from .plant import STEP, UM, Drive, DriveMode, Push
 from .replay import Timed
-from .scenario import DriveForm
 
 PERIOD = 0.005
 """Time between two feedback frames of a drive, in s."""

@@ -10,14 +10,14 @@ from .drives import AxisTrack, Bench, press
 from .peer import BenchError, FrameValues, Peer, Value
 from .plant import UM
 from .replay import from_outside, read_log
-from .scenario import (
+from .scenario import Scenario
+from .steps import (
     Expect,
     ExpectStop,
     KillBench,
     Pull,
     Release,
     Replay,
-    Scenario,
     ScenarioStep,
     SendStep,
     StopFeedback,

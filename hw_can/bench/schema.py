@@ -8,7 +8,8 @@ from pydantic import TypeAdapter
 
 from ravenchart.described import untitled
 
-from .scenario import BUS_EVENTS, EXPECTED, STEPS, DriveForm, TraceCheck, WholeForm
+from .forms import BUS_EVENTS, EXPECTED, DriveForm, TraceCheck, WholeForm
+from .steps import STEPS
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 TITLE = "Ravenchart: a scenario"

@@ -30,9 +30,10 @@ from ravenchart.building.targets import Board
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
+from ravenchart.hw_can.bench.forms import Cut, Hold, Mend
 from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer
 from ravenchart.hw_can.bench.runner import Progress, ScenarioResult, run_scenario
-from ravenchart.hw_can.bench.scenario import Cut, Hold, Mend, Scenario, ScenarioError, load_scenario
+from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
 from ravenchart.stacks.report import Memory
 
 from . import bus_log, expected, judge, plots, result, server, summary, value_plots

@@ -20,23 +20,12 @@ from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
+from ravenchart.hw_can.bench.forms import Cut, Expected, Lost, Missed, Overran, TraceCheck
 from ravenchart.hw_can.bench.peer import BenchError, Value
 from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
 from ravenchart.hw_can.bench.replay import from_outside, read_log
-from ravenchart.hw_can.bench.scenario import (
-    Cut,
-    Expected,
-    Lost,
-    Missed,
-    Overran,
-    Replay,
-    Scenario,
-    ScenarioError,
-    SendStep,
-    TraceCheck,
-    WaitFor,
-    load_scenario,
-)
+from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
+from ravenchart.hw_can.bench.steps import Replay, SendStep, WaitFor
 
 from .vocabulary import BusVocabulary
 

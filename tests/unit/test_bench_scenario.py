@@ -6,17 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.hw_can.bench.scenario import (
-    STEPS,
-    Expect,
-    Hold,
-    LetGo,
-    ScenarioError,
-    SendStep,
-    WaitFor,
-    load_scenario,
-    parse_scenario,
-)
+from ravenchart.hw_can.bench.forms import Hold, LetGo
+from ravenchart.hw_can.bench.scenario import ScenarioError, load_scenario, parse_scenario
+from ravenchart.hw_can.bench.steps import STEPS, Expect, SendStep, WaitFor
 from tests.support.bench_files import scenario_text
 
 ROBOT = Path(__file__).parents[2] / "examples" / "cartesian_robot"
