@@ -12,8 +12,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ravenchart.gen.language.names import LONGEST_REQUIREMENT, REQUIREMENT
 
-from .plant import Axis
-from .quantities import Length, Time
+from .axis import Axis
+from .quantities import Length, Scalar, Time
 
 Signal = Annotated[str, Field(pattern=r"^\w+\.\w+$")]
 """``message.field``"""
@@ -62,6 +62,27 @@ class DriveForm(ScenarioForm):
             high_switch=self.high_switch,
             count_at_start=self.count_at_start,
         )
+
+
+class PlantForm(ScenarioForm):
+    """One plant that the user brings, and which values it shares with messages."""
+
+    plant_class: Annotated[str, Field(pattern=r"^[^:]+\.py:[A-Za-z_]\w*$")] | None = Field(
+        None, alias="class"
+    )
+    """``FILE.py:CLASS``, from the folder of the scenario."""
+    fmu: Annotated[str, Field(pattern=r".+\.fmu$")] | None = None
+    """File of a Functional Mock-up Unit for co-simulation, from the folder of the scenario."""
+    parameters: dict[str, Scalar] = {}
+    """What the plant is made with."""
+    inputs: dict[str, Signal] = {}
+    """For inputs of the plant the fields of messages that the controller sends."""
+    outputs: dict[Signal, str] = {}
+    """For fields of messages that the plant sends the outputs of the plant."""
+    period: Time = 0.005
+    """Time between two frames of each message that it sends: whole multiples of 5 ms."""
+    step: Annotated[Time, Field(gt=0)] = 0.005
+    """Communication step of a Functional Mock-up Unit."""
 
 
 class Cut(ScenarioForm):
@@ -206,6 +227,7 @@ class WholeForm(ScenarioForm):
 
     scenario: str
     drives: dict[str, Any] = {}
+    plants: dict[str, Any] = {}
     bus: list[Any] = []
     steps: Annotated[list[Any], Field(min_length=1)]
     expect_trace: list[Any] = []

@@ -5,6 +5,7 @@ Each step reads as a sentence; `STEPS` has its form by the key that tells it fro
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
@@ -62,6 +63,65 @@ class ExpectStop(ScenarioForm):
         return f"expect {self.expect_stop} to stop within {self.within:g} s"
 
 
+class SetInput(ScenarioForm):
+    """An input of a plant gets a value: a disturbance, a fault, a hand."""
+
+    set_input: Signal = Field(alias="set")
+    """``plant.input``"""
+    to: Scalar
+
+    @property
+    def plant(self) -> str:
+        """The plant."""
+        return self.set_input.partition(".")[0]
+
+    @property
+    def name(self) -> str:
+        """Its input."""
+        return self.set_input.partition(".")[2]
+
+    def __str__(self) -> str:
+        return f"set {self.set_input} to {self.to}"
+
+
+class ExpectOutput(ScenarioForm):
+    """An output of a plant has a value, or comes into a range."""
+
+    expect_output: Signal
+    """``plant.output``"""
+    value: Scalar | None = Field(None, alias="is")
+    at_least: float | None = None
+    at_most: float | None = None
+    within: Time = 0.0
+
+    @property
+    def plant(self) -> str:
+        """The plant."""
+        return self.expect_output.partition(".")[0]
+
+    @property
+    def name(self) -> str:
+        """Its output."""
+        return self.expect_output.partition(".")[2]
+
+    def accepts(self, value: Scalar) -> bool:
+        """Whether the output may have it."""
+        if self.value is not None:
+            return value == self.value
+        if not isinstance(value, (int, float)):
+            return False
+        low = -math.inf if self.at_least is None else self.at_least
+        high = math.inf if self.at_most is None else self.at_most
+        return low <= value <= high
+
+    def __str__(self) -> str:
+        if self.value is not None:
+            return f"expect {self.expect_output} = {self.value}"
+        low = "" if self.at_least is None else f"{self.at_least:g} <= "
+        high = "" if self.at_most is None else f" <= {self.at_most:g}"
+        return f"expect {low}{self.expect_output}{high}"
+
+
 class Wait(ScenarioForm):
     """Let time pass."""
 
@@ -91,7 +151,7 @@ class Release(ScenarioForm):
 
 
 class StopFeedback(ScenarioForm):
-    """One drive, or every drive (``all``), falls silent."""
+    """One drive or plant, or every one (``all``), falls silent."""
 
     stop_feedback: str
 
@@ -124,6 +184,8 @@ ScenarioStep = (
     | WaitFor
     | Expect
     | ExpectStop
+    | SetInput
+    | ExpectOutput
     | Wait
     | Pull
     | Release
@@ -136,6 +198,8 @@ STEPS: Mapping[str, type[ScenarioStep]] = {
     "wait_for": WaitFor,
     "expect": Expect,
     "expect_stop": ExpectStop,
+    "set": SetInput,
+    "expect_output": ExpectOutput,
     "wait": Wait,
     "pull": Pull,
     "release": Release,

@@ -230,6 +230,9 @@ def write_report(
         written.append(picture)
         caption = "Target and true position of each axis, its states in the band above."
         pictures.append((caption, svg(figure)))
+    if played is not None and any(track.values for track in played.plants.values()):
+        caption = "Values that each plant gave to the controller."
+        pictures.append((caption, svg(plots.plant_values(played.plants))))
     pictures += value_plots.pictures(outcome.observation)
     run = RunReport(
         title=outcome.title,

@@ -27,6 +27,7 @@ from ravenchart.hw_can.bench.replay import from_outside, read_log
 from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
 from ravenchart.hw_can.bench.steps import Replay, SendStep, WaitFor
 
+from .scenario_plants import check_plants
 from .vocabulary import BusVocabulary
 
 LOSSES = ("lost_out", "lost_in", "rejected_lines")
@@ -65,6 +66,7 @@ def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
         return [error(UNKNOWN, source.tree.origin, message, hint="run it without `--scenario`")]
     check = _Check(source, system, BusVocabulary.of(system))
     check.drives(scenario)
+    check_plants(scenario, source, check.signal, tuple(check.vocabulary.outside()))
     for index, step in enumerate(scenario.steps):
         if isinstance(step, SendStep):
             check.send(step, ("steps", index))
@@ -131,7 +133,7 @@ class _Check:
 
     def replay(self, step: Replay, scenario: Scenario, path: FormPath) -> None:
         """A log with a frame that the bench can send."""
-        drives = frozenset(drive.feedback for drive in scenario.drives.values())
+        drives = scenario.simulated()
         if not from_outside(read_log(scenario.file_of(step)), self.codec, drives):
             told = f"no frame of {step.replay} is a message that comes from outside the model"
             outside = self.vocabulary.outside()
