@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 # Four words do the work: check, test, prove, demo. Each installs what it needs.
 
 RAVENCHART := .venv/bin/ravenchart
@@ -6,6 +9,8 @@ PYTHON     := .venv/bin/python
 export RAVENCHART_WARNINGS := errors
 # The results of the last run of the tests, for the evidence of the examples.
 RESULTS    := build/tests.xml
+# They run on other machines too, where their compilers and emulators are.
+ELSEWHERE  := tests/system/test_other_machines.py tests/system/test_codecs.py
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
 .PHONY: help setup demo test test-all test-long coverage hw-test board-test check prove generate bench bench-proof
@@ -50,7 +55,7 @@ test-long: setup
 
 hw-test: setup
 	@scripts/setup.sh guest || true
-	@$(PYTHON) -P -m tests.hardware
+	@$(PYTHON) -P -m pytest -q -rs tests/hardware $(ELSEWHERE) -k 'hardware or s390x or armhf' --junit-xml=build/hw-test/results.xml
 
 board-test: setup
 	@scripts/setup.sh board || true

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Times and shares as people read them. Nothing here rounds to the unsafe side."""
 
 from __future__ import annotations

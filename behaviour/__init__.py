@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a model does, step by step, before there is code.
 
 An interpreter of `System`, written from docs/semantics.md and from nothing that

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How much work the rules of behaviour may take, and what says that it was not enough.
 
 Apart from the rules, which import a solver: a result that is kept needs none.

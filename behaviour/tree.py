@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The geometry of a chart, for interpreter and rules alike; its look-ups are made once.
 
 The emitter has its own (`gen/model/chart`): the two are compared by the tests, and share no code.

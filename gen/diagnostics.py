@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Diagnostics: what is wrong with a model, where, and what to do about it.
 
 A wrong model is a value, never an exception. Codes are stable: a code is not

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A list made item by item, by all processors of the machine together."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A model from its files to a valid `System`: load, resolve, rules, derive.
 
 Each stage is a folder of `gen`. What only the emitted program shows, names that clash in

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`python -m ravenchart`: the same as the script `ravenchart`."""
 
 from __future__ import annotations

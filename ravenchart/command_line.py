@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The `ravenchart` command: the table of its commands, and how each of them ends.
 
 A command is a module of `commands` with ``add_arguments`` and ``execute``. It is imported

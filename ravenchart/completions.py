@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Completion scripts of bash, zsh and fish, each a text made of the grammar."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Objects that are written as JSON and described by a JSON Schema."""
 
 from __future__ import annotations

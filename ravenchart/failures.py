@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How a command fails: what it says, and its exit status."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The commands and their options as data, read from the parsers that read them.
 
 Shell completion and the manual page are made of it, so neither is written by hand.
@@ -29,6 +32,8 @@ FILES = {
     "FOLDER": ArgumentKind.FOLDER,
 }
 """What is a file or a folder, by the word that stands for it in the help."""
+AS_LISTED = ": %(choices)s"
+"""Ends the help of an option whose choices are too many for its usage: argparse lists them."""
 ENDINGS = ("yaml", "yml", "csv", "json")
 """How the names of models end, and of the plain files that `analyse` takes too."""
 
@@ -108,7 +113,7 @@ def _word(action: argparse.Action) -> Word:
         named if takes else "",
         kind if takes else ArgumentKind.NOTHING,
         tuple(map(str, action.choices or ())),
-        action.help or "",
+        (action.help or "").removesuffix(AS_LISTED),
         action.required,
         isinstance(action, argparse._AppendAction),
     )

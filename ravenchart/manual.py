@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The manual page, in the man macros of roff, made of the grammar."""
 
 from __future__ import annotations

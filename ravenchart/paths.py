@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Where Ravenchart's own files are, and where it may write: the one module that knows.
 
 In a checkout the folders of Ada sources are at its top, and in this package there are

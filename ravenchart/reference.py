@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The pages about the command line that are made of the command line itself.
 
 `python -m ravenchart.reference` writes docs/answer.schema.json, docs/evidence.schema.json,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A diagnostic as programs get it: in the answer of `--json`, and on the page of the workbench."""
 
 from __future__ import annotations

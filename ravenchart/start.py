@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The entry point: a light module that is ready for signals before anything else is imported.
 
 It keeps the working folder off the module search path, turns a request to stop into an

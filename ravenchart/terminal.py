@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is printed for people: tables in at most 80 columns, and progress while they wait.
 
 Colour is for terminals alone. https://no-color.org holds: a `NO_COLOR` that is not empty means

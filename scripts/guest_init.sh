@@ -1,4 +1,7 @@
 #!/bin/busybox sh
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 # The first process of the guest of `make hw-test`: modules, the machine's own
 # root, read-only, the folder of results, CAN interfaces, and then the steps.
 /bin/busybox --install -s /bin

@@ -1,4 +1,7 @@
 #!/bin/sh
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 # Install what is missing: Debian's GNAT, gprbuild and Graphviz, and a virtual
 # environment in .venv from requirements.lock. Does nothing when all is there.
 # With the word "arm" also the compiler for 32-bit Arm, which only figures need;

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How all tests run: side by side in workers, with a compiler that has a store."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What `make check` and `make prove` do over the whole checkout.
 
 check: generated/ is what the models give, and every Ada unit compiles without

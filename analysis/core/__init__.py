@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Response-time analysis of tasks, frames and chains, apart from any model or file.
 
 Pure functions over frozen records. Every time is an integer in one tick of the

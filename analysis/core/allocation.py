@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Which activities share a task: strategies, each result checked by the analysis of tasks.
 
 A task runs a table of activities (rows): its period is the shortest of theirs, and the
@@ -41,7 +44,7 @@ class Movable:
 
     name: str
     period: int
-    cost: int
+    wcet: int
     deadline: int
     owner: str = ""
     core: str = ""
@@ -49,7 +52,7 @@ class Movable:
     def __post_init__(self) -> None:
         """Refuse what is out of range, with a ValueError that names field and activity."""
         owner = f"activity {self.name}"
-        positive(owner, period=self.period, cost=self.cost, deadline=self.deadline)
+        positive(owner, period=self.period, wcet=self.wcet, deadline=self.deadline)
 
 
 class Strategy(Enum):
@@ -188,7 +191,7 @@ def checked(
     rank = sorted({task.priority for task in above})
     lifted = [replace(task, priority=len(tasks) + 1 + rank.index(task.priority)) for task in above]
     home = {activity.name: table[0].name for table in ordered for activity in table}
-    cost = {table[0].name: sum(activity.cost for activity in table) for table in ordered}
+    cost = {table[0].name: sum(activity.wcet for activity in table) for table in ordered}
     held = []
     for section in sections:
         user = home.get(section.user, section.user)
@@ -218,15 +221,15 @@ def _task(table: Table, priority: int, *, phased: bool) -> Task:
     count = min(FRAME_LIMIT, max(activity.period // period for activity in table))
     costs = [0] * count
     phases: dict[str, int] = {}
-    for activity in sorted(table, key=lambda activity: (activity.period, -activity.cost)):
+    for activity in sorted(table, key=lambda activity: (activity.period, -activity.wcet)):
         every = activity.period // period
         choice = range(min(every, count)) if phased else range(1)
         phase = min(choice, key=lambda k: max(costs[k::every]))
         phases[activity.name] = phase
         for k in range(phase, count, every):
-            costs[k] += activity.cost
+            costs[k] += activity.wcet
     rows = tuple(
-        TableRow(activity.name, activity.cost, activity.period // period, phases[activity.name])
+        TableRow(activity.name, activity.wcet, activity.period // period, phases[activity.name])
         for activity in table
     )
     deadline = max(activity.deadline for activity in table)

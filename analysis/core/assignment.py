@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Priorities for tasks and identifiers for frames.
 
 Deadline monotonic order (Leung and Whitehead 1982), here by deadline less jitter, is

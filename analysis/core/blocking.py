@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How long less urgent tasks can hold a task up, under immediate ceilings.
 
 Inside a protected object a task runs at the object's ceiling (Ada RM D.3,
@@ -72,13 +75,13 @@ def blockers(
     ValueError as `ceilings`, and where a section is longer than its user's whole job.
     """
     users = {task.name: task for task in tasks}
-    lengths = {task.name: task.plain_cost for task in tasks}
+    lengths = {task.name: task.plain_wcet for task in tasks}
     for section in sections:
         user = users.get(section.user)
         if user is not None and section.length > lengths[section.user]:
             raise ValueError(
                 f"the section of {section.user} on {section.resource} must be at most "
-                f"{lengths[section.user]}, the cost of the task, not {section.length}"
+                f"{lengths[section.user]}, the WCET of the task, not {section.length}"
             )
     reach = ceilings(tasks, sections, given)
     homes = {s.resource: users[s.user].core for s in sections if s.user in users}

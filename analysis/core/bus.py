@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Frames of one CAN bus, and what the bus itself does to them."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The jobs of one task's busy period, one after another, against given rivals."""
 
 from __future__ import annotations
@@ -36,7 +39,7 @@ class Contender:
         jitter, demand = jitter_of(task, platform), demand_of(task, platform)
         goals = [(cost, frame, WHOLE) for frame, cost in enumerate(demand.costs)]
         if task.rows:
-            before = task.cost + switch_time(task, platform)
+            before = task.wcet + switch_time(task, platform)
             goals += _row_goals(task, before)
             goals.sort()
         item = source(task.period, jitter, demand)
@@ -55,7 +58,7 @@ def _row_goals(task: Task, before: int) -> list[Goal]:
     for frame, rows in enumerate(task.frames):
         done = before
         for row in rows:
-            done += row.cost
+            done += row.wcet
             goals.append((done, frame, number[row.name]))
     return goals
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Worst-case response times of CAN frames.
 
 Davis, Burns, Bril, Lukkien, Controller Area Network (CAN) schedulability analysis:

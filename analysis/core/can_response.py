@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The instances of one frame's busy period, and every term of its response."""
 
 from __future__ import annotations

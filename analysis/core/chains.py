@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """End-to-end latencies of cause-effect chains, hop by hop.
 
 A chain is cut where data waits in a variable or a queue for a task that runs at its

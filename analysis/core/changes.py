@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What would meet all deadlines: single changes, and as little of each as suffices.
 
 Every candidate is judged by the analysis itself (`holistic`, or a stricter ``met``), so
@@ -33,7 +36,7 @@ ORDERED = 30
 class ChangeKind(Enum):
     """What is changed."""
 
-    COST = "execution time"
+    WCET = "wcet"
     PERIOD = "period"
     ORDER = "order"
     PLACE = "place"
@@ -83,7 +86,7 @@ def shorter(
 
         last = greatest(suffices, 1, STEPS - 1)
         factor = None if last is None else Fraction(last, STEPS)
-        yield Change(ChangeKind.COST, name, factor is not None, factor)
+        yield Change(ChangeKind.WCET, name, factor is not None, factor)
 
 
 def parts(task: Task) -> tuple[Part, ...]:
@@ -97,20 +100,20 @@ def shrunk(network: Network, chosen: Collection[Part], factor: Fraction) -> Netw
     No section stays longer than the job that it is part of.
     """
 
-    def short(cost: int) -> int:
-        return -(-cost * factor.numerator // factor.denominator)
+    def short(wcet: int) -> int:
+        return -(-wcet * factor.numerator // factor.denominator)
 
     def less(task: Task) -> Task:
-        cost = short(task.cost) if (task.name, "") in chosen else task.cost
+        wcet = short(task.wcet) if (task.name, "") in chosen else task.wcet
         rows = tuple(
-            replace(row, cost=short(row.cost)) if (task.name, row.name) in chosen else row
+            replace(row, wcet=short(row.wcet)) if (task.name, row.name) in chosen else row
             for row in task.rows
         )
-        found = replace(task, cost=cost, rows=rows, best=0)
-        return replace(found, best=min(task.best, found.plain_cost))
+        found = replace(task, wcet=wcet, rows=rows, best=0)
+        return replace(found, best=min(task.best, found.plain_wcet))
 
     tasks = tuple(map(less, network.tasks))
-    longest = {task.name: task.plain_cost for task in tasks}
+    longest = {task.name: task.plain_wcet for task in tasks}
     sections = tuple(
         replace(s, length=min(s.length, longest.get(s.user, s.length))) for s in network.sections
     )

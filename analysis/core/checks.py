@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Parameters that no analysis can give a meaning to are refused by name."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Worst-case response times of preemptive tasks under fixed priorities.
 
 For job q (from 0) of a busy period of the task's level, ending in frame f:
@@ -106,9 +109,9 @@ def _quickly(order: tuple[Task, ...], held: Mapping[str, Section], platform: Pla
     for task in order:
         if task.jitter or task.rows or task.timed or task.offset is not None:
             return []
-    costs = [task.cost for task in order]
+    costs = [task.wcet for task in order]
     if platform.context_switch:
-        costs = [task.cost + switch_time(task, platform) for task in order]
+        costs = [task.wcet + switch_time(task, platform) for task in order]
     blocked = [held_up(task, held.get(task.name)) for task in order]
     last = {task.priority: number for number, task in enumerate(order)}
     return busy_periods(

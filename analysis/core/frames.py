@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Lengths and arbitration of CAN and CAN FD frames.
 
 Classic frames: Davis, Burns, Bril, Lukkien, Real-Time Systems 35, 2007, equation 1:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Tasks and buses that release each other: jitter inherited until nothing changes.
 
 Tindell and Clark, Holistic schedulability analysis for distributed hard real-time

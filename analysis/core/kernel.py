@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Busy periods of many plain tasks at once, by the compiled and proved part of the analysis.
 
 For plain tasks (one cost, no jitter) the busy period at the level of a task is the least W

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Exact demand of releases whose costs repeat in a cycle.
 
 Mok and Chen, A multiframe model for real-time tasks (IEEE TSE 23, 1997); here for

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Responses of tasks that one clock releases, each at its own offset from an epoch.
 
 Release k of a task with the offset O is due at O + k T, so which releases meet is known.

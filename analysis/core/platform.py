@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the run-time system of one core costs, apart from the tasks themselves."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The response of a task, and every term that it is made of."""
 
 from __future__ import annotations
@@ -257,10 +260,10 @@ def release_time(task: Task, platform: Platform) -> int:
 
 def demand_of(task: Task, platform: Platform) -> Demand:
     """What the releases of ``task`` cost, each with its context switches."""
-    extra = task.cost + switch_time(task, platform)
+    extra = task.wcet + switch_time(task, platform)
     if not task.rows:
         return Demand((extra,))
-    return Demand(tuple(extra + sum(row.cost for row in rows) for rows in task.frames))
+    return Demand(tuple(extra + sum(row.wcet for row in rows) for rows in task.frames))
 
 
 def stream_of(task: Task, platform: Platform) -> Stream:

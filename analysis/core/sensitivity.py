@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How much room is left: factors of all execution times, and slack of single tasks.
 
 Whether all deadlines are met is monotone in each execution time, so the last value
@@ -138,7 +141,7 @@ def growth(
 
     def met(extra: int) -> bool:
         grown = [
-            replace(task, cost=task.cost + extra) if task is chosen else task for task in tasks
+            replace(task, wcet=task.wcet + extra) if task is chosen else task for task in tasks
         ]
         return all(r.met for r in analyse(grown, sections, platforms, ceilings))
 
@@ -147,8 +150,8 @@ def growth(
 
 def scaled(task: Task, factor: Fraction) -> Task:
     """The task with its own time and its rows multiplied by ``factor``, each rounded up."""
-    rows = tuple(TableRow(r.name, _up(r.cost * factor), r.every, r.phase) for r in task.rows)
-    return replace(task, cost=_up(task.cost * factor), rows=rows, best=_down(task.best, factor))
+    rows = tuple(TableRow(r.name, _up(r.wcet * factor), r.every, r.phase) for r in task.rows)
+    return replace(task, wcet=_up(task.wcet * factor), rows=rows, best=_down(task.best, factor))
 
 
 def _down(best: int, factor: Fraction) -> int:

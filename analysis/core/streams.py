@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Jobs whose arrivals are known: one every period, from an offset on, for ever both ways."""
 
 from __future__ import annotations

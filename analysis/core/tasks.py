@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Tasks of fixed priority on one core each, and the tables that they execute."""
 
 from __future__ import annotations
@@ -16,18 +19,18 @@ FRAME_LIMIT = 1024
 class TableRow:
     """One row of a task's table: executed in release k when k mod ``every`` is ``phase``.
 
-    ``cost`` is its worst-case execution time in ticks, above 0.
+    ``wcet`` is its worst-case execution time in ticks, above 0.
     """
 
     name: str
-    cost: int
+    wcet: int
     every: int = 1
     phase: int = 0
 
     def __post_init__(self) -> None:
         """Refuse what is out of range, with a ValueError that names the row."""
         owner = f"row {self.name}"
-        positive(owner, cost=self.cost, every=self.every)
+        positive(owner, wcet=self.wcet, every=self.every)
         natural(owner, phase=self.phase)
         if self.phase >= self.every:
             raise ValueError(f"phase of {owner} must be below {self.every}, not {self.phase}")
@@ -39,7 +42,7 @@ class Task:
 
     ``period``     distance of its arrivals (least distance when ``sporadic``), above 0
     ``deadline``   from the arrival, above 0; it may exceed the period
-    ``cost``       worst-case execution time of every job, apart from the rows
+    ``wcet``       worst-case execution time of every job, apart from the rows
     ``priority``   a larger number is more urgent
     ``jitter``     longest time from the arrival to the release, any size
     ``rows``       what job k executes besides, in this order
@@ -60,7 +63,7 @@ class Task:
     priority: int
     period: int
     deadline: int
-    cost: int = 0
+    wcet: int = 0
     jitter: int = 0
     core: str = ""
     rows: tuple[TableRow, ...] = ()
@@ -82,16 +85,16 @@ class Task:
         if self.epoch and self.offset is None:
             raise ValueError(f"epoch of {owner} has no meaning: it has no offset")
         if self.rows:
-            natural(owner, cost=self.cost)
+            natural(owner, wcet=self.wcet)
             distinct(f"rows of {owner}", [row.name for row in self.rows])
         else:
-            positive(owner, cost=self.cost)
-        at_most(owner, "best", self.best, self.plain_cost)
+            positive(owner, wcet=self.wcet)
+        at_most(owner, "best", self.best, self.plain_wcet)
 
     @property
-    def plain_cost(self) -> int:
+    def plain_wcet(self) -> int:
         """The longest job if every row were executed in it."""
-        return self.cost + sum(row.cost for row in self.rows)
+        return self.wcet + sum(row.wcet for row in self.rows)
 
     @property
     def frame_count(self) -> int:
@@ -117,11 +120,11 @@ class Task:
     def utilisation(self) -> Fraction:
         """Share of its core that the task needs in the long run, overheads apart."""
         if not self.rows:
-            return Fraction(self.cost, self.period)
-        total = sum(self.cost + sum(row.cost for row in rows) for rows in self.frames)
+            return Fraction(self.wcet, self.period)
+        total = sum(self.wcet + sum(row.wcet for row in rows) for rows in self.frames)
         return Fraction(total, self.period * self.frame_count)
 
 
 def plain(task: Task) -> Task:
     """The same task with every row in every job, at any time: as one reckons by hand."""
-    return replace(task.at_any_time(), cost=task.plain_cost, rows=())
+    return replace(task.at_any_time(), wcet=task.plain_wcet, rows=())

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Responses where steps of one chain meet on a core or bus: they are not all released at once.
 
 What one event releases, directly or by the completion of other steps, is a transaction. Its

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Least fixed points of demand, for windows and sets of sources that only grow.
 
 The recurrence of every response-time analysis here is

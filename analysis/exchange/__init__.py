@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Systems in the formats of other analysis tools. No number is rounded: times are whole ns."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Cheddar models (XML, version 3): each core and each bus checked on its own.
 
 What is released by something else has, as jitter, what this analysis found it inherits;
@@ -118,10 +121,11 @@ def _items(network: Network) -> Iterator[_Item]:
         deadline = item.deadline - found.best[name]
         if isinstance(item, Task):
             place, level = item.core, levels[item.core][item.priority]
+            longest, start = item.wcet, item.offset or 0
         else:
             place = next(bus for bus, some in network.frames.items() if item in some)
             level = urgency(network.frames[place])[name]
-        start = (item.offset or 0) if isinstance(item, Task) else 0
+            longest, start = item.cost, 0
         if level > PRIORITIES:
             raise Unfit(f"Cheddar has {PRIORITIES} priorities: {places[place]} needs {level}")
         yield _Item(
@@ -130,7 +134,7 @@ def _items(network: Network) -> Iterator[_Item]:
             level,
             item.period,
             deadline,
-            item.cost,
+            longest,
             late,
             blocked,
             start,

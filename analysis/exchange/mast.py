@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """MAST models (1.7), for `mast_analysis holistic`. The unit of time is the nanosecond.
 
 What MAST does not have is put so that its bounds are no smaller: a table of rows becomes
@@ -235,7 +238,7 @@ class _Writer:
                 _attributes(
                     Type="Enclosing" if parts else "Simple",
                     Name=f"{name}_job",
-                    Worst_Case_Execution_Time=task.plain_cost + self._further(task),
+                    Worst_Case_Execution_Time=task.plain_wcet + self._further(task),
                     Best_Case_Execution_Time=task.best or None,
                     Composite_Operation_List=tuple(parts) or None,
                 ),

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The text form of MAST models (1.7): read into objects, and printed from them.
 
 A model is a sequence of ``Kind ( Attribute => Value, ... );``. A value is a word, an

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Scripts for pyCPA: the same system, built and analysed by its Python interface.
 
 pyCPA counts a response from the release: its figures are smaller, by up to the own jitter.
@@ -126,8 +129,9 @@ def _lines(network: Network) -> Iterator[str]:
 
 
 def _task(name: str, place: str, item: Task | Frame, level: int, best: int) -> str:
+    longest = item.wcet if isinstance(item, Task) else item.cost
     return (
-        f'{name} = {place}.bind_task(model.Task("{name}", wcet={item.cost}, bcet={best}, '
+        f'{name} = {place}.bind_task(model.Task("{name}", wcet={longest}, bcet={best}, '
         f"scheduling_parameter={level}))"
     )
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the exports share: names that every tool accepts, dense priorities, trees of releases."""
 
 from __future__ import annotations
@@ -56,8 +59,8 @@ def dense(levels: Iterable[int]) -> dict[int, int]:
 def exact(network: Network) -> None:
     """Refuse times that a double cannot hold."""
     for name, item in network.items().items():
-        cost = item.plain_cost if isinstance(item, Task) else item.cost
-        largest = max(item.period, item.deadline, item.jitter, cost)
+        longest = item.plain_wcet if isinstance(item, Task) else item.cost
+        largest = max(item.period, item.deadline, item.jitter, longest)
         if largest >= EXACT:
             raise Unfit(f"the times of {name} must be below 2**53 ns, which is 104 days")
 
@@ -163,7 +166,7 @@ def background(network: Network) -> Network:
                 raise Unfit(f"no task uses {section.resource}: leave it out")
             name = f"{section.user} on {core}" if core else section.user
             held = tasks.get(name)
-            cost = section.length + (held.cost if held else 0)
+            cost = section.length + (held.wcet if held else 0)
             tasks[name] = Task(name, lowest, HOUR, HOUR, cost, core=core, sporadic=True)
             section = replace(section, user=name)
         sections.append(section)
@@ -204,7 +207,7 @@ def last_bit(network: Network, tool: str) -> Iterator[str]:
 
 
 def spelled_out(network: Network) -> Network:
-    """The same bounds without platforms: overheads as costs, jitter and tasks above all others.
+    """The same bounds without platforms: overheads as WCET, jitter and tasks above all others.
 
     A table of rows becomes its sum, which can only make bounds larger.
     """
@@ -213,8 +216,8 @@ def spelled_out(network: Network) -> Network:
     for task in network.tasks:
         platform = network.platforms.get(task.core, NO_OVERHEAD)
         late = task.jitter + (platform.tick_period if task.timed else 0)
-        cost = task.plain_cost + switch_time(task, platform)
-        tasks.append(replace(task, cost=cost, jitter=late, rows=(), timed=False))
+        wcet = task.plain_wcet + switch_time(task, platform)
+        tasks.append(replace(task, wcet=wcet, jitter=late, rows=(), timed=False))
         if platform.release:
             extra = _above_all(
                 network, f"{task.name}_release", task.core, release_time(task, platform)

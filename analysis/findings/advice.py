@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What to change: single changes that suffice, those of least effect on the design first.
 
 Where deadlines are missed, the aim is to meet them; where they are met with little room,
@@ -42,11 +45,11 @@ WEIGHED = 6
 class Choices:
     """What of a network can be changed.
 
-    ``costs`` are parts by what people call them, ``periods`` items that events release,
+    ``wcets`` are parts by what people call them, ``periods`` items that events release,
     ``order`` tasks and frames whose priority or identifier is free.
     """
 
-    costs: Mapping[str, Sequence[Part]]
+    wcets: Mapping[str, Sequence[Part]]
     periods: Sequence[str]
     order: Sequence[str]
 
@@ -71,19 +74,19 @@ class Advice:
 def of_model(analysis: Analysis) -> Advice | None:
     """What to change in a model; None where there is room enough, or too much to look at."""
     system, network = analysis.system, analysis.network
-    costs: dict[str, list[Part]] = {}
+    wcets: dict[str, list[Part]] = {}
     for task in system.tasks:
         if task.driver_of is not None:
-            costs.setdefault(f"driver_wcet of {task.driver_of}", []).append((task.element, ""))
+            wcets.setdefault(f"driver_wcet of {task.driver_of}", []).append((task.element, ""))
         elif not task.slots:
-            costs[task.element] = [(task.element, "")]
-        costs |= {slot.element: [(task.element, slot.element)] for slot in task.slots}
+            wcets[task.element] = [(task.element, "")]
+        wcets |= {slot.element: [(task.element, slot.element)] for slot in task.slots}
     own = {f"{node.name}.{name}" for node in system.nodes for name in (PROBE, SUPERVISOR)}
     free = [t for t in system.tasks if t.released_by is None and t.element not in own]
     periods = [task.element for task in free if not task.sporadic]
     periods += [message.element for message in system.messages if message.source is None]
     order = [*(task.element for task in free), *(m.element for m in system.messages)]
-    choices = Choices(costs, periods, order)
+    choices = Choices(wcets, periods, order)
     found = advice(network, choices, analysis.scaling, analysis.schedulable, kept(analysis))
     late = any(not latency.met for _, latency in analysis.limited)
     return found and replace(found, limits=late)
@@ -103,15 +106,15 @@ def kept(analysis: Analysis) -> Met:
 
 def of_network(network: Network, scaling: NetworkScaling | None, *, met: bool) -> Advice | None:
     """What to change in a plain file."""
-    costs = {
+    wcets = {
         f"{task.name}.{row}" if row else task.name: [(task.name, row)]
         for task in network.tasks
         for _, row in changes.parts(task)
-        if row or task.cost
+        if row or task.wcet
     }
     items = list(network.items())
     periods = [name for name in items if name not in network.released_by]
-    return advice(network, Choices(costs, periods, items), scaling, met, holistic.met)
+    return advice(network, Choices(wcets, periods, items), scaling, met, holistic.met)
 
 
 def advice(
@@ -128,11 +131,11 @@ def advice(
         return holds(scaled_network(other, 1 + ROOM, tasks) if met else other)
 
     loads = {name: item.utilisation for name, item in network.items().items()}
-    costs = sorted(choices.costs, key=lambda name: -_load(network, choices.costs[name]))
+    wcets = sorted(choices.wcets, key=lambda name: -_load(network, choices.wcets[name]))
     periods = sorted(choices.periods, key=lambda name: -loads[name])
     found = [
         *changes.reordered(network, choices.order, aim),
-        *changes.shorter(network, {name: choices.costs[name] for name in costs[:TRIED]}, aim),
+        *changes.shorter(network, {name: choices.wcets[name] for name in wcets[:TRIED]}, aim),
         *changes.slower(network, periods[:TRIED], aim),
     ]
     late = None if scaling is None else scaling.binding
@@ -140,12 +143,12 @@ def advice(
         found += changes.moved(network, late, aim)
     relief: list[tuple[str, Fraction]] = []
     if not any(change.enough for change in found):
-        relief = _relief(network, {name: choices.costs[name] for name in costs[:WEIGHED]}, tasks)
+        relief = _relief(network, {name: choices.wcets[name] for name in wcets[:WEIGHED]}, tasks)
     return Advice(network, choices, met, changes.ranked(found), tuple(relief))
 
 
 def _relief(
-    network: Network, costs: Mapping[str, Sequence[Part]], tasks: Collection[str]
+    network: Network, wcets: Mapping[str, Sequence[Part]], tasks: Collection[str]
 ) -> list[tuple[str, Fraction]]:
     """What meeting all deadlines takes without each part, where that is less than with it."""
     nearly_none = Fraction(1, changes.STEPS)
@@ -153,7 +156,7 @@ def _relief(
     if present is not None and present.factor >= 1:
         return []  # deadlines are met: a limit of a chain or a queue is not
     found = []
-    for name, members in costs.items():
+    for name, members in wcets.items():
         without = changes.shrunk(network, members, nearly_none)
         scaling = network_scaling(without, tasks, changes.STEPS)
         if scaling is not None and (present is None or scaling.factor > present.factor):
@@ -165,10 +168,10 @@ def _load(network: Network, chosen: Sequence[Part]) -> Fraction:
     """The share of a core that these parts need."""
     load = Fraction(0)
     for task in network.tasks:
-        load += Fraction(task.cost, task.period) if (task.name, "") in chosen else 0
+        load += Fraction(task.wcet, task.period) if (task.name, "") in chosen else 0
         for row in task.rows:
             if (task.name, row.name) in chosen:
-                load += Fraction(row.cost, task.period * row.every)
+                load += Fraction(row.wcet, task.period * row.every)
     return load
 
 
@@ -218,7 +221,7 @@ def _not_enough(rest: Sequence[Change]) -> Iterator[str]:
     longer = f"A longer period (up to {changes.LONGEST} times)"
     words = {
         ChangeKind.ORDER: "Reordering alone was not found to be enough on",
-        ChangeKind.COST: "Shortening one of these alone is not enough",
+        ChangeKind.WCET: "Shortening one of these alone is not enough",
         ChangeKind.PERIOD: f"{longer} of one alone is not enough",
         ChangeKind.PLACE: "Even the most urgent identifier for one of these alone is not enough",
     }
@@ -243,18 +246,18 @@ def _told(change: Change, found: Advice) -> str:
         longer = -(-period * change.factor.numerator // change.factor.denominator)
         after = f"{microseconds(period)} to {microseconds(longer)} us"
         return f"period of {change.name} longer by {share}: {after}"
-    cost = _cost(found, change.name)
-    shorter = cost * change.factor.numerator // change.factor.denominator
-    after = f"{microseconds(cost)} to {microseconds(shorter - 99)} us"
-    return f"execution time of {change.name} less by {share}: {after}"
+    wcet = _wcet(found, change.name)
+    shorter = wcet * change.factor.numerator // change.factor.denominator
+    after = f"{microseconds(wcet)} to {microseconds(shorter - 99)} us"
+    return f"WCET of {change.name} less by {share}: {after}"
 
 
 def _tasks(found: Advice) -> set[str]:
     return {task.name for task in found.network.tasks}
 
 
-def _cost(found: Advice, name: str) -> int:
+def _wcet(found: Advice, name: str) -> int:
     """The time of one of the parts that are called so: they are alike."""
-    task_name, row_name = found.choices.costs[name][0]
+    task_name, row_name = found.choices.wcets[name][0]
     task = next(task for task in found.network.tasks if task.name == task_name)
-    return next((row.cost for row in task.rows if row.name == row_name), task.cost)
+    return next((row.wcet for row in task.rows if row.name == row_name), task.wcet)

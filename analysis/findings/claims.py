@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The claims of a system's certificate, with the windows that show them.
 
 A response keeps the window of its worst job; the certificate needs those of all jobs

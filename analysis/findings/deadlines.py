@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Failed deadlines and overloaded buses as diagnostics, in the words of a compiler."""
 
 from __future__ import annotations
@@ -104,7 +107,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
     """Its own time, the largest interferers and the blocker, each where it is declared."""
     tasks, blocking = analysis.tasks, response.blocking
     task = tasks[response.task.name]
-    notes = [(task.origin, f"it runs for up to {duration(task.budget)} by itself")]
+    notes = [(task.origin, f"it runs for up to {duration(task.wcet)} by itself")]
     if response.jitter:
         notes.append((task.origin, f"its release is late by up to {duration(response.jitter)}"))
     if response.bound is None:
@@ -141,7 +144,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
 
 def taken(share: Interference) -> str:
     """How the time of an interferer adds up."""
-    cost = share.task.plain_cost
+    cost = share.task.plain_wcet
     if share.time == share.releases * cost:
         return f"{share.releases} x {duration(cost)} = {duration(share.time)}"
     return f"{share.releases} releases, not all with every row, take {duration(share.time)}"

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What changed between two versions of a system, and for the better or the worse.
 
 Both are the objects that `analyse --json` prints, so that a version that was kept as such an
@@ -82,14 +85,17 @@ def _plainly(value: object) -> str:
     return str(value)
 
 
-_TIMES = (
-    _Figure("T", "period", Wording.CHANGED, duration),
-    _Figure("D", "deadline", Wording.CHANGED, duration),
-    _Figure("C", "cost", Wording.CHANGED, duration),
-    _Figure("J", "jitter", Wording.CHANGED, duration),
-    _Figure("B", "blocked", Wording.CHANGED, duration),
-    _Figure("R", "response", Wording.WORSE, duration, "no bound"),
-)
+def _times(longest: str) -> tuple[_Figure, ...]:
+    """The times of a task or message, whose C is the figure ``longest``."""
+    return (
+        _Figure("T", "period", Wording.CHANGED, duration),
+        _Figure("D", "deadline", Wording.CHANGED, duration),
+        _Figure("C", longest, Wording.CHANGED, duration),
+        _Figure("J", "jitter", Wording.CHANGED, duration),
+        _Figure("B", "blocked", Wording.CHANGED, duration),
+        _Figure("R", "response", Wording.WORSE, duration, "no bound"),
+    )
+
 
 _PRIORITY = _Figure("priority", "priority", Wording.CHANGED, _plainly)
 _RANK = _Figure("order in arbitration", "rank", Wording.CHANGED, hex)
@@ -97,8 +103,8 @@ _CORE = _Figure("core", "core", Wording.CHANGED, _plainly)
 _BUS = _Figure("bus", "bus", Wording.CHANGED, _plainly)
 
 _ELEMENTS: tuple[tuple[str, str, Sequence[_Figure]], ...] = (
-    ("tasks", "task", (_CORE, _PRIORITY, *_TIMES)),
-    ("messages", "message", (_BUS, _RANK, *_TIMES)),
+    ("tasks", "task", (_CORE, _PRIORITY, *_times("wcet"))),
+    ("messages", "message", (_BUS, _RANK, *_times("cost"))),
     (
         "chains",
         "chain",

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How far one execution time may grow, all others as they are, before something is not kept."""
 
 from __future__ import annotations

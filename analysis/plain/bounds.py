@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Bounds of execution times from a static WCET tool, as plain rows.
 
 Each row names a row of a processor's table, or the function that runs it, with its bound: a

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """From rows to the records of `analysis.core`; what does not fit together is told by line."""
 
 from __future__ import annotations
@@ -156,12 +159,12 @@ def _made(row: RowValues, reading: ReadFile, make: Callable[[RowValues], Made]) 
 
 
 def _row(row: RowValues) -> TableRow:
-    return TableRow(row.name, row.number("cost"), row.number("every", 1), row.number("phase"))
+    return TableRow(row.name, row.number("wcet"), row.number("every", 1), row.number("phase"))
 
 
 def _task(row: RowValues, table: list[TableRow]) -> Task:
-    if not table and not row.number("cost"):
-        raise ValueError(f"cost_us of task {row.name} is missing, and it has no rows")
+    if not table and not row.number("wcet"):
+        raise ValueError(f"wcet_us of task {row.name} is missing, and it has no rows")
     period = row.number("period")
     for column in ("offset", "period") if "offset" in row.numbers else ():
         if not row.exact(column):
@@ -171,7 +174,7 @@ def _task(row: RowValues, table: list[TableRow]) -> Task:
         row.number("priority"),
         period,
         row.number("deadline", period),
-        row.number("cost"),
+        row.number("wcet"),
         row.number("jitter"),
         row.word("core"),
         tuple(table),

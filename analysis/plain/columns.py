@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The kinds of rows, their columns, and how the text in them becomes exact integers."""
 
 from __future__ import annotations
@@ -72,7 +75,7 @@ KINDS: Kinds = {
         "priority": Column(Form.NUMBER, required=True, least=_ANY),
         "period": _PERIOD,
         "deadline": _DEADLINE,
-        "cost": Column(Form.TIME_UP, least=1),
+        "wcet": Column(Form.TIME_UP, least=1),
         "jitter": _LATE,
         "best": _BEST,
         "blocking": _LATE,
@@ -84,7 +87,7 @@ KINDS: Kinds = {
     },
     "row": {
         "task": NEEDED,
-        "cost": LONG,
+        "wcet": LONG,
         "every": _COUNT,
         "phase": Column(Form.NUMBER),
     },

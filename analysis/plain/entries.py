@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rows of plain files, as text: where each stands, and what its columns hold.
 
 A CSV file holds blocks, each a line of column names and the rows under it; an empty line

@@ -1,4 +1,7 @@
-"""Longest execution times that were seen, as plain rows: `task`, `row` or `message` with a cost."""
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Longest execution times that were seen, as plain rows: `task`, `row` or `message`."""
 
 from __future__ import annotations
 
@@ -9,14 +12,14 @@ from .columns import LONG, NEEDED, Kinds, values
 from .entries import Problem, read
 
 KINDS: Kinds = {
-    "task": {"cost": LONG},
-    "row": {"task": NEEDED, "cost": LONG},
-    "message": {"cost": LONG},
+    "task": {"observed": LONG},
+    "row": {"task": NEEDED, "observed": LONG},
+    "message": {"observed": LONG},
 }
 """What the rows may be; a row of a table needs its task."""
 
 
-def budgets(network: Network) -> dict[str, int]:
+def longest_times(network: Network) -> dict[str, int]:
     """What each task, row (``task.row``) and message may take, in ns.
 
     Of a task with a table, the longest of its jobs.
@@ -24,9 +27,9 @@ def budgets(network: Network) -> dict[str, int]:
     found = {}
     for name, item in network.items().items():
         if isinstance(item, Task):
-            jobs = [item.cost + sum(row.cost for row in rows) for rows in item.frames]
-            found[name] = max(jobs, default=item.cost)
-            found |= {f"{name}.{row.name}": row.cost for row in item.rows}
+            jobs = [item.wcet + sum(row.wcet for row in rows) for rows in item.frames]
+            found[name] = max(jobs, default=item.wcet)
+            found |= {f"{name}.{row.name}": row.wcet for row in item.rows}
         else:
             found[name] = item.cost
     return found
@@ -35,7 +38,7 @@ def budgets(network: Network) -> dict[str, int]:
 def observed(text: str, file: str, network: Network) -> dict[str, int] | tuple[Problem, ...]:
     """The longest time seen of each that the file lists, in ns, or what is wrong with it."""
     reading = read(text, file)
-    known = budgets(network)
+    known = longest_times(network)
     found: dict[str, int] = {}
     for entry in reading.entries:
         row = values(entry, reading, KINDS)
@@ -45,7 +48,7 @@ def observed(text: str, file: str, network: Network) -> dict[str, int] | tuple[P
         if name not in known:
             reading.complain(entry.line, f"there is no {entry.kind} {name}")
         else:
-            found[name] = max(found.get(name, 0), row.number("cost"))
+            found[name] = max(found.get(name, 0), row.number("observed"))
     if not reading.problems and not found:
         reading.complain(0, "no execution time was observed")
     return tuple(reading.problems) or found

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The analysis of a plain system, and all of it as one JSON object. Times are whole ns."""
 
 from __future__ import annotations
@@ -115,7 +118,7 @@ def _task(response: Response, found: Holistic, detailed: bool) -> Json:
         "core": task.core,
         "priority": task.priority,
         "period": task.period,
-        "cost": task.plain_cost,
+        "wcet": task.plain_wcet,
         "jitter": response.jitter,
         **_common(task.name, response, found),
         "blocker": response.blocking.user if response.blocking else None,
@@ -124,20 +127,20 @@ def _task(response: Response, found: Holistic, detailed: bool) -> Json:
         "offset": task.offset,
         "by_offsets": response.alignment is not None,
         "rows": [
-            {"row": row.row.name, "cost": row.row.cost, "response": row.bound}
+            {"row": row.row.name, "wcet": row.row.wcet, "response": row.bound}
             for row in response.rows
         ],
     }
     if detailed:
-        costs = response.overheads
+        extra = response.overheads
         answer["interference"] = [
             {"task": one.task.name, "releases": one.releases, "time": one.time}
             for one in response.interference
         ]
         answer["overheads"] = {
-            "switches": costs.switch_time,
-            "ticks": costs.tick_time,
-            "releases": costs.release_time,
+            "switches": extra.switch_time,
+            "ticks": extra.tick_time,
+            "releases": extra.release_time,
         }
     return answer
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A response against its deadline: a row of a report, with what its bar is made of."""
 
 from __future__ import annotations
@@ -6,6 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ravenchart.analysis.core.holistic import Holistic, Network
+from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.findings.deadlines import no_bound_reason
 
 from .sentences import response_parts
@@ -33,7 +37,7 @@ def row_of(network: Network, found: Holistic, name: str) -> dict[str, Any]:
         "name": name,
         "response": response,
         "item": item,
-        "cost": item.cost,
+        "longest": item.wcet if isinstance(item, Task) else item.cost,
         "deadline": deadline,
         "jitter": item.jitter + found.inherited.get(name, 0),
         "bound": bound,

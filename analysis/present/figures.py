@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """All that was found for a model, as one JSON object: that of plain files, and more.
 
 Times are whole ns. A response without a bound is null, with the reason.
@@ -17,7 +20,7 @@ from ravenchart.analysis.plain.results import (
     latency_figures,
 )
 from ravenchart.analysis.system.authentication import authenticated
-from ravenchart.analysis.system.commands import costs
+from ravenchart.analysis.system.commands import command_times
 from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import ratio
@@ -43,7 +46,7 @@ def figures(analysis: Analysis) -> Json:
                 "processor": processor.name,
                 "period": slot.timing.period,
                 "deadline": slot.timing.deadline,
-                "cost": slot.timing.wcet,
+                "wcet": slot.timing.wcet,
                 "every": slot.divisor,
                 "phase": slot.phase,
                 "response": rows.get(slot.element),
@@ -64,7 +67,7 @@ def figures(analysis: Analysis) -> Json:
             }
             for item in system.objects
         ],
-        "commands": [asdict(cost) for cost in costs(analysis)],
+        "commands": [asdict(one) for one in command_times(analysis)],
         "protected": [
             {
                 "message": row.message.name,

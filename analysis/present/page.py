@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the pages of reports have in common: filters, contents, and the one page around them."""
 
 from __future__ import annotations

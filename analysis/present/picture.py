@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The component view as an SVG picture, laid out in columns; colours come from the page."""
 
 from __future__ import annotations

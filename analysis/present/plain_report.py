@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The report of a plain file: what the report of a model says, as far as the file tells it."""
 
 from __future__ import annotations
@@ -57,9 +60,9 @@ def render_plain(
 
 
 def _task_row(result: PlainResult, name: str) -> dict[str, object]:
-    """The row of a task; its cost is the longest of all rows together."""
+    """The row of a task; C is the WCET of all its rows together."""
     row = row_of(result.system.network, result.found, name)
-    return row | {"cost": row["item"].plain_cost}
+    return row | {"longest": row["item"].plain_wcet}
 
 
 def _tightness(slack: int | None) -> tuple[bool, int]:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Pictures of an analysis: room left, critical instants, hops of chains, observed reactions."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The report: one HTML file that needs nothing else, for the screen and for paper."""
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.findings.differences import Differences
 from ravenchart.analysis.system.authentication import authenticated
-from ravenchart.analysis.system.commands import costs
+from ravenchart.analysis.system.commands import command_times
 from ravenchart.analysis.system.graph import component_view
 from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.system.network import frame_length
@@ -120,26 +123,26 @@ class RunReport:
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """Longest execution seen of one row, beside the worst case that the model claims."""
+    """Longest execution seen of one row, beside its WCET."""
 
     row: str
     observed: int
-    claimed: int
+    wcet: int
 
     @property
     def exceeded(self) -> bool:
-        """What was seen is longer than the claim."""
-        return self.observed > self.claimed
+        """What was seen is longer than the WCET."""
+        return self.observed > self.wcet
 
 
 def executions(analysis: Analysis, seen: Observation) -> tuple[Execution, ...]:
-    """The rows that ran, closest to their claim first."""
+    """The rows that ran, closest to their WCET first."""
     rows = [
         Execution(slot.element, seen.executions[slot.element], slot.timing.wcet)
         for slot in analysis.system.slots
         if slot.element in seen.executions
     ]
-    return tuple(sorted(rows, key=lambda row: -Fraction(row.observed, max(1, row.claimed))))
+    return tuple(sorted(rows, key=lambda row: -Fraction(row.observed, max(1, row.wcet))))
 
 
 def _withheld(analysis: Analysis, bounds: Mapping[str, int | None], late: Ns, stolen: Ns) -> Ns:
@@ -205,7 +208,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> dict[str, Any]:
         "advice": advice.lines(advice.of_model(analysis)),
         "tasks": [_item(analysis, n) for n in analysis.worst_first() if n in analysis.tasks],
         "buses": [_bus(analysis, bus) for bus in system.buses],
-        "commands": tuple(costs(analysis)),
+        "commands": tuple(command_times(analysis)),
         "limited": [
             (chain.name, hops_of(found), found, chain_picture(found))
             for chain, found in analysis.limited
@@ -244,7 +247,7 @@ def _item(analysis: Analysis, name: str) -> dict[str, Any]:
         "rows": _rows(analysis, name),
     }
     if name in analysis.tasks:
-        row["cost"] = analysis.tasks[name].budget
+        row["longest"] = analysis.tasks[name].wcet
     return row
 
 

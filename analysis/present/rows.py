@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rows and pictures of a report that models and plain files have in common."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The outcome of an analysis in sentences: verdict, loads, room left, and what limits it."""
 
 from __future__ import annotations
@@ -64,7 +67,7 @@ def overload_lines(loads: Mapping[str, Fraction]) -> tuple[str, ...]:
 
 
 def load_lines(analysis: Analysis) -> tuple[str, ...]:
-    """The load of each core and bus, how far the budgets may grow, and what limits them."""
+    """The load of each core and bus, how far the execution times may grow, and what limits them."""
     system = analysis.system
     lines = list(overload_lines(analysis.loads))
     lines += [
@@ -166,7 +169,7 @@ def _task_parts(response: Response) -> list[TextPart]:
     for family, members in families(by_name).items():
         each = [by_name[member] for member in members]
         releases = sum(share.releases for share in each)
-        costs = {share.task.plain_cost for share in each}
+        costs = {share.task.plain_wcet for share in each}
         time = sum(share.time for share in each)
         plain = len(costs) == 1 and releases * max(costs) == time
         cost = microseconds(max(costs))

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The terminal table: the verdict first, then one row a task or message, worst first.
 
 It fits 80 columns and never says anything by colour alone.
@@ -10,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ravenchart import terminal
+from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.system.timing import Analysis, Verdict
 from ravenchart.analysis.units import microseconds
@@ -67,10 +71,9 @@ def _cells(analysis: Analysis, name: str) -> tuple[str, ...]:
     """The cells of one task or message."""
     response = analysis.found.responses[name]
     item = analysis.network.items()[name]
-    task = analysis.tasks.get(name)
-    cost = item.cost if task is None else task.budget
+    longest = analysis.tasks[name].wcet if isinstance(item, Task) else item.cost
     jitter = item.jitter + analysis.found.inherited.get(name, 0)
-    times = (item.period, item.deadline, cost, jitter, response.blocked)
+    times = (item.period, item.deadline, longest, jitter, response.blocked)
     bound, slack = analysis.found.from_event(name), analysis.slack(name)
     return (
         name,

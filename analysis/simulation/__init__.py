@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Discrete-event simulation of tasks and buses in virtual time, with integer ticks.
 
 It shares the records of `analysis.core` (what a system is) and none of its equations, so

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The event queue: arrivals, what completes and what that releases, in order of time."""
 
 from __future__ import annotations

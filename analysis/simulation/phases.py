@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """When things arrive and how late they are released: what the analysis leaves open."""
 
 from __future__ import annotations
@@ -103,7 +106,7 @@ def _chance_inside(
     """The sections in any order, as many as fit a job, with a random rest between them."""
     found = []
     at = 0
-    least = min(task.cost + sum(row.cost for row in rows) for rows in task.frames)
+    least = min(task.wcet + sum(row.wcet for row in rows) for rows in task.frames)
     for section in chance.sample(sections, len(sections)):
         room = least - at - section.length
         if room >= 0:

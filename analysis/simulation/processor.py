@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One core: preemptive fixed priorities, first-in first-out among equals, immediate ceilings."""
 
 from __future__ import annotations
@@ -66,10 +69,10 @@ def segments_of(
 
 def _rows(task: Task, frame: int) -> Iterator[tuple[int, str]]:
     """Where each row ends within the job, the task's own work before all of them."""
-    at = task.cost
+    at = task.wcet
     yield at, ""
     for row in task.frames[frame]:
-        at += row.cost
+        at += row.wcet
         yield at, row.name
 
 

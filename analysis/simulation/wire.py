@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One CAN bus: the most urgent frame on offer is sent, and nothing interrupts it but faults."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The phases that bring one task or message to its bound, where theory has such phases.
 
 All rivals are released together at one instant, each with its whole jitter, and from then

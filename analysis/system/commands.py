@@ -1,4 +1,7 @@
-"""What each required command costs: in its caller's budget, or until somebody else has done it.
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The times of each required command: in its caller's WCET, or until somebody else has done it.
 
 A direct call is part of its caller's execution. A queued one waits for the row that serves
 it, and a call to another node for frames and receptions besides. All times count from the
@@ -20,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Cost:
+class CommandTimes:
     """A required command of a row; times in ns, None where there is no bound.
 
     ``how`` it is provided: ``direct``, ``queued``, over a bus, ``copied`` or by a stand-in.
@@ -30,8 +33,8 @@ class Cost:
     command: str
     provider: str
     how: str
-    budget: int
-    """Of the caller, for one call."""
+    wcet: int
+    """Of one call: the part of its caller's."""
     executed: int | None = 0
     """Until the provider's row has executed it."""
     answered: int | None = None
@@ -42,27 +45,27 @@ class Cost:
     """Whether somebody else executes it."""
 
 
-def costs(analysis: Analysis) -> Iterator[Cost]:
+def command_times(analysis: Analysis) -> Iterator[CommandTimes]:
     """Every required command, for each row that uses it."""
     for binding in analysis.system.bindings:
         need = binding.need
         component = analysis.system.instance(binding.instance).component
         for row in component.runnables():
             if need.name in (row.reads if need.is_read else row.sends):
-                yield _cost(analysis, binding, f"{binding.instance}.{row.name}")
+                yield _times(analysis, binding, f"{binding.instance}.{row.name}")
 
 
-def _cost(analysis: Analysis, binding: Binding, caller: str) -> Cost:
+def _times(analysis: Analysis, binding: Binding, caller: str) -> CommandTimes:
     need, provider = binding.need, binding.provider
     if isinstance(provider, Device):
-        cost = wcet_of(provider, need.name)
-        return Cost(caller, need.name, provider.name, "direct", cost)
+        wcet = wcet_of(provider, need.name)
+        return CommandTimes(caller, need.name, provider.name, "direct", wcet)
     if isinstance(provider, Remote):
         message = next(m for m in analysis.system.messages if m.name == provider.request)
         way = (Carried(provider.request), provider.served)
         whole = {chain.name: found.reaction for chain, found in analysis.limited}
         answered = whole.get(provider.request) if provider.reply else None
-        return Cost(
+        return CommandTimes(
             caller,
             need.name,
             provider.served,
@@ -76,17 +79,17 @@ def _cost(analysis: Analysis, binding: Binding, caller: str) -> Cost:
     if isinstance(provider, RemoteRead):
         message = next(m for m in analysis.system.messages if m.name == provider.message)
         age = analysis.latency((Carried(provider.message), caller)).age
-        name, how = str(message.source), f"over {message.bus}"
-        return Cost(caller, need.name, name, how, 0, answered=age, limit=provider.time_limit)
+        name, how, limit = str(message.source), f"over {message.bus}", provider.time_limit
+        return CommandTimes(caller, need.name, name, how, 0, answered=age, limit=limit)
     if isinstance(provider, Server):
         if published_by(binding) is not None:
             name = f"{provider.instance}.{published_by(binding)}"
-            return Cost(caller, need.name, name, "copied", 0)
+            return CommandTimes(caller, need.name, name, "copied", 0)
         served = f"{provider.instance}.{provider.interface.server}"
         found = from_release(analysis, (caller, served))
-        return Cost(caller, need.name, served, "queued", 0, found, waits=True)
+        return CommandTimes(caller, need.name, served, "queued", 0, found, waits=True)
     stand_in = "" if need.stand_in is None else f"{binding.instance}.{need.stand_in.item}"
-    return Cost(caller, need.name, stand_in or "nothing", "stand-in", 0)
+    return CommandTimes(caller, need.name, stand_in or "nothing", "stand-in", 0)
 
 
 def from_release(analysis: Analysis, way: Sequence[Stop]) -> int | None:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The critical instant of a task or frame as a schedule: the worst that its bound stands for.
 
 Everything that can delay the task is released when its busy period begins, each with

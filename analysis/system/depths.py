@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The queues of a system: what may wait in each, against the depth that the model gives it.
 
 Every bound of a response or latency supposes that nothing is lost. Of a message that is

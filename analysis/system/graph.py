@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The dependencies of a system as a graph, and the chains through it.
 
 Nodes are ids: ``owner.name`` for rows, ports and data, `Carried` for messages, and for

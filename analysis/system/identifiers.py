@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Orders of CAN identifiers that meet all deadlines of a bus, for `identifiers: audsley`.
 
 Audsley's assignment over the analysis of the bus alone (`core.assignment`). A message

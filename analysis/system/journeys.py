@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How long values took along the chains of a system in a run, from its trace.
 
 A journey begins when the first row of a chain runs, or a message from outside arrives,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Latencies from end to end through the rows of a system.
 
 A way of values through messages, ports, rows and data is taken hop by hop. A row
@@ -115,7 +118,7 @@ class Latencies:
             response = found.responses[task.name]
             bounds = {r.row.name: r.bound for r in getattr(response, "rows", ())}
             for row in task.rows:
-                item = _item(row.name, task.period * row.every, row.cost)
+                item = _item(row.name, task.period * row.every, row.wcet)
                 items.append((item, bounds.get(row.name)))
         released = {n: by for n, by in network.released_by.items() if n not in _sending(system)}
         periods = {task.name: task.period for task in network.tasks}  # others where those are tried

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A `System` as the records of `analysis.core`: the one place that knows both.
 
 A processor is a task whose rows are those of its table; its context switches
@@ -63,7 +66,7 @@ def _task(task: model.Task, system: System) -> Task:
         priority=task.priority,
         period=task.period,
         deadline=task.deadline,
-        cost=0 if rows else task.budget,
+        wcet=0 if rows else task.wcet,
         jitter=task.jitter,
         core=system.node(task.node).core_name(task.core),
         rows=rows,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What one run of a controller showed: its trace file, read with the generator's map.
 
 The file holds one record a line, times in nanoseconds from the controller's start:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the end-to-end protection of each message comes to, in numbers.
 
 The residual error rate is that of IEC 61784-3 for a black channel: nothing but the protection

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How soon the silence of each processor is found, or that nothing looks for it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The timing of a whole system: every response, latency and load, from `analysis.core`."""
 
 from __future__ import annotations

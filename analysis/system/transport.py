@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How long a value takes that travels in several frames (ISO-TP), from the bounds of its frames.
 
 The row of the sender makes a segment at the end of an execution, at most one in so many

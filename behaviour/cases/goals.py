@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What test cases of a component's charts shall show, and which executions show it.
 
 Goals are those of structural coverage (DO-178C, 6.4.4.2) on the chart as modelled: each

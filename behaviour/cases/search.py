@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A search for executions that meet the goals: guided by what is still to be shown, and repeatable.
 
 The interpreter is branched at instants where something new was shown or where the system is in a

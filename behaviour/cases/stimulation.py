@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a search may do to a system from outside: its events, and values for its input ports."""
 
 from __future__ import annotations

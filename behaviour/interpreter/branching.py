@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A system under way, branched: two that go on from the same situation by themselves."""
 
 from __future__ import annotations

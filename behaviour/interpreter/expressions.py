@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Expressions and flows, evaluated as they stand.
 
 A truth value is the literal of `Boolean` that it is in the model: ``"True"`` or

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A whole system in virtual time.
 
 At each instant everything that is due runs, the processor of the highest

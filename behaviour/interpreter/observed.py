@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A region whose steps say of each transition from an active state why it fired or did not.
 
 Everything is read where the step itself has read it: after its occurrence was taken, before

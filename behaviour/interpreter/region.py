@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One top-level region, interpreted: its configuration, and what a step does to it.
 
 The configuration says of every place what is active in it. A choice, history or

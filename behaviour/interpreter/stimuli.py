@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What comes from outside while a model runs: the file of `--events`.
 
     - {at: 50 ms, raise: motor.Start}

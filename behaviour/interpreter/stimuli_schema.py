@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The JSON Schema of event files, for editors and other tools."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Executed behaviours as text and as JSON: the same from interpreter and program.
 
 One line is one step of one region: `0.020 motor.Motion: Idle.exit, T3.effect,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules of behaviour: what the charts of a model can and cannot come to.
 
 `findings` looks at each component by search and by z3. Nothing is said to be

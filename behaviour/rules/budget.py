@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How much work the check of a model may take: counted, so that it is the same each time.
 
 The solver's own count of its work is not taken: what one question takes there depends on the

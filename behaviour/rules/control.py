@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules of one region's control: what is never entered or fired, what gets stuck."""
 
 from __future__ import annotations

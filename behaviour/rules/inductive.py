@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Invariants as contracts of the code: which each move of a region keeps, and with which facts.
 
 An invariant may hold in every reachable situation, and still a transition may seem to break it

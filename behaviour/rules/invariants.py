@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules of declared invariants: proved, violated with a trace, or not inductive.
 
 An invariant is proved when the reachable nodes of the threads exclude it, or when

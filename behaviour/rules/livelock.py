@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rule of eventless steps: completions and conditions that go on for ever.
 
 A cycle of such steps is a livelock when one valuation of all that the region

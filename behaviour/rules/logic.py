@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Types and expressions as terms of the solver z3.
 
 Integers are bounded terms ``Int``, enumerations ``Int`` over the positions of their

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The single moves of a region: what each transition or segment does, guards and data as terms.
 
 A step of the model is a series of moves: a transition in each lane, each with the segments that

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a component is set in: events from outside, parameters, activities as regions."""
 
 from __future__ import annotations

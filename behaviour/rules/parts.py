@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Parts of configurations: the regions of an orthogonal state, each looked at by itself.
 
 A chart with orthogonal states has as many configurations as the product of their regions. Where

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is known of a region whose configurations, or their parts, are known."""
 
 from __future__ import annotations

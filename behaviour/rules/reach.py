@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the regions of a component can come to, under every interleaving.
 
 Each region is looked at alone, against all that the others may do: the states

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """When the rows of an instance run: the k-th execution of a row, and what comes before it.
 
 Every execution is taken to need no time, so that it happens at its release: by

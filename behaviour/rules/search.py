@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Search for a way from the start to a bad situation that some schedule really takes.
 
 The regions and flows that matter are run together, one step at a time, in every

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One step of a region, with data as terms: what can come of it, and when.
 
 A `OpenStep` follows docs/semantics.md like an interpreter does. Where it has to know

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One region as it was seen so far: its nodes, its steps, and how finely it is looked at."""
 
 from __future__ import annotations

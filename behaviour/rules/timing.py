@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Whether a schedule takes a way: the path formula of a search's steps.
 
 Each step happens in some execution of its row; the executions that are not on the

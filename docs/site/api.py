@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The API pages of the documentation: one for each Ada package, one for each Python package.
 
 And one that leads to the evidence of the examples.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The documentation as a site: `make site` builds it with Sphinx into build/site.
 
 The sources are the pages of the repository themselves, so that links between them, and from

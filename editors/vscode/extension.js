@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // Starts `ravenchart language-server` and joins it to the editor.
 "use strict";
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The drive of drive_over_can.yaml on the bench: four axes, by the frames of its data sheet.
 
 It takes set-points (0x201) and reports positions (0x181) every 5 ms, each with four words of

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Who calls what: the rows behind the bindings of a system."""
 
 from __future__ import annotations

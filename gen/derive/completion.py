@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What follows from a valid model: tables, priorities, tasks and shared objects.
 
 All times in ns, every figure on the safe side.
@@ -90,7 +93,7 @@ def tasks_of(system: System) -> tuple[Task, ...]:
             period=processor.period,
             offset=processor.offset,
             deadline=processor.deadline,
-            budget=processor.wcet,
+            wcet=processor.wcet,
             priority=processor.priority,
             slots=processor.slots,
             sporadic=processor.released_by is not None,
@@ -115,7 +118,7 @@ def tasks_of(system: System) -> tuple[Task, ...]:
                 period=message.period,
                 offset=Ns(0),
                 deadline=message.limit,
-                budget=bus.driver_wcet,
+                wcet=bus.driver_wcet,
                 priority=top + 1,
                 released_by=releaser,
                 core=driver_core(system, bus, node),
@@ -134,7 +137,7 @@ def tasks_of(system: System) -> tuple[Task, ...]:
                     period=host.supervision.period,
                     offset=Ns(0),
                     deadline=host.supervision.period,
-                    budget=host.supervision.wcet,
+                    wcet=host.supervision.wcet,
                     priority=above,
                     timed=True,
                 )
@@ -148,7 +151,7 @@ def tasks_of(system: System) -> tuple[Task, ...]:
                     period=host.probe.period,
                     offset=Ns(0),
                     deadline=host.probe.deadline,
-                    budget=host.probe.wcet,
+                    wcet=host.probe.wcet,
                     priority=above + (host.supervision is not None),
                     timed=True,
                 )

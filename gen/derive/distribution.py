@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Components on several nodes: what travels between them, and what runs on each.
 
 A connection whose ends are on different nodes becomes a message of the bus; neither

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """CAN identifiers for messages that have none given, in an order of urgency.
 
 By deadline, as for tasks (Leung and Whitehead 1982), the more urgent goes before the less

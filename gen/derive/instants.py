@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """When processors of a node are released together: by their offsets, over a whole cycle.
 
 Release k of a periodic processor is due at the epoch + offset + k periods, and late by its

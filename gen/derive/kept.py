@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is known of a data item whenever it is read, beside its type.
 
 An activity that requires a condition must be given data that meet it. A condition on one data

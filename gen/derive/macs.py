@@ -1,4 +1,7 @@
-"""What the MACs of authenticated messages add to the execution times of rows."""
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What the MACs of authenticated messages add to the WCETs of rows."""
 
 from __future__ import annotations
 
@@ -24,12 +27,12 @@ def with_macs(system: System) -> System:
             sent[row] = sent.get(row, 0) + _wcet(message)
 
     def longer(slot: Slot, processor: Processor) -> Slot:
-        cost = sent.get(slot.element, 0)
+        macs = sent.get(slot.element, 0)
         if slot.work is Work.BUS_RECEIVE:
             received = system.received(slot.owner, processor.node)
-            cost = max((_wcet(one.message) for one in received), default=0)
-        timing = replace(slot.timing, wcet=Ns(slot.timing.wcet + cost))
-        return replace(slot, timing=timing) if cost else slot
+            macs = max((_wcet(one.message) for one in received), default=0)
+        timing = replace(slot.timing, wcet=Ns(slot.timing.wcet + macs))
+        return replace(slot, timing=timing) if macs else slot
 
     processors = tuple(
         replace(one, slots=tuple(longer(slot, one) for slot in one.slots))

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Commands of tasks on other nodes: the messages that carry calls, replies and what is read.
 
 As with connections (`distribution`), neither component knows. The calls of a command by an

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The protected objects of a program: who calls them, and their ceilings."""
 
 from __future__ import annotations
@@ -237,7 +240,7 @@ def too_long(system: System) -> Iterator[tuple[SharedObject, Task]]:
     tasks = {task.element: task for task in system.tasks}
     for item in system.objects:
         for user in item.users:
-            if user in tasks and tasks[user].budget < item.section:
+            if user in tasks and tasks[user].wcet < item.section:
                 yield item, tasks[user]
 
 

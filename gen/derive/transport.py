@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The flow control of values that travel in several frames: a message back to the sender.
 
 The port region of the receiver sends it at the end of an execution, one at most.

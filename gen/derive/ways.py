@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The ways that values take through messages, ports, rows and data, for chains.
 
 A row leads to what it writes, to the

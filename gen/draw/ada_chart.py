@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The picture of a chart as generated Ada text declares it.
 
 It shows what the declared form says and no more: guards in Ada, targets down to the

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The declared form of a chart, read from generated Ada text.
 
 Of the specs of a component and of one of its regions this reads the types of the

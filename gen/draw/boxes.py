@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Which instances a drawing shows in one box: those inside a composite, as their paths say."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A picture of a chart as a graph for Graphviz, drawn as UML draws it.
 
 A composite state is a cluster, its orthogonal regions are dashed clusters in

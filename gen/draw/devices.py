@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Interfaces, devices and bindings in the drawing of a system's structure."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Graphs in the language of Graphviz: typed statements and one printer."""
 
 from __future__ import annotations

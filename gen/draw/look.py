@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How drawings look: colours, fonts, and the room that text gets."""
 
 INK, PAPER = "#222222", "#ffffff"

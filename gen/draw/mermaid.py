@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A picture of a chart as a Mermaid state diagram (``stateDiagram-v2``)."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Which way a chart is read: from its initial states onward.
 
 An arrow that leads back is given to Graphviz turned round, so that what comes

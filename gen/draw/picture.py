@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A chart as it is drawn: shapes, areas and arrows whose words are text already.
 
 Every back end draws a `Picture`. `picture` makes one of a region of the model;

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The component structure of a system as a graph for Graphviz.
 
 Each node of the hardware is a cluster with its instances, their ports,

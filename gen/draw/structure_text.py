@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The component structure of a system as PlantUML and as Mermaid text."""
 
 from __future__ import annotations

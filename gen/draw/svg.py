@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What Graphviz makes of DOT text, as the project keeps it: no version, and whose picture it is."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Expressions, flows and triggers as text, in the model's own syntax.
 
 What `expression` gives reads back as the same expression. Actions are written

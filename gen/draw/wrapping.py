@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Labels broken into lines where a reader would break them."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Names that would clash in the generated program, found in the program itself.
 
 Model names become Ada names beside those that the generator adds, such as

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """From a complete `System` to the files of its program; pure: no file is touched here."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Why each code matters, with what is wrong and its correction.
 
 The one source of `ravenchart explain` and docs/errors.md, beside the table of meanings in

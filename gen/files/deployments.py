@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A model and one of its deployments, as one path: `model.yaml@bench`."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """From a tree to checked forms, with every mistake of form reported at once.
 
 What is wrong is taken out of the tree, so that the rest can be looked at; what

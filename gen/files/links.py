@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Which element of a model names which requirements: a table beside the `System`.
 
 Read from the forms, so nothing that the emitter, the analysis or the rules see depends on it.

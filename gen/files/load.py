@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A model's files to checked forms, and what is wrong in them.
 
 The only module that reads files, through the function it is given.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """YAML text to a tree of located values, within limits.
 
 Built from PyYAML's parser events, not by a loader: no tags, anchors or

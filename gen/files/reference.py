@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Reference pages written from the tables that the loader itself uses.
 
 `python -m ravenchart.gen.files.reference` writes docs/model.schema.json, docs/model-reference.md

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The file format of models: every key, what it means, its units and its range.
 
 The one source for the validation of files, for docs/model.schema.json and for

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the file format is made of: values with their limits, and located mappings.
 
 The forms themselves are in `schema`.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Nodes, what runs on them, and how it is connected, in the file format."""
 
 from __future__ import annotations

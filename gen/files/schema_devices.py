@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The forms of commands and devices: dictionary, interfaces, device types, bindings."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The file format of buses and of what travels on them: a part of `schema`."""
 
 from __future__ import annotations

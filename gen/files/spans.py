@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """YAML text to a tree whose nodes know which characters they are made of.
 
 `located` reads what a file means; this reads where it is written, from the events of the same

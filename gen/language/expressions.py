@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Expressions as text to terms with places: the grammar, and nothing of types.
 
     height = if homed then position.low + 1 else 0      (an example)

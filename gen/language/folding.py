@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Expressions without what decides itself: constants computed, redundant operators left out.
 
 The Ada compiler warns of such parts, and warnings are errors. So nothing of this form

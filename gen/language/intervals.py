@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Integer intervals: what an operation can yield, given what its operands can be."""
 
 from __future__ import annotations

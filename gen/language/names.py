@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Names: what may be one, what it would clash with, and what was meant."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What conditions say about names: narrower bounds where they are known to hold."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Quantities as text: durations, sizes and bit rates, exact or refused.
 
 All durations are integers in nanoseconds.

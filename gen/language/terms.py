@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Types, expressions and flows: the terms that a model is written in.
 
 Every element carries the `Origin` it was read from. Expressions are resolved

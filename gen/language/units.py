@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Units of measure as models write them: `mm/s`, or `0.1 degC` where one count is so much."""
 
 from __future__ import annotations

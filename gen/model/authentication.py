@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Authentication of a message: what stands at the end of its frame (AUTOSAR SecOC)."""
 
 from __future__ import annotations

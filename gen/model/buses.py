@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Buses, the messages on them, and what a node receives of them."""
 
 from __future__ import annotations
@@ -27,7 +30,7 @@ class BusErrors:
 
 @dataclass(frozen=True, slots=True)
 class Bus:
-    """A CAN bus and what its driver costs on a node: one frame in, one frame out."""
+    """A CAN bus and the WCETs of its driver on a node: one frame in, one frame out."""
 
     name: str
     origin: Origin

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What an analysis claims of a system, as the timing certificate takes it."""
 
 from __future__ import annotations

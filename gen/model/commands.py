@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Commands, interfaces and devices, as the system holds them; vocabulary of the cisst papers.
 
 A *device* has no task: its commands are procedures of a driver, called directly. A *task*
@@ -354,5 +357,5 @@ class Binding:
 
 
 def wcet_of(provider: Device | Server | Remote | RemoteRead | None, command: str) -> Ns:
-    """What a call adds to the budget of its caller; only a driver's work is counted apart."""
+    """What a call adds to the WCET of its caller; only a driver's work is counted apart."""
     return provider.command(command).wcet if isinstance(provider, Device) else Ns(0)

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Component types: ports, events, data, regions and activities, resolved and typed.
 
 Parts of a `System`; see `model`.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The nodes of a system: what the platform takes of each, and who watches over it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """End-to-end protection of a message: the published profiles in numbers (AUTOSAR E2E)."""
 
 from __future__ import annotations

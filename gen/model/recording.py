@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a model records: ports and data items whose values enter the trace, and charts."""
 
 from __future__ import annotations

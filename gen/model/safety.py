@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Invariants that are contracts of the generated code, with what makes them inductive.
 
 `behaviour.rules.inductive` finds them, and the emitter of charts writes them: an invariant over

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How a value is laid out in a CAN frame: where the bits of each scalar of it stand.
 
 Bit 0 is the least significant bit of byte 0, bit 8 that of byte 1, and so on. An Intel

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Statecharts as the model holds them: vertices, transitions and their tree.
 
 A top-level region is a tree: a composite state has one nested region, an

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The one intermediate representation: a `System`, frozen, typed and located.
 
 The loader builds it, `rules` checks it, `derive` completes it (priorities,
@@ -92,7 +95,7 @@ class Processor:
     on_deadline_miss: tuple[tuple[str, str], ...]
     """(instance, event) raised when a release completes after its deadline."""
     on_overrun: tuple[tuple[str, str], ...] = ()
-    """(instance, event) raised when a row used more than its budget; empty: nobody looks."""
+    """(instance, event) raised when a row ran for longer than its WCET; empty: nobody looks."""
     core: int = 1
     """The core of the node that it runs on."""
     on_silence: tuple[tuple[str, str], ...] = ()
@@ -123,7 +126,7 @@ class Processor:
 
     @property
     def wcet(self) -> Ns:
-        """Sum of the table's budgets: no release needs more."""
+        """Sum of the WCETs of the table: no release needs more."""
         return Ns(sum(slot.timing.wcet for slot in self.slots))
 
 
@@ -131,7 +134,7 @@ class Processor:
 class Task:
     """One schedulable task as the analysis sees it: a processor, or a driver's work.
 
-    ``budget`` is the longest execution of a job, overheads apart: of one that runs
+    ``wcet`` is the longest execution of a job, overheads apart: of one that runs
     all of ``slots`` where there are some. ``released_by`` names the task or message
     whose completion releases it; ``jitter`` and ``deadline`` count from the event
     that begins that chain. ``timed``: the node's timer releases it. A job suspends
@@ -145,7 +148,7 @@ class Task:
     period: Ns
     offset: Ns
     deadline: Ns
-    budget: Ns
+    wcet: Ns
     priority: int
     jitter: Ns = NO_TIME
     slots: tuple[Slot, ...] = ()

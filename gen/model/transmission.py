@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Transmission modes of messages (AUTOSAR COM): when a frame goes, besides periodically."""
 
 from __future__ import annotations

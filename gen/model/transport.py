@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Values that travel as several classic frames (ISO-TP, ISO 15765-2, normal addressing)."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What provides each required command, and what of the system follows from that.
 
 Everything is decided here: the program has no test for what is there. A stand-in that
@@ -237,7 +240,7 @@ def _axes(count: int) -> str:
 
 
 def with_bindings(system: System, bindings: tuple[Binding, ...], polls: tuple[Poll, ...]) -> System:
-    """The system with its bindings: stand-ins that nobody needs gone, calls in the budgets."""
+    """The system with its bindings: stand-ins that nobody needs gone, calls in the WCETs."""
     of: defaultdict[str, list[Binding]] = defaultdict(list)
     for binding in bindings:
         of[binding.instance].append(binding)
@@ -247,11 +250,11 @@ def with_bindings(system: System, bindings: tuple[Binding, ...], polls: tuple[Po
         replace(one, component=_pruned(one.component, of[one.name])) for one in system.instances
     )
     kept = {i.name: {row.name for row in i.component.runnables()} | {"ports"} for i in instances}
-    costs = {i.name: _costs(i.component, of[i.name]) for i in instances}
+    added = {i.name: _times_of_calls(i.component, of[i.name]) for i in instances}
     for poll in polls:
-        ports = costs[poll.instance].get("ports", Ns(0))
-        costs[poll.instance]["ports"] = Ns(ports + poll.wcet)
-    processors = (_of_kept(one, kept, costs) for one in system.processors)
+        ports = added[poll.instance].get("ports", Ns(0))
+        added[poll.instance]["ports"] = Ns(ports + poll.wcet)
+    processors = (_of_kept(one, kept, added) for one in system.processors)
     used = [b.provider for b in bindings if isinstance(b.provider, Device)]
     used += [poll.device for poll in polls]
     return replace(
@@ -298,8 +301,8 @@ def _in_use(component: Component, instances: Iterable[Instance]) -> Component:
     )
 
 
-def _costs(component: Component, bindings: Sequence[Binding]) -> dict[str, Ns]:
-    """What the devices that each row calls add to its budget.
+def _times_of_calls(component: Component, bindings: Sequence[Binding]) -> dict[str, Ns]:
+    """What the devices that each row calls add to its WCET.
 
     A region reads once in an execution, and calls once in each of its steps; what serves
     requests does both for each.
@@ -320,19 +323,19 @@ def _costs(component: Component, bindings: Sequence[Binding]) -> dict[str, Ns]:
 
 
 def _of_kept(
-    processor: Processor, kept: dict[str, set[str]], costs: dict[str, dict[str, Ns]]
+    processor: Processor, kept: dict[str, set[str]], added: dict[str, dict[str, Ns]]
 ) -> Processor:
-    """A processor with the rows that are left, and what they call in their budgets."""
+    """A processor with the rows that are left, and what they call in their WCETs."""
     left = [s for s in processor.slots if s.owner not in kept or s.name in kept[s.owner]]
     period = processor.period
     if left and period == table_period(processor.slots):
         period = table_period(left) or period
-    slots = tuple(_with_calls(slot, costs.get(slot.owner, {})) for slot in left)
+    slots = tuple(_with_calls(slot, added.get(slot.owner, {})) for slot in left)
     return replace(processor, period=period, slots=slots)
 
 
-def _with_calls(slot: Slot, costs: dict[str, Ns]) -> Slot:
-    cost = costs.get(slot.name, Ns(0))
-    if not cost:
+def _with_calls(slot: Slot, added: dict[str, Ns]) -> Slot:
+    calls = added.get(slot.name, Ns(0))
+    if not calls:
         return slot
-    return replace(slot, timing=replace(slot.timing, wcet=Ns(slot.timing.wcet + cost)))
+    return replace(slot, timing=replace(slot.timing, wcet=Ns(slot.timing.wcet + calls)))

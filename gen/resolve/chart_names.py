@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The names of a chart's vertices: what can be looked up before anything is resolved."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """States and pseudostates resolved, with their regions and where these begin."""
 
 from __future__ import annotations

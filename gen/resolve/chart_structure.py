@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What makes a chart a chart: rules on pseudostates, on which everything else relies.
 
 They are checked as soon as a region is resolved. One that breaks a rule counts as damaged,

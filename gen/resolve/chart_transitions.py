@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Transitions resolved: their ends, triggers and guards, each judged by itself."""
 
 from __future__ import annotations

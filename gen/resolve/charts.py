@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Regions resolved: states in tree order, transitions with their triggers."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Components resolved: what their names mean, then their regions and activities."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The forms of composite components resolved: what is inside, and what their ports lead to."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Composite components: instances inside a component, and what its ports and interfaces lead to.
 
 A composite is resolved once, to the instances without others inside them, by their paths, and to

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Contracts of activities: `requires` and `ensures`, over what the activity reads and makes."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Deployment resolved: nodes, buses, processors and chains."""
 
 from __future__ import annotations

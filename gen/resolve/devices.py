@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Device types, devices and their composites: their forms resolved.
 
 An array and a facade are decided here: what calls them calls the pieces.

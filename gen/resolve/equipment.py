@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Parameters, registers and lifecycle of device types, and what devices say of them."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Flows: actions resolved, and what they read, write, send and raise."""
 
 from __future__ import annotations

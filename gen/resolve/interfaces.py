@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The command dictionary, and the interfaces of components: their forms resolved."""
 
 from __future__ import annotations

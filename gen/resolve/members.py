@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The members of a component: parameters, ports, events and data, and what they are named."""
 
 from __future__ import annotations

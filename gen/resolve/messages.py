@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Messages of a bus: what travels from which port to which, and how."""
 
 from __future__ import annotations

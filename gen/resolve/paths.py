@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Paths of a deployment: the instance that `arm.shoulder.move` names, and what it names of it.
 
 An instance of a composite component is no instance of the `System`: those inside it are. Its

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Instances of a deployment: those that the model names, and those inside composite ones.
 
 An instance inside another is called by its path, `arm.shoulder`; its origin is where its

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`record` resolved: the ports, data items and regions that it names."""
 
 from __future__ import annotations

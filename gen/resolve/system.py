@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Forms to a `System`: every name resolved, every type known, every place kept.
 
 What is wrong is reported and left out; what was left out keeps its name, so

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The transmission mode of a message, from what the model says of it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How the value of a message is cut into segments, from what the model says of it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Terms to typed expressions: names resolved, bounds computed, units checked."""
 
 from __future__ import annotations

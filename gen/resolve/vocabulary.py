@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What expressions may name, and what a sound expression is known to yield."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules of what a bus tells the model of its controllers' faults, and of recovery from them."""
 
 from __future__ import annotations

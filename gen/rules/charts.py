@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Validity rules of charts: what is never reached, is never taken, or is in another's way.
 
 Guards are not looked into, but for the literals ``true`` and ``false``.

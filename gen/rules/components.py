@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Validity rules of one component: writers, sends, events, and what is unused."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules for nodes with several cores: each core has its own objects."""
 
 from __future__ import annotations

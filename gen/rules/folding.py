@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """An error inside a composite component is reported once, however many instances have it."""
 
 from __future__ import annotations

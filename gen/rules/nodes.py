@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules of systems with several nodes: what may reach from one to another, and what not."""
 
 from __future__ import annotations

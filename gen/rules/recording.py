@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules for what `record` names: it can be recorded, and is recorded once."""
 
 from __future__ import annotations

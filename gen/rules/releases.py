@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules for processors that a queued port releases: which ports may, and what these run.
 
 A value of one periodic row releases the processor. Its table handles that value and nothing

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules for the time inside protected objects, which is part of the tasks that call them."""
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ def sections_are_part_of_tasks(system: System) -> Iterator[Diagnostic]:
     for item, task in too_long(system):
         message = (
             f"a call of {item.element} may take {shown(item.section)}, "
-            f"longer than all of {task.element}, {shown(task.budget)}"
+            f"longer than all of {task.element}, {shown(task.wcet)}"
         )
         hint = f"raise the `wcet` of {task.element}"
         if task.slots:

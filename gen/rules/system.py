@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Validity rules of a whole system: what it is made of and how it is wired and run.
 
 Each rule is one function from what was resolved to its violations. A rule that

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is checked and analysed, and cannot be generated yet: told before anything is written."""
 
 from __future__ import annotations

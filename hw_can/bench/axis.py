@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One simulated drive: a motor that moves an axis between two hard stops.
 
 Deterministic: the same commands at the same steps give the same motion. The

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The python-can backend `interface="ravenchart"`: a node of the bus behind a bus server.
 
 It speaks the protocol of docs/bus-protocol.md over TCP; the channel is "HOST:PORT".

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Records of the bus protocol (docs/bus-protocol.md), to and from their 88 bytes.
 
 Reading is total: any bytes give a record that keeps every rule, which would be written

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The drives on the bench: one loop that receives, moves the axes and reports.
 
 The loop runs on an absolute grid of PERIOD: it does not drift, and when the host

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Functional Mock-up Units as plants: FMI 2.0 and 3.0, co-simulation, by FMPy.
 
 The unit goes on in steps of a fixed length, from time 0. Its inputs and tunable parameters are

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The forms of a scenario's parts but its steps: drives, events of the bus, what is checked.
 
 Quantities carry their unit (``430 mm``, ``1 mm/s``, ``8 s``); inside they are m, m/s and s.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Any interface of python-can, opened: the one place where drivers of others are called to life."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The names of the model in a DBC whose messages, signals and values have others.
 
 Scenarios and reports have the names of the model. The generated DBC has those of the database that

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The bench on the bus: a python-can peer that speaks the generated DBC.
 
 All values are raw integers of the model, or names of enumeration values; what the

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Plants on the bench: their values from and to the messages of the bus."""
 
 from __future__ import annotations

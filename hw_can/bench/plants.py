@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Plants of the bench that users bring: the class to derive from, and where they are loaded from.
 
 A plant is what the controller acts on: it takes values of messages that the controller sends, and

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the bench writes into the header of a message that is protected from end to end.
 
 It reads the profile from the attributes of the DBC and knows nothing of the controller's code.

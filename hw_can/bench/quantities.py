@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Quantities of a scenario, with their units (``430 mm``, ``1 mm/s``, ``8 s``), in m, m/s and s.
 
 Values of fields have no unit: they are what the CAN database counts.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Forms read from a YAML tree: what does not fit becomes a located diagnostic."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A log as input of a scenario: frames in BLF, ASC or candump's format, sent at their times."""
 
 from __future__ import annotations

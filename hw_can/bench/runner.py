@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Runs a scenario against a controller and says, step by step, how it went."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A scenario: the drives on the bench, and what the operator does, step by step.
 
 Read from YAML and checked as a whole before anything runs. Quantities carry their

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The JSON Schema of scenarios, made of the forms that read them: for editors and other tools."""
 
 from __future__ import annotations

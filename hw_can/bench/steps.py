@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The steps of a scenario: what the operator does, one after the other.
 
 Each step reads as a sentence; `STEPS` has its form by the key that tells it from the others.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The cases of the loopback test. Each returns what it saw, or raises why not."""
 
 from __future__ import annotations

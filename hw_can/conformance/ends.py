@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The two ends of the bus under test: how they are opened, and frames sent across."""
 
 from __future__ import annotations

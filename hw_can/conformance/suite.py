@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Runs the cases on two ends of a bus; what cannot be done is skipped, never passed."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Tables ranked on many machines: the workers of a Dask scheduler.
 
 The search asks for the ranks of many tables at once, in an order that it gives. Workers send ranks

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The periodic rows of a model put together anew, and checked.
 
 Sporadic processors, drivers and the host probe stay as they are. The strategies search

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Tables judged by the analysis of the whole model: tasks, messages, chains, queues.
 
 The core's strategies know tasks only. What they find is the start here: single rows and

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the rules of behaviour found earlier, kept by the content of the model (`kept`).
 
 A key covers every file of the model, the sources of the tool, and the versions of Python and z3.

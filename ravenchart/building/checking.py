@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A model checked: its rules, its behaviour, its timing; nothing is written."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The drawings of a system: the text of each, and what Graphviz makes of it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The search for garbage in circles, which costs most where much is made and all of it stays."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A program for an emulated board together with the gateway to the bus of its host.
 
 The gateway is an Ada unit in the folder `gateway` of the target. A main program of its own starts

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Images of boards: the memory that they take, by the headers of an ELF file."""
 
 from __future__ import annotations

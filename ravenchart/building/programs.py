@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The program of each node: where it is built, how it is compiled and proved, with which driver."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Stacks and memory of the program of a node: bounds, sizes, and what is wrong with them."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Targets: what a program is built for, each a folder of the runtime with a ``target.toml``."""
 
 from __future__ import annotations

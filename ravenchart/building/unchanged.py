@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Generations and builds that have nothing to do, known before the model is read (`kept`).
 
 The record of a generation has the SHA-256 of every file that it read, that it wrote, and of the

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What programs can be built for: targets, CAN drivers and registers.
 
 Apart from what builds them: the options of commands are made of it, and shall not wait for that.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a generation writes: which files, and what the list of them beside them says."""
 
 from __future__ import annotations

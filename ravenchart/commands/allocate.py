@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart allocate`: the periodic rows of a model put together anew, and checked."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart analyse`: response times against deadlines, of a model or of plain files."""
 
 from __future__ import annotations
@@ -30,7 +33,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--observed", type=Path, metavar="FILE",
         help="compare measured execution times (the trace of a run, or a plain file "
-        "for a plain file) with the budgets",
+        "for a plain file) with the WCETs",
     )  # fmt: skip
     bounds.add_arguments(sub)
     sub.add_argument(
@@ -82,7 +85,7 @@ def _export(options: argparse.Namespace, checked: Checked) -> None:
 
 
 def _of_model(options: argparse.Namespace, checked: Checked) -> bool:
-    """Print, or answer, what was found for a model; no observed time is above its budget."""
+    """Print, or answer, what was found for a model; no observed time is above its WCET."""
     from ravenchart.analysis.present.figures import figures
     from ravenchart.analysis.present.table import show
 
@@ -102,7 +105,7 @@ def _of_model(options: argparse.Namespace, checked: Checked) -> bool:
         from . import observed
 
         seen = observed.observation(checked, options.observed)
-        within = observed.within_budgets(checked, seen, options.observed)
+        within = observed.within_wcets(checked, seen, options.observed)
         run = observed.report(checked, seen, options.observed, within=within)
     if options.bounds is not None:
         within = _is_bounded(options, checked, given) and within
@@ -118,15 +121,15 @@ def _of_model(options: argparse.Namespace, checked: Checked) -> bool:
 
 
 def _is_bounded(options: argparse.Namespace, checked: Checked, given: Mapping[str, Bound]) -> bool:
-    """Print each bound of a static tool beside its budget; none is above it."""
+    """Print each bound of a static tool beside its WCET; none is above it."""
     table = bounds.rows(checked, given)
     for row in table:
-        budget = f"its budget of {microseconds(row.wcet)} us"
+        wcet = f"its WCET of {microseconds(row.wcet)} us"
         if row.bound is None:
-            print(f"{row.row}: no bound is given for {budget}")
+            print(f"{row.row}: no bound is given for {wcet}")
         else:
             word = "ABOVE" if row.words else "within"
-            print(f"{row.row}: bound {microseconds(row.bound)} us, {word} {budget}")
+            print(f"{row.row}: bound {microseconds(row.bound)} us, {word} {wcet}")
     for text in bounds.findings(table, given, checked.system):
         say(options.answer, text)
     return not any(row.words for row in table)

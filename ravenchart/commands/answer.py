@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What `--json` prints: one object for each call, whatever comes of it.
 
 A command fills in ``result`` and tells its warnings; `command_line` tells how it failed. Here the

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`--bounds FILE`: bounds of execution times from a static WCET tool, held against the model."""
 
 from __future__ import annotations
@@ -20,7 +23,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare where the bounds are."""
     sub.add_argument(
         "--bounds", type=Path, metavar="FILE",
-        help="compare the bounds of a static WCET tool with the budgets: CSV with the columns "
+        help="compare the bounds of a static WCET tool with the WCETs: CSV with the columns "
         "row or function, and wcet_us, or cycles and clock_hz",
     )  # fmt: skip
 
@@ -36,7 +39,7 @@ def of_model(options: argparse.Namespace, checked: Checked) -> Mapping[str, Boun
 
 
 def rows(checked: Checked, given: Mapping[str, Bound]) -> list[MeasuredRow]:
-    """Every row with its budget and its bound; nothing is measured."""
+    """Every row with its WCET and its bound; nothing is measured."""
     found = {name: one.wcet for name, one in given.items()}
     return [
         MeasuredRow(slot.element, slot.timing.wcet, None, None, found.get(slot.element))
@@ -47,22 +50,22 @@ def rows(checked: Checked, given: Mapping[str, Bound]) -> list[MeasuredRow]:
 def findings(
     table: Sequence[MeasuredRow], given: Mapping[str, Bound], system: System
 ) -> Iterator[str]:
-    """An error for each claim that a figure refutes, where the claim stands, with a hint."""
+    """An error for each WCET that a figure refutes, where the WCET stands, with a hint."""
     for one in table:
         place, key = origin_of(system, one.row), key_of(system, one.row)
-        claimed = f"its `{key}` of {microseconds(one.wcet)} us"
+        stated = f"its `{key}` of {microseconds(one.wcet)} us"
         seen, bound = one.measured or 0, given.get(one.row)
         took = f"{one.row} was measured to take {microseconds(seen)} us"
         if seen > one.wcet:
             wanted = microseconds(one.proposed or seen)
             yield (
-                f"{place}: error: {took}, above {claimed}\n"
+                f"{place}: error: {took}, above {stated}\n"
                 f"{place}: hint: write `{key}: {wanted} us` or more"
             )
         if bound is not None and bound.wcet > one.wcet:
             longest = microseconds(bound.wcet)
             yield (
-                f"{bound.place}: error: the bound of {one.row}, {longest} us, is above {claimed}\n"
+                f"{bound.place}: error: the bound of {one.row}, {longest} us, is above {stated}\n"
                 f"{place}: note: the `{key}` of {one.row} is here\n"
                 f"{place}: hint: write `{key}: {longest} us` or more"
             )

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart build`: generated and compiled."""
 
 from __future__ import annotations
@@ -25,7 +28,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
     common.add_target(sub)
-    sub.add_argument("--driver", choices=variants.DRIVERS, help="the CAN driver")
+    common.add_driver(sub)
     sub.add_argument(
         "--mode", choices=("checks", "release"), default="checks",
         help="checks: every contract is executed; release: -O2, proof stands for checks",

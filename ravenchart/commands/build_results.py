@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What `check`, `generate` and `build` answer with `--json`, beside the forms of `results`.
 
 Apart from these, for they are imported more often than all others together.

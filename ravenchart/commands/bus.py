@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart bus`: the bus server, built when it is first needed, and started."""
 
 from __future__ import annotations

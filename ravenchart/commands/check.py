@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart check`: the rules of a model, its behaviour and its deadlines."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart check-certificate`: the generated program against its model, by independent code."""
 
 from __future__ import annotations

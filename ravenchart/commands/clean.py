@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart clean`: what was built is deleted; models, sources and results stay."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What commands on a model share: how it is named, checked and written."""
 
 from __future__ import annotations
@@ -11,6 +14,7 @@ from typing import TYPE_CHECKING
 from ravenchart.building import variants
 from ravenchart.building.garbage import without_collector
 from ravenchart.failures import Unusable
+from ravenchart.grammar import AS_LISTED
 from ravenchart.terminal import progress
 
 from .answer import Answer, say
@@ -32,6 +36,13 @@ def add_model(sub: argparse.ArgumentParser) -> None:
         "model", type=Path, metavar="MODEL",
         help="the model's YAML file, or MODEL@NAME: a deployment of it",
     )  # fmt: skip
+
+
+def add_driver(sub: argparse.ArgumentParser) -> None:
+    """What the CAN layer of the program talks to."""
+    sub.add_argument(
+        "--driver", choices=variants.DRIVERS, metavar="NAME", help=f"the CAN driver{AS_LISTED}"
+    )
 
 
 def add_target(sub: argparse.ArgumentParser) -> None:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart analyse --compare`: what changed since another version of the system."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart completion`: the script by which a shell completes commands, options and files.
 
 A script is made of the parsers, once: pressing Tab starts no Python.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart doctor`: what is installed, what is missing, and the command that mends it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart draw`: pictures of a model's charts and structure, or of generated Ada."""
 
 from __future__ import annotations

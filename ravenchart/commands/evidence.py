@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart evidence`: one folder that an assessor can follow."""
 
 from __future__ import annotations
@@ -7,7 +10,6 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ravenchart.building import variants
 from ravenchart.failures import OK, WRONG, Refused
 from ravenchart.terminal import progress
 
@@ -36,7 +38,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 
 def add_sources(sub: argparse.ArgumentParser) -> None:
     """Declare where the facts beside the model are."""
-    sub.add_argument("--driver", choices=variants.DRIVERS, help="the CAN driver")
+    common.add_driver(sub)
     sub.add_argument(
         "--record", type=Path, metavar="FILE", action="append", default=[],
         help="the proof record that `prove --record` wrote; for several nodes, once for each",

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart explain`: what a code of an error or warning means, and how to correct it."""
 
 from __future__ import annotations

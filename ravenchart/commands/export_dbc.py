@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart export-dbc`: the CAN database of a bus of a model, for other tools."""
 
 from __future__ import annotations

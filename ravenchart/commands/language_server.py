@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart language-server`: diagnostics, completion and rename for editors, over stdio."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart loopback`: one suite over any python-can interface with two ends on one bus."""
 
 from __future__ import annotations
@@ -80,6 +83,15 @@ def verdict_line(result: SuiteResult) -> str:
     return f"{word}: {passed} passed, {failed} failed, {skipped} skipped"
 
 
+def answered(result: SuiteResult) -> results.LoopbackResult:
+    """What `--json` prints of it."""
+    cases = [
+        results.LoopbackCase(one.name, one.verdict.value.lower(), one.seconds, one.detail)
+        for one in result.cases
+    ]
+    return results.LoopbackResult(result.passed, cases, list(result.latencies), result.rate)
+
+
 def tested(options: argparse.Namespace) -> bool:
     """Run the suite, print and write it; whether nothing failed and something passed.
 
@@ -103,15 +115,7 @@ def tested(options: argparse.Namespace) -> bool:
             result = run(ends, tell)
     finally:
         ends.close()
-    options.answer.result = results.LoopbackResult(
-        result.passed,
-        [
-            results.LoopbackCase(one.name, one.verdict.value.lower(), one.seconds, one.detail)
-            for one in result.cases
-        ],
-        list(result.latencies),
-        result.rate,
-    )
+    options.answer.result = answered(result)
     show(result)
     if options.junit is not None:
         options.junit.write_text(loopback_files.junit(result), encoding="utf-8")

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The loopback test as JUnit XML and as one HTML file that needs nothing else."""
 
 from __future__ import annotations
@@ -23,11 +26,11 @@ def facts(result: SuiteResult) -> tuple[tuple[str, str], ...]:
     )
 
 
-def junit(result: SuiteResult, suite_name: str = "loopback") -> str:
+def junit(result: SuiteResult) -> str:
     """JUnit XML, one test case for each case; a skipped one is never a passed one."""
     suite = ElementTree.Element(
         "testsuite",
-        name=f"{suite_name} {result.setup.interface}",
+        name=f"loopback {result.setup.interface}",
         tests=str(len(result.cases)),
         failures=str(result.count(CaseVerdict.FAILED)),
         errors="0",
@@ -41,7 +44,7 @@ def junit(result: SuiteResult, suite_name: str = "loopback") -> str:
         element = ElementTree.SubElement(
             suite,
             "testcase",
-            classname=f"{suite_name}.{result.setup.interface}",
+            classname=f"loopback.{result.setup.interface}",
             name=case.name,
             time=f"{case.seconds:.3f}",
         )

@@ -1,4 +1,7 @@
-"""`ravenchart measure`: longest execution times of a run, beside what the model claims."""
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""`ravenchart measure`: longest execution times of a run, beside their WCETs."""
 
 from __future__ import annotations
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart monitor`: a running controller watched, without a word to it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart new`: a project that checks, builds, runs and is proved as it stands."""
 
 from __future__ import annotations

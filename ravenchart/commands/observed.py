@@ -1,4 +1,7 @@
-"""`ravenchart analyse --observed`: recorded execution times against the model's budgets."""
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""`ravenchart analyse --observed`: recorded execution times against the model's WCETs."""
 
 from __future__ import annotations
 
@@ -38,8 +41,8 @@ def observation(checked: Checked, path: Path) -> Observation:
     return seen
 
 
-def within_budgets(checked: Checked, seen: Observation, path: Path) -> bool:
-    """Print every activity that was executed, nearest to its budget first; none is above it.
+def within_wcets(checked: Checked, seen: Observation, path: Path) -> bool:
+    """Print every activity that was executed, nearest to its WCET first; none is above it.
 
     `Refused` for a trace without executions.
     """
@@ -52,11 +55,11 @@ def within_budgets(checked: Checked, seen: Observation, path: Path) -> bool:
 
 def report(checked: Checked, seen: Observation, path: Path, *, within: bool) -> RunReport:
     """The section of a report on a trace: its reactions, responses and executions."""
-    verdict = "every observed execution time is within its budget"
+    verdict = "every observed execution time is within its WCET"
     return RunReport(
         title=f"Observed in the trace {path}",
         passed=within,
-        verdict=verdict if within else "an observed execution time is above its budget",
+        verdict=verdict if within else "an observed execution time is above its WCET",
         notes=(
             "The trace does not say whether the controller had real-time priorities; "
             "without them the bounds of responses do not hold for it.",
@@ -72,9 +75,9 @@ def report(checked: Checked, seen: Observation, path: Path, *, within: bool) -> 
 def tell(rows: Sequence[Execution], every: Collection[str]) -> bool:
     """Print what was seen of each of ``rows``, and which of ``every`` was not; none is above."""
     for row in rows:
-        longest, budget = microseconds(row.observed), microseconds(row.claimed)
+        longest, wcet = microseconds(row.observed), microseconds(row.wcet)
         word = "ABOVE" if row.exceeded else "within"
-        print(f"{row.row}: {longest} us, {word} its budget of {budget} us")
+        print(f"{row.row}: {longest} us, {word} its WCET of {wcet} us")
     for name in sorted(set(every) - {row.row for row in rows}):
         print(f"{name}: not executed in this run")
     return not any(row.exceeded for row in rows)

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart analyse` of a plain CSV or JSON file: the verdict, a table, JSON, exports."""
 
 from __future__ import annotations
@@ -11,13 +14,13 @@ from rich.console import Console
 from rich.table import Table
 
 from ravenchart.analysis.core.holistic import Holistic
-from ravenchart.analysis.core.responses import Response
+from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.exchange import FORMATS, Unfit
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.findings.deadlines import no_bound_reason
 from ravenchart.analysis.findings.differences import Differences, Figures
 from ravenchart.analysis.plain.build import PlainSystem, load
-from ravenchart.analysis.plain.observed import budgets, observed
+from ravenchart.analysis.plain.observed import longest_times, observed
 from ravenchart.analysis.plain.results import Json, PlainResult, analyse, everything, loads
 from ravenchart.analysis.present.plain_report import render_plain
 from ravenchart.analysis.present.report import Execution
@@ -70,7 +73,7 @@ def figures(result: PlainResult) -> Json:
 def run(options: argparse.Namespace, earlier: Callable[[Figures], Differences] | None) -> bool:
     """Analyse and print what the options ask for; whether every deadline is met.
 
-    An export counts as met. With a file of observed times these must be within their budgets
+    An export counts as met. With a file of observed times these must be within their WCETs
     too. ``earlier`` compares with another version.
     """
     path: Path = options.model
@@ -91,7 +94,7 @@ def run(options: argparse.Namespace, earlier: Callable[[Figures], Differences] |
     within = True
     if options.observed is not None:
         rows = _observed(options.observed, result.system)
-        within = tell(rows, budgets(result.system.network))
+        within = tell(rows, longest_times(result.system.network))
     if options.html is not None:
         lines = advice.lines(_advice(result))
         write(options.html, render_plain(path.stem, result, lines, rows, compared))
@@ -106,13 +109,13 @@ def write(path: Path, report: str) -> None:
 
 
 def _observed(path: Path, system: PlainSystem) -> list[Execution]:
-    """What was observed beside the budgets, nearest to them first."""
+    """What was observed beside the WCETs, nearest to them first."""
     found = observed(text_of(path), str(path), system.network)
     if not isinstance(found, dict):
         raise Refused("\n".join(map(str, found[:SHOWN])))
-    known = budgets(system.network)
+    known = longest_times(system.network)
     rows = [Execution(name, time, known[name]) for name, time in found.items()]
-    return sorted(rows, key=lambda row: -Fraction(row.observed, row.claimed))
+    return sorted(rows, key=lambda row: -Fraction(row.observed, row.wcet))
 
 
 def exported(system: PlainSystem, tool: str, path: Path, title: str) -> str:
@@ -181,13 +184,13 @@ def _table(result: PlainResult) -> Table:
     names = sorted(found.responses, key=lambda name: _slack(name, found))
     for name in names[:SHOWN]:
         response = found.responses[name]
-        item = response.task if isinstance(response, Response) else response.frame
-        cost = response.task.plain_cost if isinstance(response, Response) else response.frame.cost
+        item = result.system.network.items()[name]
+        longest = item.plain_wcet if isinstance(item, Task) else item.cost
         needed = found.from_event(name)
         slack = None if needed is None else found.deadline(name) - needed
         table.add_row(
             name,
-            *map(duration, (item.period, item.deadline, cost)),
+            *map(duration, (item.period, item.deadline, longest)),
             duration(item.jitter),
             duration(response.blocked),
             _shown(needed),

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart prove`: generated, and proved with gnatprove."""
 
 from __future__ import annotations
@@ -6,7 +9,7 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from ravenchart.building import programs, variants
+from ravenchart.building import programs
 from ravenchart.failures import OK, WRONG
 from ravenchart.proof import outside_spark, proving, unproved, verdicts
 from ravenchart.proof.spark_results import Outside
@@ -20,7 +23,7 @@ from .results import Proved, ProveResult, Unproved
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
-    sub.add_argument("--driver", choices=variants.DRIVERS, help="the CAN driver")
+    common.add_driver(sub)
     sub.add_argument(
         "--whole", action="store_true",
         help="prove the runtime and the HAL again, which `make prove` proves by themselves",

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart requirements`: traceability from requirements to tests, and back."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """``result`` of the object that `--json` prints, one class for each command.
 
 Times are whole ns. A change of these classes changes docs/answer.schema.json (`make docs`).

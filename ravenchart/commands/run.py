@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart run`: the controller built and run, here or on a board, judged and reported."""
 
 from __future__ import annotations

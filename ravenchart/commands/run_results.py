@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What `run`, `shell` and `monitor` answer with `--json`, beside the forms of `results`."""
 
 from __future__ import annotations

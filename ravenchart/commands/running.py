@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the commands share that run a model: its programs, built, and where they are run."""
 
 from __future__ import annotations

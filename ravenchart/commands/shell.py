@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart shell`: commands to a running controller, typed or from a script."""
 
 from __future__ import annotations

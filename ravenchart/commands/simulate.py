@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart simulate`: a model in virtual time, by its program or by the interpreter.
 
 The program is the generated one without tasks and buses: a main that holds the

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart tests`: event files that take every transition and decide every guard both ways.
 
 The cases are found on the model, by its interpreter. Each is then played by the generated program

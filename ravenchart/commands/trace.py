@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart trace`: the trace of a run or a simulation, as CSV, for Perfetto or as MDF 4."""
 
 from __future__ import annotations

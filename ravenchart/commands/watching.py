@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart check --watch`: the model is checked again whenever a file of it changes.
 
 The files are those that the last check read or tried to read, included ones too. They are

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart workbench`: a local web page in which a model is changed and analysed."""
 
 from __future__ import annotations

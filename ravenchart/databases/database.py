@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart import`: the messages of a CAN database as types, ports and messages of a model.
 
 What models have no words for is changed or left out, and the text says so at its top.

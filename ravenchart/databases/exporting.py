@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart export-dbc`: the database of a bus, with what a model has no words for.
 
 A message that stands in the model as it was imported is written as the database had it: names,

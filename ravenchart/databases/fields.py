@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The signals of one message as fields of a model: all that fit together.
 
 A model has one multiplexor for a message, no signals that share bits, and 64 fields. A signal

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Names of a CAN database as names of a model: the same where that is one, else the nearest."""
 
 from __future__ import annotations

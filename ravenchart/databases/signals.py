@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The signals of a CAN database as types and layouts of a model.
 
 A value counts the scale of its signal: 0.1 degC is a unit. A signal that models have no such

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a model has besides the messages of a database: figures that no database knows.
 
 They are chosen so that the model passes `check` and a program can be made of it at once. The
@@ -25,7 +28,7 @@ US, MS = 1000, 1_000_000
 TURNS = (1000 * US, 500 * US, 200 * US, 100 * US)
 """Periods of the reception: the first one that leaves it half of its time."""
 HALF = 0.5
-COSTS = (10 * US, US, 100, 10)
+OVERHEADS = (10 * US, US, 100, 10)
 """Platform figures in ns: the first one with which all drivers at once leave a turn some time."""
 DEPTHS = (8, 1024)
 """Frames that a queue of the bus has room for, at least and at most."""
@@ -149,16 +152,16 @@ def sections(
     arrivals = sum(1 / _nanoseconds(one.period) for one in received)
     turn = next((t for t in TURNS if arrivals * t <= HALF), TURNS[-1])
     most = turn // (4 * (len(received) + len(sent) + 1))  # each driver's work, and two switches
-    cost = shown(next((one for one in COSTS if one <= most), COSTS[-1]))
+    time = shown(next((one for one in OVERHEADS if one <= most), OVERHEADS[-1]))
     named = "" if database_name is None else f", database_name: {database_name}"
     lines = [
         "nodes:",
-        f"  {instance}: {{context_switch: {cost}, critical_section: {cost}, trace: 1024{named}}}",
+        f"  {instance}: {{context_switch: {time}, critical_section: {time}, trace: 1024{named}}}",
         "buses:",
         "  bus:",
         f"    bit_rate: {rate // 1000} kbit/s",
         *([f"    data_rate: {DATA_RATE}"] if flexible else []),
-        f"    driver_wcet: {cost}",
+        f"    driver_wcet: {time}",
         f"    receive_depth: {_depth(2 * len(received))}",
         f"    transmit_depth: {_depth(len(sent))}",
         "instances:",

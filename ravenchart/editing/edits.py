@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Changes of a YAML text in place: every byte that is not part of a change stays as it is.
 
 A round trip through a YAML library writes the whole file anew and keeps its layout as well as the

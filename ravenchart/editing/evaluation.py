@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a state of a model's files comes to: the ordinary pipeline, over texts in memory."""
 
 from __future__ import annotations

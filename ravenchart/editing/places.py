@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Where the text of a model says what runs where, when, and for how long.
 
 Names count without regard to case, as in the model. What is found here is text: it is there also

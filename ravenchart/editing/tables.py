@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rows of processors put together anew in a model's text; what stays as it is keeps its text.
 
 A table takes over the processor of which it has most rows, with its name, comments and keys. A

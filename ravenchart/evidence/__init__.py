@@ -1,1 +1,4 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What an assessor gets: requirements traced both ways, and claims with what shows them."""

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Claims about times: by the analysis, and by the certificate that the compiler checks."""
 
 from __future__ import annotations

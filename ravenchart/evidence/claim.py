@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One claim: what it says, what shows it, and the verdict."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The claims about a controller, each with what shows it and the verdict that follows.
 
 A verdict is never kinder than the facts: what is not at hand is not shown, and what differs from

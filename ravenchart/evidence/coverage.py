@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Claims about what test cases execute of charts and user bodies, by an LCOV tracefile.
 
 A count is believed only of the text that stands there today.

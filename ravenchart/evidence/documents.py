@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """evidence.json: what the folder says, for programs. docs/evidence.schema.json is made of it."""
 
 from __future__ import annotations
@@ -16,7 +19,7 @@ class Lack(Described):
     """Something that is not shown."""
 
     kind: str
-    """`claim`, `assumption`, `outside`, `budget`, `test` or `limit`."""
+    """`claim`, `assumption`, `outside`, `given`, `test` or `limit`."""
     what: str
     """What it is: the id of a claim or assumption, or an element."""
     why: str

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The formats of others: findings as SARIF 2.1.0, what is in the program as CycloneDX 1.6."""
 
 from __future__ import annotations

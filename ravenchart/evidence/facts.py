@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is at hand about a model: checked, generated anew, and held against what is on disk.
 
 Files are named from the checkout or from the model's folder, never by where that folder is: so

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The folder of evidence: pages for people, and the same for programs.
 
 Nothing in it has a date, the name of a machine or an absolute path: equal inputs give equal bytes.
@@ -48,7 +51,7 @@ WORDS = {
     "claim": "Claims that are not met, or only partly",
     "assumption": "Assumptions in use",
     "outside": "Parts outside SPARK",
-    "budget": "Bounds that rest on figures which are given, not measured",
+    "given": "Bounds that rest on figures which are given, not measured",
     "test": "Tests that did not pass",
     "limit": "What no such folder shows",
 }

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is not shown about a controller: the first page of the folder."""
 
 from __future__ import annotations
@@ -47,7 +50,7 @@ def gaps(facts: Facts, claims: Sequence[Claim]) -> tuple[Lack, ...]:
         *_claims(claims),
         *_assumptions(facts),
         *_outside(facts),
-        *_budgets(facts),
+        *_given(facts),
         *_tests(facts),
         *_tools(facts),
         *(() if facts.coverage else (_UNCOVERED,)),
@@ -80,12 +83,12 @@ def _outside(facts: Facts) -> Iterator[Lack]:
         yield Lack("outside", name, f"no check of its body is made: {reason}")
 
 
-def _budgets(facts: Facts) -> Iterator[Lack]:
+def _given(facts: Facts) -> Iterator[Lack]:
     system = facts.checked.system
     given = "is given by the model, and not measured"
     for processor in system.processors:
         for slot in processor.slots:
-            yield Lack("budget", slot.element, f"wcet {duration(slot.timing.wcet)} {given}")
+            yield Lack("given", slot.element, f"wcet {duration(slot.timing.wcet)} {given}")
     for node in system.nodes:
         figures = [
             ("context_switch", node.context_switch),
@@ -93,21 +96,19 @@ def _budgets(facts: Facts) -> Iterator[Lack]:
             ("release", node.release),
         ]
         told = ", ".join(f"{name} {duration(value)}" for name, value in figures)
-        yield Lack("budget", node.name, f"{told}: {given}")
+        yield Lack("given", node.name, f"{told}: {given}")
     for device in system.devices:
         if device.type is not None:
-            told = f"the execution times of the commands of {device.type.name}"
-            yield Lack("budget", device.name, f"{told} are given by the model, and not measured")
+            told = f"the WCETs of the commands of {device.type.name}"
+            yield Lack("given", device.name, f"{told} are given by the model, and not measured")
     for bus in system.buses:
-        yield Lack("budget", bus.name, f"driver_wcet {duration(bus.driver_wcet)} {given}")
+        yield Lack("given", bus.name, f"driver_wcet {duration(bus.driver_wcet)} {given}")
         if bus.errors is None:
-            yield Lack(
-                "budget", bus.name, "bounds hold for a bus without errors: `errors` is empty"
-            )
+            yield Lack("given", bus.name, "bounds hold for a bus without errors: `errors` is empty")
         else:
             every = duration(bus.errors.period)
             yield Lack(
-                "budget", bus.name,
+                "given", bus.name,
                 f"bounds hold for {bus.errors.burst} errors at once and one every {every}",
             )  # fmt: skip
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The claims as a tree in Goal Structuring Notation, as SVG.
 
 Goals are rectangles, the strategy is a parallelogram, solutions are circles, assumptions are

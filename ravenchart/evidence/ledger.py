@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The ledger of assumptions: which of its entries a controller rests on.
 
 The text is that of proofs/assumptions.md. An entry that this module does not know counts as in

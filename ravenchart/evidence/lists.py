@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Lists of requirements: CSV with the columns `id` and `text`, or ReqIF.
 
 ReqIF is the OMG's exchange format for requirements, an XML file. Of it the ids and texts of all

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Proof records, each held against the sources that are here now."""
 
 from __future__ import annotations

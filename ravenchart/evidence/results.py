@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Results of tests in the form of JUnit, which most test runners write.
 
 Times, dates and names of machines in the file are not read. The property `req` of a test names a

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Objectives of standards, and how far the claims serve each."""
 
 from __future__ import annotations

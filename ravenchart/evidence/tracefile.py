@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What test cases execute, by an LCOV tracefile (geninfo(1), FILES).
 
 `ravenchart tests --coverage FILE` writes one. The version of a source there, its record VER, is the

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Traceability: requirement to element, generated code, claim and test, and back."""
 
 from __future__ import annotations

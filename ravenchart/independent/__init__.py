@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A second opinion on a generated program, by code that shares nothing with its generator.
 
 It reads a model, the declared form of its charts in the generated specs, and the timing

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Check a generated program against its model, without Ravenchart."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """As much of Ada as the generated declarations need: tokens, named numbers, case expressions."""
 
 from __future__ import annotations

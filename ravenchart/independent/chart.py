@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A chart as the model has it, and the lines of its declared form that follow.
 
 The rules are those of docs/semantics.md (UML 2.5.1, 14.2.3): a line is a transition of a state

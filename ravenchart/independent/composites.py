@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Components inside components, written out: instances by their paths, and what joins these.
 
 Follows docs/composites.md: all instances inside are on the node of the outermost one, and its

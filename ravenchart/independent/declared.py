@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The declared form in the generated specs, against the charts of the model."""
 
 from __future__ import annotations

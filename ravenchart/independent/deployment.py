@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What runs where, worked out from the model: tasks with their rows, messages with their frames.
 
 Follows docs/semantics.md ("Processors") and docs/architecture.md ("Several nodes"). Priorities

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What rows call of devices: the time that it takes, who may be inside one, what falls away.
 
 Follows docs/devices.md: a driver works inside its caller, so its time is in the row's WCET; a

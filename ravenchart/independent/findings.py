@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What was compared, what disagrees, and what was not derived again."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """CAN frames: how many bytes a value takes, and how long a frame is on the bus.
 
 The longest frame with all stuff bits is that of Davis, Burns, Bril and Lukkien 2007, eq. 1:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Messages as they travel: one frame for a value, or several and flow control (ISO 15765-2)."""
 
 from __future__ import annotations

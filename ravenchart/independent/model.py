@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The files of a model, read with PyYAML: text with the file and line it stands at.
 
 Nothing is checked here that Ravenchart checks; where a model cannot be read as expected,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The certificate against the model: its facts, its terms, and the bounds that it claims.
 
 Tasks: Joseph and Pandya 1986, Audsley et al. 1993, with several jobs in a busy period

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What could stand at a place of a model, and what stands there.
 
 A word that no model has is put at the place, and the model is read: what the forms and the

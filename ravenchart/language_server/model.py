@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A model as the editor has it: its files, open or on the disk, and what the pipeline finds."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Another name for an element of a model, everywhere.
 
 The changed texts are loaded before the editor gets them. Where that finds an error that was not

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The server: the protocol on one side, a model at one moment on the other.
 
 One thread reads models, since the pipeline is not made for several; the protocol goes on

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The names of a model: where each is declared and used.
 
 The resolver notes every name that it looks up, with the place of its declaration (`NameUse`). Here

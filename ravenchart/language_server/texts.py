@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The text of a model file: its characters, the places of diagnostics, the positions of LSP.
 
 A diagnostic counts lines where YAML breaks them, and characters. A position of the protocol counts

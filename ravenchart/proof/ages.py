@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The ages of gnatprove that Ravenchart is proved with, and what differs between them.
 
 A gnatprove belongs to a version of GNAT. That of GNAT 12 comes with the prover CVC4; those from

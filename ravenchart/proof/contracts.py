@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Which condition of an activity's contract a check is about that gnatprove could not prove.
 
 `ensures` is the postcondition of the activity's procedure, and a check of it is in the spec.

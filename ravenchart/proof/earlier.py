@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Results of earlier proofs, kept by the content that they speak of.
 
 A key is the SHA-256 over gnatprove's version, the run's settings, and the name and bytes of every

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What may be outside SPARK in a proof, each with the reason: a TOML file.
 
 A unit or subprogram outside SPARK is proved of nothing, yet every check that gnatprove made may

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Running gnatprove, and keeping the record of what it found.
 
 A record is one TOML file per project: for each source that the proof read its SHA-256, for

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What gnatprove found, read from the files that one run leaves in a result folder.
 
 Each analysed unit has a `.spark` file (JSON) with its checks and with what of it is in SPARK,

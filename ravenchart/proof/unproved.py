@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What gnatprove could not prove, in the words of the user who must change something.
 
 gnatprove names a place in Ada and a check. The user wrote a model and bodies: so each finding has

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Verdicts of provers, kept by the text of the formula, so that only what changed is proved again.
 
 gnatprove asks a server of the memcached text protocol (its switch ``--memcached-server``) before

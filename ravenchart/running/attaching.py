@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The end of a bus on which a controller runs already: any interface of python-can."""
 
 from __future__ import annotations

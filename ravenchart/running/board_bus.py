@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The bench on the bus of emulated boards, in the time of the boards.
 
 Each millisecond of a board its gateway writes the frames of the bus to a pipe, and waits for

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One run of a controller on an emulated board: nothing but the program disturbs its time."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Logs of `ravenchart bus` and `ravenchart run`: what is on the bus, in a format of python-can."""
 
 from __future__ import annotations

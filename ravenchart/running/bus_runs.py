@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A scenario played to a controller that runs already, at the other end of any bus.
 
 Only frames are seen there: no trace, no times of the controller, no count of its faults. What a

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What runs of the program in virtual time execute of its sources, as gcov counts it.
 
 The program is compiled without optimisation, without checks and without contracts, so that what

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a run lost, missed or overran, held against what its scenario expects.
 
 Nothing that was counted may go unsaid: of each count the scenario says how often it may be,
@@ -29,7 +32,7 @@ def said(kind: str, name: str, count: int) -> str:
     if kind == "missed":
         return f"{name} missed {count} deadline{'' if count == 1 else 's'}"
     if kind == "overran":
-        return f"{name} {'ran' if count else 'never ran'} for longer than the model claims"
+        return f"{name} {'ran' if count else 'never ran'} for longer than its WCET"
     return f"{kind}: {name}, {'once' if count == 1 else f'{count} times'}"
 
 
@@ -47,7 +50,7 @@ def excused(
     long = frozenset(
         row.row
         for row in executed
-        if row.exceeded and (not ended.real_time or row.observed - row.claimed <= withheld)
+        if row.exceeded and (not ended.real_time or row.observed - row.wcet <= withheld)
     )
     return late, long
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The verdict on a run: every reason why it failed, in words."""
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Longest execution times that a run showed, beside what the model and a static tool claim.
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Longest execution times that a run showed, beside the WCETs of the model and of a static tool.
 
 They are measurements: a run executes some paths, and a longer one may be left.
 """
@@ -29,7 +32,7 @@ class MeasuredRow(Described):
     row: str
     """`owner.name`."""
     wcet: int
-    """Worst-case execution time that the model claims, in ns."""
+    """The WCET that the model gives, in ns."""
     measured: int | None
     """Longest execution that was observed, in ns; null where there was none."""
     proposed: int | None
@@ -39,7 +42,7 @@ class MeasuredRow(Described):
 
     @property
     def words(self) -> list[str]:
-        """What is wrong: each claim that the figures refute."""
+        """What is wrong: each bound that the figures refute."""
         seen, found = self.measured or 0, []
         if seen > self.wcet:
             found.append("measured above `wcet`")
@@ -79,7 +82,7 @@ class Measurement(Described):
     coverage: list[Coverage]
     """Of each region."""
     not_measured: list[str]
-    """Execution times of the model that no run measures."""
+    """WCETs of the model that no run measures."""
 
 
 def measured(
@@ -109,7 +112,7 @@ def _coverage(seen: Observation) -> Iterator[Coverage]:
 
 
 def _left(system: System) -> Iterator[str]:
-    """The execution times of a model that a run does not measure."""
+    """The WCETs of a model that a run does not measure."""
     for node in system.nodes:
         parts = {"probe": node.probe, "supervision": node.supervision, "tick": node.tick}
         yield from (f"{node.name}.{key}.wcet" for key, part in parts.items() if part is not None)
@@ -122,7 +125,7 @@ def _slot(system: System, row: str) -> Slot:
 
 
 def origin_of(system: System, row: str) -> Origin:
-    """Where the execution time of a row stands in the model, or the component or bus of it."""
+    """Where the WCET of a row stands in the model, or the component or bus of it."""
     slot = _slot(system, row)
     if slot.of_bus:
         return next(bus.origin for bus in system.buses if bus.name == slot.owner)
@@ -133,7 +136,7 @@ def origin_of(system: System, row: str) -> Origin:
 
 
 def key_of(system: System, row: str) -> str:
-    """The key of the model that holds the execution time of a row."""
+    """The key of the model that holds the WCET of a row."""
     return "driver_wcet" if _slot(system, row).work is Work.BUS_RECEIVE else "wcet"
 
 
@@ -175,7 +178,7 @@ def text(found: Measurement, system: System) -> str:
     parts = [
         (f"Execution times {WARNING}.", _yaml(head)),
         (PROPOSED, _yaml({"wcet": wcet})),
-        ("The longest of each row beside what the model claims.", _yaml({"rows": rows}, flow=None)),
+        ("The longest of each row beside its WCET.", _yaml({"rows": rows}, flow=None)),
         ("Left out of the figures.", _yaml(left)),
     ]
     return "\n".join(f"# {said}\n{part}" for said, part in parts)

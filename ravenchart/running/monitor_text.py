@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a monitor shows, as text: tables in 80 columns, or lines for a pipe."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a monitor shows of a running controller: a snapshot beside the model and its bounds."""
 
 from __future__ import annotations

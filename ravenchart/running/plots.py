@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The run as a picture: position of each axis over time, its states as a band above."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The controller as a process: started on one core, watched, asked to end."""
 
 from __future__ import annotations

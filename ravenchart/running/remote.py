@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A running controller as an object, at the other end of any bus: for notebooks, tests and scripts.
 
     from ravenchart.running.remote import connect

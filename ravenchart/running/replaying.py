@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A recorded run shown again: the snapshot that its controllers would have given at any instant.
 
 An instant is a time in ns from the first start of all controllers. What is shown there follows

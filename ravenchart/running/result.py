@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What came out of one run, and the rows and pictures that are made of it."""
 
 from __future__ import annotations
@@ -72,8 +75,8 @@ def notes(
     """What a reader should know, although it is no failure."""
     for row in executed:
         if row.exceeded:
-            longest, claimed = microseconds(row.observed), microseconds(row.claimed)
-            yield f"{row.row} ran for {longest} us, above the {claimed} us that the model claims"
+            longest, wcet = microseconds(row.observed), microseconds(row.wcet)
+            yield f"{row.row} ran for {longest} us, above its WCET of {wcet} us"
     for task in compared:
         if task.word == "host" and ended.real_time:
             yield (

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One run of a controller: started, put through a scenario, judged, reported."""
 
 from __future__ import annotations

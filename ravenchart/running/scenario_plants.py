@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The plants of a scenario held against its model, and against the class or unit that each is."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A scenario held against its model, before anything is built.
 
 Messages and fields are those of the bus's CAN database, which is what the bench speaks;

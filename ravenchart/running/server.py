@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The bus server as a process: built when it is first needed, and started."""
 
 from __future__ import annotations

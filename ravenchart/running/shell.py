@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The commands of `ravenchart shell`: lines of text carried out on a `RemoteSystem`.
 
 The words are those of a scenario's steps: `send`, `wait_for`, `wait`, `replay`, `pull`, `release`.

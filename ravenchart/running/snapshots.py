@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The snapshots of a running controller: the file that it writes them to, found and read.
 
 Ravenchart.Hosts.Snapshots (spark_runtime/native) says what the file holds. The controller holds a

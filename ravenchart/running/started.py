@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The controllers of a model, started on this machine to be spoken to."""
 
 from __future__ import annotations

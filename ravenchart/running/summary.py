@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The run in a terminal of 80 columns: verdict last, colour never alone."""
 
 from __future__ import annotations
@@ -82,7 +85,7 @@ def print_journeys(console: Console, took: Sequence[Journey]) -> None:
 
 
 def print_measurement(console: Console, found: Measurement) -> None:
-    """Measured execution times beside those of the model, and what they leave out."""
+    """Measured execution times beside the WCETs of the model, and what they leave out."""
     bounded = any(one.bound is not None for one in found.rows)
     names = ["row", "measured us>", f"+ {found.margin} % us>", "wcet us>", "ratio>", ""]
     table = columns(*names[:4], *(["bound us>"] if bounded else []), *names[4:])

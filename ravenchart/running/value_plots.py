@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Recorded values of a run as a picture: a panel for each, over time."""
 
 from __future__ import annotations

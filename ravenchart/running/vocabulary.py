@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is said on the bus of a model: its messages, their fields and values, by the model's names.
 
 Scenarios, the shell and `RemoteSystem` look their words up here. The messages are those of the

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Functions with their frames and calls, and the call graphs of the compiler that hold them.
 
 GCC writes one file for each unit in the language of VCG (``-fcallgraph-info=su,da``). A node has

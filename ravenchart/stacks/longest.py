@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The longest path from a root of a call graph, or why there is no bound."""
 
 from __future__ import annotations

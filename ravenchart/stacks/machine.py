@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Frames and calls of the run-time library of a board, as its code in the image has them.
 
 Of a function the sum of all that its instructions take of the stack is at least its frame: parts

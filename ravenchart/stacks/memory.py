@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Flash and RAM of a program, by its parts."""
 
 from __future__ import annotations

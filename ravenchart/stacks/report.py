@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is found of a program's stacks and memory, as `--json` and the record of a build have it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a linked program holds, by the words of ``nm -S``, and the values of its constants."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Child processes that end with this one, however it ends: SIGKILL included.
 
 Every child has a session of its own, so that Ctrl-C reaches this process alone, which

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The guard: a process that ends the children of another one that has ended.
 
 Run as ``python -I -S guard.py``. Standard input is a pipe; each process that must not

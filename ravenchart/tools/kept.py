@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Results kept by the content that they speak of, in folders of ``$XDG_CACHE_HOME/ravenchart``.
 
 ``~/.cache`` stands for that variable where it is not set. An entry that cannot be read is none.

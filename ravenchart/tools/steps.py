@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How far a run of gprbuild or gnatprove is, from the lines in which it counts its units.
 
 gprbuild counts them once, and finds more on the way. gnatprove compiles every unit first, and then

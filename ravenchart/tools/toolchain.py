@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The outside programs: gprbuild, gnatprove and dot, found, run, their words passed on."""
 
 from __future__ import annotations

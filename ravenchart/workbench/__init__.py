@@ -1,1 +1,4 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The workbench: a model in a local web page, changed and analysed there."""

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Questions that take long, answered by a process of their own (`room`), newest first.
 
 A question that comes while another one is answered ends that process and starts a new one: what

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Who may talk to a local page: what its own address opened, and no other.
 
 The address holds a random token. A page of another origin does not know it, and a name that

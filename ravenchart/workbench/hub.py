@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The session of a model between the pages that show it, with the advice on it."""
 
 from __future__ import annotations

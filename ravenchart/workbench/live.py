@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The running controllers of the model, for the page: as `ravenchart monitor` shows them."""
 
 from __future__ import annotations

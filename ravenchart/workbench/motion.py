@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a page draws of a controller: its charts with what is active, its values over time."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What every page's server has: the files of the page, the state as a stream, and messages."""
 
 from __future__ import annotations

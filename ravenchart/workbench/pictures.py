@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Where what the drawings of a model show stands in its files.
 
 Graphviz names each group of an SVG drawing in its ``title``: by that name, or by the name and a

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A session between the pages that show it: one thread changes it, and all pages see it."""
 
 from __future__ import annotations

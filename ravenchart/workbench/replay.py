@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A recorded run, for the page: as the running controllers are shown, at the instant chosen."""
 
 from __future__ import annotations

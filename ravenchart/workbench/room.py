@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What takes longer than a change may: advice, how far a WCET may grow, tables. A process.
 
 It reads one question a line on standard input and writes one answer a line, both JSON; an answer

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A search for tables that goes on while people work: what it looks at, and its best so far."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The server of the workbench: beside what every page has, diffs, sources and how far to grow."""
 
 from __future__ import annotations

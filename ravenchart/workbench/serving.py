@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A page from its start to a request to stop: port, address, browser and signals."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A model under change: its states, how to go back, and the files on the disk.
 
 Nothing is written before `save`. The files are compared with the disk at every look: what has

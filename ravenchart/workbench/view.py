@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The state of a session as the page gets it: one JSON object, complete each time.
 
 Times are in ns beside a text for people. What is in the files comes from their text, so it is
@@ -192,7 +195,7 @@ def _response(good: Analysis, saved: Analysis, name: str) -> Json:
         "limit": row["deadline"],
         "limit_text": microseconds(row["deadline"]),
         "slack_text": _us(row["slack"]),
-        "cost_text": microseconds(row["cost"] if task is None else task.budget),
+        "wcet_text": microseconds(row["longest"] if task is None else task.wcet),
         "word": row["word"],
         "met": row["met"],
         "reason": row["reason"],

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Figures: what runtime, codecs and buses cost, and how generator and analysis grow.
 
 Everything is measured in one run, and what matters are the ratios: absolute

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a frame takes to another node: the slcan driver, and the bus server in both kinds of time.
 
 For the driver a frame goes by TCP to an Ada program, which sends it back under the next

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Figures of a chart: generated code against nested case statements, in time and in bytes."""
 
 from __future__ import annotations

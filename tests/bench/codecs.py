@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a frame codec costs: generated Ada against the C that cantools generates from the DBC.
 
 All messages of the Cartesian robot, the same values in one program, alternating. Ada is

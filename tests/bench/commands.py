@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a command costs: a plain call of a driver, a direct one of its device, a queued one.
 
 All in one run of one program, alternating, built with -O2 and checks off.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What becomes of a collection of CAN databases: `python -P -m tests.bench.databases FOLDER...`.
 
 Each file that cantools reads is imported, by a monitor and by the node that sends most messages,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The size of the generated Ada of the examples, and the warnings that it switches off.
 
 Of some, beside the figures before the rooms of the generator were made. Both are to fall.

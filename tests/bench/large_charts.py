@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Charts of many leaf states: what the growth of check, code and proof is measured on.
 
 `large_chart` is a chain of blocks, one like the other. A block has ten leaf states: a

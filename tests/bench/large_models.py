@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Models of many regions, one like the other: what the growth of generation is measured on.
 
 A region has a composite state, a guard, actions and a time-out: four leaf states and

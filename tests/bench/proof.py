@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`make bench-proof`: does the proof of a region grow linearly with its leaf states?
 
 Random charts of growing size are generated and proved: selection, configuration and

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Random charts of a given size, as models: what the proof's growth is measured on.
 
 Hierarchy, events, entry and exit actions; valid by construction, from the seed alone.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How the response-time analysis grows, and how it stands beside a compiled one.
 
 The crate `response-time-analysis` gets the same sets of plain tasks and must give the same
@@ -107,7 +110,7 @@ def by_crate(sets: Sequence[Sequence[Task]]) -> list[CrateResult]:
     if built.returncode != 0:
         print(f"  the crate could not be built: {built.stderr.strip()[-300:]}")
         return []
-    lines = [" ".join(f"{task.period} {task.cost}" for task in tasks) for tasks in sets]
+    lines = [" ".join(f"{task.period} {task.wcet}" for task in tasks) for tasks in sets]
     done = subprocess.run(
         [target / "release" / "rta-crate"],
         input="\n".join(lines) + "\n",

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How long a user waits: start, check, generate, and generate and build where nothing changed.
 
 Beside the figures before the commands imported what they need when they are called, and the aims.

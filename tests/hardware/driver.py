@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A driver, in a program that echoes, tried by python-can on an interface of Linux.
 
 Run as ``python -P -m tests.hardware.driver PROGRAM INTERFACE``, where PROGRAM is
@@ -9,11 +12,12 @@ another interface of the same bus. As root, for the interface is taken down and 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
-from ravenchart.commands import loopback_files
-from ravenchart.commands.loopback import show
+from ravenchart.commands.loopback import answered, show
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.conformance.ends import Ends, Setup, opened
 from ravenchart.hw_can.conformance.suite import SuiteResult, run
@@ -43,7 +47,7 @@ def main() -> int:
     parser.add_argument("program", type=Path, metavar="PROGRAM")
     parser.add_argument("channel", metavar="INTERFACE")
     parser.add_argument("--near", metavar="INTERFACE", help="of python-can (default: the same)")
-    parser.add_argument("--junit", type=Path, metavar="FILE", help="write JUnit XML there")
+    parser.add_argument("--json", action="store_true", help="print what came of it as JSON")
     parser.add_argument("--driver", choices=tuple(VARIABLES), default="socketcan")
     parser.add_argument("--emulated", action="store_true", help="an SJA1000 of QEMU is on the bus")
     options = parser.parse_args()
@@ -59,9 +63,10 @@ def main() -> int:
     except (BenchError, OSError) as problem:
         print(f"driver: error: {problem}", file=sys.stderr)
         return 2
-    show(result)
-    if options.junit is not None:
-        options.junit.write_text(loopback_files.junit(result, "driver"), encoding="utf-8")
+    if options.json:
+        print(json.dumps({"result": asdict(answered(result))}))
+    else:
+        show(result)
     return 0 if result.passed else 1
 
 

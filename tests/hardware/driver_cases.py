@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The cases of a test of the drivers `socketcan` and `ctucanfd`: a program that echoes.
 
 Program and python-can are on one interface of Linux, virtual (vcan) or real, or on two

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Machines to run Ada programs on: this one, and others by cross compiler and emulation.
 
 What is built for another machine is linked statically and runs in QEMU's user mode: its

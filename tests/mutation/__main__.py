@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`make mutate`: break the generated programs of the subjects and report who notices."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """All rules by kind, and the mutants of a generated program."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Breaks of the facts that the timing certificate states and the code takes from it.
 
 A fact is edited where the code uses it: a priority, a period, a row's divisor, an identifier.

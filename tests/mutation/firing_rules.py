@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Breaks of what a region does: target, order, actions, history, deferral, time, completion."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`make mutate-runtime`: break the Ada that people wrote, runtime and HAL: who notices?
 
 The facts of tests/ada are asked first, with every contract executed, then gnatprove. Only what

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Breaks of the model itself: what the model rules, or its expected steps, must notice."""
 
 from __future__ import annotations

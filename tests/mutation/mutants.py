@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a mutant is, and how a few of many are chosen."""
 
 from __future__ import annotations

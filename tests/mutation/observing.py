@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What tests see of a broken program: its steps in virtual time, or a run as it is."""
 
 from __future__ import annotations

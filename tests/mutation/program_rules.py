@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Breaks outside the regions: ceilings, the timing certificate, codecs, frames."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The score: by kind who caught how many, the survivors, and the explained ones."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Breaks of what a region selects: source, trigger, guard, precedence; as code and as declared."""
 
 from __future__ import annotations

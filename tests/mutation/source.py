@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Generated Ada as text with places: subprograms, statements, arms of a case, branches of an if.
 
 Only the layout of the project's own printer is understood: three spaces a level, one

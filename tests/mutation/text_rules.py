@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Small breaks of Ada that people wrote: one operator, constant or statement of a subprogram."""
 
 from __future__ import annotations

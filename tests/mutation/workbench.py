@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A copy of a program that can be broken: compiled, proved and run again, then restored."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the interpreter comes to, the rules of behaviour have found reachable."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the rules say of every chart, held against what the interpreter does with random ones."""
 
 from __future__ import annotations

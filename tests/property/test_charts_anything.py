@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Whatever a chart is made of: an answer, no exception, the same each time."""
 
 from __future__ import annotations

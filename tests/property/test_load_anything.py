@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Whatever a file holds: no exception, located errors, the same result twice."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What an observed region says of its steps, held against what random charts execute."""
 
 from __future__ import annotations

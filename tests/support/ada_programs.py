@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The programs of tests/ada, built with a driver."""
 
 from __future__ import annotations

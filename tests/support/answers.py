@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a command prints with `--json`, held against docs/answer.schema.json."""
 
 from __future__ import annotations

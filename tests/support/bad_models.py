@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The bad models, and what loading them, their program and their behaviour prints.
 
 After a deliberate change of a message, `python -m tests.support.bad_models`

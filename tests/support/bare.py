@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Images without a run-time library of others: Debian's compiler, our start code, QEMU."""
 
 from __future__ import annotations

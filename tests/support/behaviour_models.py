@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Small models for the rules of behaviour: one component, its regions, and what is said of them."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a run of the stand-in controller needs, written to a directory."""
 
 from __future__ import annotations

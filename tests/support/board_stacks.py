@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How deep the stacks of a controller on an emulated board have been, by its memory."""
 
 from __future__ import annotations

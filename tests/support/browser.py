@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A local page in Chromium as Debian has it: what goes wrong in it, and how it reads aloud."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A bus server that does what a right one never does: it harms, refuses, says garbage.
 
 It is no bus and knows no bit times, arbitration, acknowledgement or error counters: a frame

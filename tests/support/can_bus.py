@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The bus server, for tests: built when it is first needed, and started on a free port."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """CAN frames: random ones of every kind, and those that come next."""
 
 from __future__ import annotations

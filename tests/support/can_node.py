@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A program with the CAN driver `bus`, as a process that says how it stands (can_echo.adb)."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Timing certificates compiled alone, and systems of random shape to make them of."""
 
 from __future__ import annotations

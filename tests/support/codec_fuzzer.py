@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Random frames through the generated codecs of a model, as a program of their own.
 
 For each message the program draws frames, half of them at random and half one bit away

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The generated codecs of a model as a program, beside cantools with the generated database.
 
 The program reads lines ``P n value...`` and ``U n byte...``, where n is the number of a

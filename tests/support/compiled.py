@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Many small models compiled as `ravenchart build` does, in one run of gprbuild.
 
 Each model is a system of its own, so that what the compiler says of one is not kept

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The compiler of the tests: gcc for Ada, with a store of what was compiled before.
 
 Many tests build copies of one model with a small change. tests/compiler/compile.adb stands for

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The reference cases as the records of `analysis.core`, times scaled to integers."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A program with a driver of the CAN HAL that echoes (tests/ada/can_echo.adb), as a process."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Machines as parameters of tests: what is not there is skipped, with the reason."""
 
 from __future__ import annotations

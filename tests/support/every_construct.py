@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A hand-built component whose one region has every construct that a chart can have."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A small model with all that evidence is made of: program, record, requirements, tests.
 
 The record is made up: it has the digests of the files that are there, and a check of each unit. So

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """An example of one node, built with the driver `bus`, on a bus server with tools of others."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The longest responses of small task sets over everything that can happen, tick by tick.
 
 Nothing of the analysis is used or known here. Each task may start at any time, or has an

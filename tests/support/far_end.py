@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The other end of a bus, where a controller would be: says what it is told, and answers."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The fault matrix: which test shows that a fault is found, and what follows.
 
 A test says so with `shows`; the page docs/faults.md is made of what the tests say::

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Functional Mock-up Units for the tests, compiled here: the oven of docs/plants.md."""
 
 from __future__ import annotations

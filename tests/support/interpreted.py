@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Small systems for the tests of the interpreter, told in as few words as possible."""
 
 from __future__ import annotations

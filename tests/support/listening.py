@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A server on a free port of this machine, with a thread for each client."""
 
 from __future__ import annotations

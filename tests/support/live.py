@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One controller at a time runs in real time: two would share a core at equal priorities."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Models in MAST's text form: their objects by kind, and what these refer to."""
 
 from __future__ import annotations

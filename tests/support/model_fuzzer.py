@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Models broken or bent at random: what `generate` accepts compiles without a warning.
 
 A seed picks a model of the checkout and one to four changes of it: another expression, number,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How a test that compiles is parametrized: with contracts executed, and without."""
 
 from __future__ import annotations

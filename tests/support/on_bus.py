@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A feature model on a simulated bus, with a bench that does something."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A hand-built system with two components, a bus and every kind of edge."""
 
 from __future__ import annotations

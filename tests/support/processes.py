@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The processes of a run of the command line, found by a mark in their environment."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a command said, without the lines of progress that it has on a slow machine."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The English of the project, sentence by sentence, with the place where each stands."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A small valid model, and models made from it by replacing text."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Random charts as models, valid by construction, and random stimuli for them.
 
 A chart is drawn from its seed alone, so it is the same in every model that holds

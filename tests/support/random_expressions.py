@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Random expressions over the names of a component, most of them sound."""
 
 from __future__ import annotations

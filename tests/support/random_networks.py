@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Random networks of tasks, sections, tables, frames and chains, small enough to simulate."""
 
 from __future__ import annotations
@@ -71,7 +74,7 @@ def _tasks(chance: random.Random, core: str, plain: bool) -> list[Task]:
 def _table(chance: random.Random, task: Task) -> Task:
     """The task with its cost in rows of different periods."""
     rows = tuple(
-        TableRow(f"r{n}", max(1, task.cost // 2), every, chance.randrange(every))
+        TableRow(f"r{n}", max(1, task.wcet // 2), every, chance.randrange(every))
         for n, every in enumerate(chance.choices((1, 2, 3, 4), k=chance.randint(1, 3)))
     )
     own, sporadic = chance.randint(0, 2), chance.random() < 0.3
@@ -86,7 +89,7 @@ def _sections(chance: random.Random, tasks: list[Task], core: str, plain: bool) 
     found = []
     for task in tasks:
         if chance.random() < 0.4:
-            longest = task.cost - 1 if plain else task.plain_cost
+            longest = task.wcet - 1 if plain else task.plain_wcet
             length = chance.randint(1, max(1, longest))
             found.append(Section(f"{core}.o{chance.randint(0, 1)}", task.name, length))
     return found

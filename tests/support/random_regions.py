@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Random top-level regions: their tree, then behaviours, then transitions.
 
 Every vertex can be reached, as far as the graph tells; what completes by itself

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A client of the bus server that says whatever a test wants."""
 
 from __future__ import annotations

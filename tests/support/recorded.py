@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The model that records values, and what each element is worth, execution by execution."""
 
 from __future__ import annotations

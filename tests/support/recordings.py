@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Traces of runs as controllers write them, and what their monitors had shown meanwhile."""
 
 from __future__ import annotations

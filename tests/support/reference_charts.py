@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The charts of tests/reference/charts as models, and their traces as behaviours.
 
 A label of a JSON chart stands for the behaviour that holds it: what the model

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A bus database and a trace map for the stand-in controller, without the generator."""
 
 from __future__ import annotations

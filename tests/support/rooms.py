@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The rooms of the house and who imports whom, counted and drawn.
 
 `python -m tests.support.rooms` writes docs/pictures/house/: the packages of `ravenchart`, and those

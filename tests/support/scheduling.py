@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """In which order the workers of pytest-xdist get the tests, and which test runs alone.
 
 A test marked ``live`` waits until no other live test runs: one worker gets those, while the

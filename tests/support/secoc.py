@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Authenticated frames by an independent implementation of AES-CMAC (RFC 4493)."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A CAN bus with two slcan adapters, each behind a serial line of its own: two pseudo terminals."""
 
 from __future__ import annotations

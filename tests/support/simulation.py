@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A brute-force schedule of small synchronous task sets, one unit of time after another."""
 
 from __future__ import annotations
@@ -20,7 +23,7 @@ def longest_responses(tasks: Sequence[Task]) -> dict[str, int]:
     for now in range(2 * math.lcm(*(t.period for t in tasks))):
         for t in ordered:
             if now % t.period == 0:
-                pending[t.element].append([now, t.budget])
+                pending[t.element].append([now, t.wcet])
         for t in ordered:
             if pending[t.element]:
                 job = pending[t.element][0]

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Two slcan adapters on one bus: frame lines of each TCP client go to the others."""
 
 from __future__ import annotations

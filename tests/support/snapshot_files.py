@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A snapshot of the pump as its controller writes it, and files of them that someone holds."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How deep the stacks of a running program have been, read from outside.
 
 The kernel gives a stack as zeros. So the lowest word that is not zero shows how deep it was, and a

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A controller in Python that stands in for the generated one in tests of the bench.
 
 It serves slcan on a free TCP port, moves each axis that the bus database knows,

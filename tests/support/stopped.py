@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """An exception in a thread of another process, at an instruction where one can come.
 
 A signal from outside comes anywhere, also while the C library holds a lock of its own

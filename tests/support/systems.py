@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Small systems for the tests of the analysis, built without a model file."""
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ HERE = Origin("model.yaml", 1, 1)
 def task(
     name: str,
     priority: int,
-    budget: int,
+    wcet: int,
     period: int,
     deadline: int | None = None,
     jitter: int = 0,
@@ -32,7 +35,7 @@ def task(
         period=Ns(period),
         offset=Ns(0),
         deadline=Ns(period if deadline is None else deadline),
-        budget=Ns(budget),
+        wcet=Ns(wcet),
         priority=priority,
         jitter=Ns(jitter),
     )

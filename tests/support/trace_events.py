@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Files in the trace event format of Chrome, which Perfetto opens: read, and held against it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The example of two nodes, with text of its model replaced."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A local page that runs as a process, spoken to as a browser does and as an attacker would."""
 
 from __future__ import annotations

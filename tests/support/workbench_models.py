@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A model of a hundred activities, as large as the workbench is meant for."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The Ada tests: the same output with all contracts executed and with all checks off."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Authentication against an independent implementation, and attacks on a bus."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Two bus objects back to back: the cases that python-can tries its own interfaces with.
 
 They are written anew here, as python-can is installed without its tests.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Codecs and lengths of time on an emulated AArch64, without a run-time library of others."""
 
 from __future__ import annotations

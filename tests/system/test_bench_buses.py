@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The figures of buses: every frame arrives, and none is faster than its bits."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The codecs of the robot beside the C that cantools generates: the same frames, and faster."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Whole controllers on an emulated board, with a run-time library of the user.
 
 They need what RAVENCHART_RTS names, a cross compiler and QEMU: see docs/boards.md.
@@ -165,7 +168,7 @@ def times(home: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, dict[str
 def test_a_longer_activity_is_measured_and_its_overrun_fails_the_run(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    row, budget = "joint_x.position_control", 150_000
+    row, wcet = "joint_x.position_control", 150_000
     busy(tmp_path / "none", 1)
     busy(tmp_path / "some", 1_000)
     assert times(tmp_path / "none", capsys) == times(tmp_path / "none", capsys)
@@ -176,7 +179,7 @@ def test_a_longer_activity_is_measured_and_its_overrun_fails_the_run(
     others = [name for name, time in base.items() if time and "position_control" not in name]
     apart = {name: abs(base[name] - longer[name]) for name in others}
     assert max(apart.values()) < each * 100, apart  # of the loop nothing is in them
-    turns = {share: int((budget * share - base[row]) / each) for share in (0.9, 1.1)}
+    turns = {share: int((wcet * share - base[row]) / each) for share in (0.9, 1.1)}
     for share, count in turns.items():
         home = tmp_path / str(share)
         busy(home, count)

@@ -1,4 +1,7 @@
-"""A transition, a ceiling, a queue bound and a budget, each broken by hand: each is refused.
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A transition, a ceiling, a queue bound and a WCET, each broken by hand: each is refused.
 
 The proofs need gnatprove; without it those tests are skipped, and say so.
 """
@@ -93,7 +96,7 @@ QUEUE_GUARD = "< Capacity"
 QUEUE_BROKEN = "<= Capacity"
 
 
-def test_a_budget_past_its_slack_does_not_compile(checkout: Path) -> None:
+def test_a_wcet_past_its_slack_does_not_compile(checkout: Path) -> None:
     certificate = checkout / "three" / "generated" / "three_components-timing_certificate.ads"
     _break(
         certificate,
@@ -106,7 +109,7 @@ def test_a_budget_past_its_slack_does_not_compile(checkout: Path) -> None:
         toolchain.run("gprbuild", options, checkout / "three" / "generated", variables)
 
 
-def test_a_budget_that_cannot_be_met_is_refused_with_the_model_line(
+def test_a_wcet_that_cannot_be_met_is_refused_with_the_model_line(
     copy_of: Callable[[str], Path],
 ) -> None:
     folder = copy_of("three_components")

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A build gives the variant that was asked for, whichever was built before it."""
 
 from __future__ import annotations

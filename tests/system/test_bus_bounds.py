@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """On the simulated bus no frame takes longer than the analysis says, with and without errors."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Programs with the CAN driver `bus`: each a process, and a node of one simulated bus."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The python-can backend and python-can's tools, over the bus server."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Much traffic on the bus server, of which nothing is lost and nothing overtakes."""
 
 from __future__ import annotations

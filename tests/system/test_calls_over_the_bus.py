@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Commands of another node: two programs on one bus, with it and without."""
 
 from __future__ import annotations

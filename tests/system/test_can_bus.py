@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The bus server: several processes on one simulated bus, with faults on demand."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The CANopen device of the example, and the master of the package `canopen`, on one bus."""
 
 from __future__ import annotations

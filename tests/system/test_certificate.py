@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The timing certificate: the compiler accepts what holds, and refuses a nanosecond less."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Claims that the analysis never makes: the certificate refuses them all the same."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Every chart that can be simulated can be built too: warnings are errors in both modes."""
 
 from __future__ import annotations

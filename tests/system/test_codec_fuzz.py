@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Random frames through generated codecs: nothing is raised, and nothing is accepted wrongly.
 
 A few thousand for each message; a million with `make test-long`.

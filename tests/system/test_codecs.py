@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The generated codecs and cantools with the generated database agree, bit by bit."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Completion scripts, executed by the shells themselves."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Contracts of activities: what breaks one is refused by gnatprove, and `prove` says which."""
 
 from __future__ import annotations
@@ -70,7 +73,8 @@ def test_what_breaks_a_contract_is_not_proved(tmp_path: Path, what: str) -> None
 @pytest.mark.slow
 def test_the_listings_of_the_page_are_proved(tmp_path: Path) -> None:
     """The model, and the body of the user."""
-    model, body = (re.findall(rf"```{kind}\n(.*?)```", PAGE, re.S)[0] for kind in ("yaml", "ada"))
+    (model,) = re.findall(r"```yaml\n(system:.*?)```", PAGE, re.S)
+    (body,) = re.findall(r"```ada\n( *package body.*?)```", PAGE, re.S)
     (tmp_path / MODEL).write_text(model)
     (tmp_path / "user").mkdir()
     (tmp_path / "user" / "tank_house-tank-activities.adb").write_text(body)

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Programs with the CAN driver `ctucanfd`, on a file in place of the registers of a card."""
 
 from __future__ import annotations

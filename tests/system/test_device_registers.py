@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Devices with registers: started before the first release, made safe on every way to the end.
 
 The simulated registers of tests/feature/registers write each change of a control or DAC register

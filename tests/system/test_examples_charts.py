@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The examples of charts do what their READMEs say, step by step."""
 
 from __future__ import annotations
@@ -29,7 +32,7 @@ class Example:
     @property
     def trace(self) -> str:
         """What the README expects of `simulate`."""
-        found = re.search(r"^## The trace\n.*?^```\n(.*?)^```\n", self.readme, re.S | re.M)
+        found = re.search(r"^## The trace\n.*?^```text\n(.*?)^```\n", self.readme, re.S | re.M)
         assert found is not None
         return found.group(1)
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the timing certificate states is what the program does: edits of either are refused.
 
 The program is that of the drive of `two_nodes`. The compiler refuses an edit of a task, and one

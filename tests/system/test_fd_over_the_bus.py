@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """CAN FD between two programs on one bus, and with a bench: what is good arrives, nothing else."""
 
 from __future__ import annotations

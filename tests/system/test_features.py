@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Each folder of tests/feature: its model builds without a warning and runs to its trace."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Raw bits of IEEE 754 and floating-point numbers of Ada: the same as `struct` has them."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A frame that is not as the layout table has it is refused: by gnatprove, or before.
 
 The subject sends a classic frame and CAN FD frames, and receives one of each. The proofs need

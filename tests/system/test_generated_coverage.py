@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`tests --coverage`: what the cases execute of the generated program, counted by gcov."""
 
 from __future__ import annotations

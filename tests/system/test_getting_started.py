@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The page docs/getting-started.md, followed to the letter."""
 
 from __future__ import annotations

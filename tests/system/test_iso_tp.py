@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Both ends of ISO-TP against an independent implementation, the package `can-isotp`."""
 
 from __future__ import annotations

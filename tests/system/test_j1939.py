@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The J1939 node of the example, and the stack of the package `can-j1939`, on one bus."""
 
 from __future__ import annotations

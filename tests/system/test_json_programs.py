@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`--json` of the commands that compile, run and prove a program; terminals and pipes."""
 
 from __future__ import annotations

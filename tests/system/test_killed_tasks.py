@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Tasks of a running robot that a signal of the processor ends: named, answered by its chart."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The language server, asked by the client of pygls as an editor asks it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The running controller in a real browser, on the page of the workbench."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Tasks that die or no longer end a release: seen, reported with the reason, and answered."""
 
 from __future__ import annotations

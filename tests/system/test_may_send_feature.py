@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A body of the user that decides when it sends, in virtual time; so does its first version."""
 
 from __future__ import annotations

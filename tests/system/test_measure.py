@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart measure` on this machine: a program in mode release, run and measured."""
 
 from __future__ import annotations

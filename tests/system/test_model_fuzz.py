@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Models bent at random: `generate` refuses them, or their program compiles without a warning.
 
 50 models; 2,000 with `make test-long`. Each seed makes the same model again:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Broken programs are caught by the compiler, by gnatprove or by a run; an unbroken one is clean.
 
 The subject is a chart of three states, so that a proof takes seconds. Without gnatprove

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Invariants as contracts of the code: an effect that breaks one is refused by gnatprove."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The Ada tests on machines of another byte order or word length, in QEMU's user mode."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A proof says what is outside SPARK, and fails unless a list names it with a reason."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """docs/plants.md as its reader does it: the oven is heated by a class, and by a unit of FMI."""
 
 from __future__ import annotations

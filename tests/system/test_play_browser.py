@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Charts in motion in a real browser: by pointer, by keyboard, and read aloud."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """However the command line ends, nothing that it has started goes on."""
 
 from __future__ import annotations

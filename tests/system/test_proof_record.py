@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The record of the last proof speaks of the sources that are here."""
 
 from __future__ import annotations

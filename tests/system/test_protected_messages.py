@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """End-to-end protection against an independent implementation, and on a bus with faults."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What examples/pump/requirements.csv asks of the pump, one test for each requirement.
 
 `--tests` gives the results to the evidence of the example: each test names its requirement.

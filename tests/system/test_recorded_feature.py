@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Recorded values: those of the running controller, the simulation and the interpreter agree."""
 
 from __future__ import annotations

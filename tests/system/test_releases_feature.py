@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Processors that queued ports release: generated code against interpreter, and a run."""
 
 from __future__ import annotations

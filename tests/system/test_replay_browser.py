@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A recorded run in a real browser: played, stepped and moved by a slider, by keys alone too."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The runtime, the HAL and generated programs ask for nothing that a bare board lacks."""
 
 from __future__ import annotations

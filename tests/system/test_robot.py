@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The Cartesian robot against the bench, as `make demo` runs it, and when things go wrong."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The runtime as a crate: a consumer's project, built as Alire builds it, and run."""
 
 from __future__ import annotations

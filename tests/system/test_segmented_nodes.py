@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Values in several frames between two programs on a bus, and between one and `can-isotp`."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The chart fragments of docs/semantics.md do what the page says."""
 
 from __future__ import annotations
@@ -14,7 +17,7 @@ from ravenchart.paths import ROOT
 from tests.support.pump import loaded
 
 PAGE = (ROOT / "docs" / "semantics.md").read_text()
-FRAGMENTS: list[tuple[str, str]] = re.findall(r"```yaml\n(.*?)```\n\n```\n(.*?)```", PAGE, re.S)
+FRAGMENTS: list[tuple[str, str]] = re.findall(r"```yaml\n(initial:.*?)```\n\n```text\n(.*?)```", PAGE, re.S)
 
 MODEL = """\
 system: Fragment
@@ -66,7 +69,7 @@ def _done(chart: str, events: list[str]) -> list[str]:
 
 
 def test_the_page_has_fragments() -> None:
-    assert len(FRAGMENTS) == PAGE.count("```yaml")
+    assert len(FRAGMENTS) == PAGE.count("```yaml\ninitial:")
 
 
 @pytest.mark.parametrize(("chart", "expected"), FRAGMENTS)

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """gnatprove asks for verdicts that a prover gave before: here, and from the memcached of a team."""
 
 from __future__ import annotations

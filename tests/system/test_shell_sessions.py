@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The shell and scenarios on real buses: the robot's controller in a process of its own."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The generated code in virtual time against the reference traces and the interpreter."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The documentation as a site: it builds without a warning, and needs no network to be read."""
 
 from __future__ import annotations

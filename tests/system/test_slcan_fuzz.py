@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Random byte strings through the slcan parser: nothing is raised or accepted wrongly.
 
 200,000 of them in each build; ten million with `make test-long`. What becomes of the

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The slcan driver by TCP, and as the host of an adapter on a serial line: one end of a pty."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A soak: the robot in virtual time under random faults, one after another.
 
 Each episode brings the robot from wherever the last one left it to Ready, and then one fault. The

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Each build bounds the stacks of its tasks: no run uses more, and a smaller stack fails it."""
 
 from __future__ import annotations

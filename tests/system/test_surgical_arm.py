@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The surgical robot moves: each framework reaches its goal, on registers and on a bus."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The surgical robot in all its deployments: one application, whatever the equipment."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Colour is for terminals that want it, and progress for people who wait at one."""
 
 from __future__ import annotations

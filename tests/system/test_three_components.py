@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The classic allocation: three components of three regions on three processors."""
 
 from __future__ import annotations

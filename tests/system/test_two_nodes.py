@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The two nodes of the example: built, run on one bus, and cut off from each other."""
 
 from __future__ import annotations

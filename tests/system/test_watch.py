@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`check --watch`: a real process that sees its files change."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A running controller is watched: what monitors show is what it reports, and how they end."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Files in the working folder are never taken for modules of ours; ends have their statuses."""
 
 from __future__ import annotations
@@ -119,7 +122,7 @@ def test_an_internal_error_has_a_status_of_its_own() -> None:
     )
 
 
-LATE = "task,priority,period_ms,cost_us\nlow,1,1,900\nhigh,2,1,200\n"
+LATE = "task,priority,period_ms,wcet_us\nlow,1,1,900\nhigh,2,1,200\n"
 
 
 @pytest.mark.parametrize(("text", "status"), [(LATE, 1), (LATE.replace("900", "100"), 0)])

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The wheel, installed in an environment of its own and used in a folder far from the checkout."""
 
 from __future__ import annotations

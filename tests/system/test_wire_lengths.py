@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Frames on the simulated bus are as long as the analysis says, and never longer."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The workbench in a real browser, Debian's Chromium: by drag, by keyboard, and read aloud."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The CAN driver `xilinx` on a model of its registers: filter, counts, bus-off and recovery."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The gnatprove of each age is told what it understands, and named with its provers."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart allocate`: what is proposed holds when it is put into the model."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Reading a controller's trace: what it tells, and what is refused."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What people read: findings, the terminal table, the HTML report."""
 
 from __future__ import annotations
@@ -140,8 +143,8 @@ def test_what_to_change_is_said_on_the_terminal_and_in_the_report() -> None:
     expected = (
         "To meet all deadlines, one of these is enough:",
         "priorities of cpu in this order: high, low",
-        "execution time of low less by 5.9 %: 1700 to 1599.7 us",
-        "execution time of high less by 25.0 %: 400 to 300 us",
+        "WCET of low less by 5.9 %: 1700 to 1599.7 us",
+        "WCET of high less by 25.0 %: 400 to 300 us",
         "A longer period (up to 10 times) of one alone is not enough: high, low.",
     )
     for text in (printed(inverted()), Page(render(analyse(inverted()))).text):
@@ -167,7 +170,7 @@ def test_a_tight_system_is_told_what_gives_it_room_and_one_with_room_nothing() -
     tasks = [task("a", 2, 500, 1_000), task("b", 1, 450, 1_000)]
     text = printed(system(tasks))
     assert "To let all execution times grow by 20.0 %, one of these is enough:" in text
-    assert "execution time of a less by 23.4 %" in text  # 1.2 (383 + 450) <= 1000
+    assert "WCET of a less by 23.4 %" in text  # 1.2 (383 + 450) <= 1000
     assert "What to change" in render(analyse(system(tasks)))
     for some in ([tasks[0]], []):
         assert advice.of_model(analyse(system(some))) is None
@@ -348,7 +351,7 @@ def test_executions_stand_beside_the_models_claims() -> None:
     times = {"sensor.filter": 900_000, "pump.drive": 1_000_001, "elsewhere.x": 1}
     seen.executions.update({row: Ns(time) for row, time in times.items()})
     rows = executions(analyse(plant()), seen)
-    assert [(r.row, r.claimed, r.exceeded) for r in rows] == [
+    assert [(r.row, r.wcet, r.exceeded) for r in rows] == [
         ("pump.drive", 1_000_000, True),
         ("sensor.filter", 1_000_000, False),
     ]

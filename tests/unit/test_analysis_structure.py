@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Bus load, the dependency graph, chains and the picture."""
 
 from __future__ import annotations

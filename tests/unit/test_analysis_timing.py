@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The timing of a system: its tasks, frames and chains as the core sees them.
 
 What the core itself does with them is shown by the tests of the core.
@@ -272,7 +275,7 @@ def task_sets(draw: st.DrawFn) -> list[Task]:
 @example([task("a", 2, 3, 12), task("b", 1, 14, 19, 25)])
 def test_synchronous_sets_agree_with_simulation(tasks: list[Task]) -> None:
     assume(len({t.priority for t in tasks}) == len(tasks))
-    assume(sum(Fraction(t.budget, t.period) for t in tasks) <= 1)
+    assume(sum(Fraction(t.wcet, t.period) for t in tasks) <= 1)
     found = analyse(system(tasks))
     assert {r.task.name: r.bound for r in found.responses} == longest_responses(tasks)
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Authentication in the model, the analysis and the bench."""
 
 from __future__ import annotations
@@ -119,15 +122,15 @@ def test_the_trailer_ends_the_frame_and_no_signal_is_in_it(system: System) -> No
 
 
 def test_the_time_of_each_mac_is_in_the_row_that_has_it_computed(system: System) -> None:
-    budgets = {s.element: s.timing.wcet for p in system.processors for s in p.slots}
-    assert budgets["gate.answer"] == (200 + 40 + 40 + 60) * US
-    assert budgets["line.receive"] == (20 + 60) * US
-    assert budgets["gate.ports"] == 100 * US
+    wcets = {s.element: s.timing.wcet for p in system.processors for s in p.slots}
+    assert wcets["gate.answer"] == (200 + 40 + 40 + 60) * US
+    assert wcets["line.receive"] == (20 + 60) * US
+    assert wcets["gate.ports"] == 100 * US
 
 
 def test_the_time_of_a_mac_counts_on_the_node_that_computes_it(two: System) -> None:
-    budgets = {(p.node, s.work): s.timing.wcet for p in two.processors for s in p.slots}
-    found = {f"{node} {work.value}": wcet // US for (node, work), wcet in budgets.items()}
+    wcets = {(p.node, s.work): s.timing.wcet for p in two.processors for s in p.slots}
+    found = {f"{node} {work.value}": wcet // US for (node, work), wcet in wcets.items()}
     assert (found["one receive"], found["two receive"]) == (20, 50)
 
 

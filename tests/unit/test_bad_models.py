@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Every model under tests/bad_models gives exactly the text of its expect.txt."""
 
 from __future__ import annotations

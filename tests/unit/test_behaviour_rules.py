@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules of behaviour: for each a model that shows it, and a near twin that does not."""
 
 from __future__ import annotations

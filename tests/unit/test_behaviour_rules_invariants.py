@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Declared invariants: proved, violated with a trace, or not inductive."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A chart with too many configurations is checked in parts: each region of a state by itself."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Ten regions of ten states are checked with little work, or the check says how far it got."""
 
 from __future__ import annotations

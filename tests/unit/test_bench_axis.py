@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The simulated drive: bounds, energy, timing, switches, determinism."""
 
 from __future__ import annotations

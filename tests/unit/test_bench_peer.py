@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The codec and the peer on the bus, against a small slcan server."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Whole runs: the bench, a stand-in controller, the verdict and the report."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Scenario files: what they say, and what is refused with which words."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The bench in the time of an emulated board, with a board of the test behind the pipes."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The python-can backend, over a server that does what the real one never does."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Faults of a controller as a model hears of them: rows, events, recovery, and their time."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Logs of a run and of the bus server: what cannot be written, and what is read back."""
 
 from __future__ import annotations

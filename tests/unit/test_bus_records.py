@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The records of the bus protocol: exact both ways, and total on any bytes."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`run --interface`: a scenario played to a controller that runs already, and its verdict."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """CAN FD in models: laid out, checked, analysed and generated."""
 
 from __future__ import annotations
@@ -49,7 +52,8 @@ def test_a_frame_takes_what_its_bits_take_at_their_rates(text: str, bits: int) -
     message = next(m for m in system.messages if m.fd)
     assert (message.length, message.signals[-1].start) == (48, 19 * 16)
     found = analyse(system)
-    assert found.network.items()[message.element].cost == bits
+    frames = {frame.name: frame for some in found.network.frames.values() for frame in some}
+    assert frames[message.element].cost == bits
 
 
 def test_a_frame_of_up_to_eight_bytes_may_be_fd_too() -> None:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Test cases that are found for charts: what counts as shown, and that a search shows it."""
 
 from __future__ import annotations

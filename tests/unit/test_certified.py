@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the timing certificate states, and where the code takes it from there."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules of complete charts: what a step sends, what is reached, what is in another's way."""
 
 from __future__ import annotations

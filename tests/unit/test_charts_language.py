@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Complete charts as models write them: what they mean, and what they may not say."""
 
 from __future__ import annotations

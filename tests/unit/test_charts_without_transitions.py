@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A chart without transitions is a chart: it enters its states, and is checked like others."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the rules of behaviour found is taken again for the same content, and for no other."""
 
 from __future__ import annotations

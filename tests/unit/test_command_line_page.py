@@ -1,15 +1,18 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The pages about the command line are what the command line is."""
 
 from __future__ import annotations
 
 import re
-import shlex
-from pathlib import Path
+from argparse import ArgumentParser, _SubParsersAction
+from collections.abc import Iterator
 
 import pytest
 
 from ravenchart import failures, start
-from ravenchart.command_line import whole_parser
+from ravenchart.command_line import COMMANDS, whole_parser
 from ravenchart.failures import MEANINGS, STATUSES
 from ravenchart.paths import ROOT
 from ravenchart.reference import pages
@@ -37,47 +40,34 @@ def test_every_status_of_the_program_has_a_meaning() -> None:
     assert {int(one) for words in MEANINGS for one in words.split(", ")} == named
 
 
-def test_the_help_fits_a_terminal(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def parsers(parser: ArgumentParser) -> Iterator[ArgumentParser]:
+    """A parser and those of all its commands, however deep."""
+    yield parser
+    for action in parser._actions:
+        if isinstance(action, _SubParsersAction):
+            for sub in dict.fromkeys(action.choices.values()):
+                yield from parsers(sub)
+
+
+PARSERS = tuple(parsers(whole_parser()))
+
+
+@pytest.mark.parametrize("parser", PARSERS, ids=lambda parser: parser.prog)
+def test_usage_and_help_of_every_command_fit_a_terminal(
+    parser: ArgumentParser, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "80")
-    with pytest.raises(SystemExit):
-        whole_parser().parse_args(["--help"])
-    told = capsys.readouterr().out
-    assert max(map(len, told.splitlines())) <= 80
-    read = " ".join(told.split())
+    told = parser.format_usage() + parser.format_help()
+    assert [line for line in told.splitlines() if len(line) > 80] == []
+
+
+def test_the_help_of_every_command_is_measured() -> None:
+    names = {parser.prog.removeprefix("ravenchart").strip() for parser in PARSERS}
+    assert names == {"", *COMMANDS}
+
+
+def test_the_help_has_the_exit_statuses(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    read = " ".join(whole_parser().format_help().split())
     for status, meaning in MEANINGS.items():
         assert f" {status} {meaning}" in read
-
-
-FENCE = re.compile(r"^```(?:sh|console|bash)?\n(.*?)^```$", re.M | re.S)
-"""A listing of commands: one without a language, or with that of a shell."""
-PAGES = (*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/**/*.md"))
-
-
-def calls(text: str) -> list[list[str]]:
-    """The words of each call of `ravenchart` in the listings, without what is the shell's."""
-    found = []
-    for block in FENCE.findall(text):
-        for line in block.replace("\\\n", " ").splitlines():
-            for part in re.split(r"\||&&|;", line):
-                call = re.match(r"\s*(?:\$ )?(?:[\w./]*/)?ravenchart (.*)", part)
-                if call:
-                    words = shlex.split(call[1], comments=True)
-                    ends = (n for n, word in enumerate(words) if re.match(r"\d?>", word))
-                    found.append(words[: next(ends, len(words))])
-    return found
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: f"{page.parent.name}-{page.stem}")
-def test_every_call_in_a_listing_is_one_that_the_program_takes(page: Path) -> None:
-    parser = whole_parser()
-    for words in calls(page.read_text(encoding="utf-8")):
-        assert parser.parse_args(words).command, words
-
-
-def test_a_call_with_an_option_that_is_not_there_is_refused() -> None:
-    told = calls("```\n$ .venv/bin/ravenchart check m.yaml --gone > out.txt  # why\n```\n")
-    assert told == [["check", "m.yaml", "--gone"]]
-    with pytest.raises(SystemExit):
-        whole_parser().parse_args(told[0])

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The compiler of the tests copies what was compiled before, and only that."""
 
 from __future__ import annotations

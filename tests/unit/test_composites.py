@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Components inside components: each composite is the same as its parts written out by hand."""
 
 from __future__ import annotations

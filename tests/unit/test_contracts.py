@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Contracts of activities: what they may name, and what they become in Ada."""
 
 from __future__ import annotations

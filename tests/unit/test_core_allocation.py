@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Allocation: every strategy's tables hold by the analysis, and search is near the best."""
 
 from __future__ import annotations
@@ -43,9 +46,9 @@ def some_activities(chance: random.Random, count: int, load: float) -> list[Mova
     found = []
     for n in range(count):
         period = 100 * chance.choice((1, 2, 3, 4, 6, 8))
-        cost = max(1, int(period * load / count * chance.uniform(0.4, 1.6)))
-        deadline = chance.choice((period, max(cost, period // 2)))
-        found.append(Movable(f"a{n}", period, cost, deadline, f"o{chance.randint(0, 2)}"))
+        wcet = max(1, int(period * load / count * chance.uniform(0.4, 1.6)))
+        deadline = chance.choice((period, max(wcet, period // 2)))
+        found.append(Movable(f"a{n}", period, wcet, deadline, f"o{chance.randint(0, 2)}"))
     return found
 
 
@@ -115,7 +118,7 @@ def test_what_is_impossible_is_refused() -> None:
         checked([(Movable("a", 10, 1, 10), Movable("b", 15, 1, 15))])
     with pytest.raises(ValueError, match="two activities have the name a"):
         allocate([Movable("a", 10, 1, 10)] * 2, Strategy.BY_PERIOD)
-    with pytest.raises(ValueError, match="cost of activity a must be an integer above 0"):
+    with pytest.raises(ValueError, match="wcet of activity a must be an integer above 0"):
         Movable("a", 10, 0, 10)
 
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Frames: lengths, arbitration, parameters refused, errors, unknown traffic, queues."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Networks and chains: jitter inherited, reaction and age hop by hop, and their limits."""
 
 from __future__ import annotations
@@ -17,8 +20,8 @@ from ravenchart.analysis.core.responses import Reason
 from ravenchart.analysis.core.tasks import Task
 
 
-def task(name: str, cost: int, period: int, core: str, priority: int = 1, **more: Any) -> Task:
-    return Task(name, priority, period, more.pop("deadline", period), cost, core=core, **more)
+def task(name: str, wcet: int, period: int, core: str, priority: int = 1, **more: Any) -> Task:
+    return Task(name, priority, period, more.pop("deadline", period), wcet, core=core, **more)
 
 
 def of(network: Network, *steps: tuple[str, HopKind], **limits: int) -> Latency:

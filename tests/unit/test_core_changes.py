@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What would meet all deadlines: each change that is told suffices, and a step less does not."""
 
 from __future__ import annotations
@@ -116,7 +119,7 @@ def test_rows_shrink_alone_and_sections_with_their_job() -> None:
         sections=(Section("o", "a", 45),),
     )
     less = shrunk(network, [("a", "s")], Fraction(1, 4))
-    assert [row.cost for row in less.tasks[0].rows] == [10, 10]
+    assert [row.wcet for row in less.tasks[0].rows] == [10, 10]
     assert less.sections[0].length == 20
 
 

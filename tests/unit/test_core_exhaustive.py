@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The bounds against everything that can happen to small sets, one after another.
 
 A bound is never below what was observed; it is equal where the theory is exact. In

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Assignment, scaling, growth and the binding constraint, against trying everything."""
 
 from __future__ import annotations
@@ -37,7 +40,7 @@ def task_sets(draw: st.DrawFn) -> tuple[list[Task], list[Section]]:
         deadline, late = draw(st.integers(3, 40)), draw(st.integers(0, 3))
         tasks.append(Task(f"t{index}", 0, period, deadline, draw(st.integers(1, 5)), late))
     sections = [
-        Section(f"o{draw(st.integers(0, 1))}", t.name, draw(st.integers(1, t.cost)))
+        Section(f"o{draw(st.integers(0, 1))}", t.name, draw(st.integers(1, t.wcet)))
         for t in tasks
         if draw(st.booleans())
     ]
@@ -99,7 +102,7 @@ def test_audsley_finds_identifiers_exactly_when_there_are_some(
 ) -> None:
     bus = Bus(1, unknown)
     frames = [
-        Frame(t.name, n, t.period, t.deadline, t.cost, t.jitter, "q" * (n in queued), reloaded=True)
+        Frame(t.name, n, t.period, t.deadline, t.wcet, t.jitter, "q" * (n in queued), reloaded=True)
         for n, t in enumerate(drawn[0])
     ]
 
@@ -163,7 +166,7 @@ def test_sections_and_rows_grow_with_the_rest() -> None:
     assert found is not None and found.factor == Fraction(3, 2)
     table = Task("t", 1, 10, 10, 1, rows=(TableRow("r", 3),))
     grown = scaled(table, Fraction(3, 2))
-    assert (grown.cost, grown.rows[0].cost) == (2, 5)
+    assert (grown.wcet, grown.rows[0].wcet) == (2, 5)
 
 
 @settings(max_examples=60, deadline=None)
@@ -174,7 +177,7 @@ def test_growth_of_one_task_is_found_by_counting(drawn: tuple[list[Task], list[S
     for n, one in enumerate(tasks):
         room = growth(one.name, tasks, sections)
         more = -1
-        while met([*tasks[:n], replace(one, cost=one.cost + more + 1), *tasks[n + 1 :]], sections):
+        while met([*tasks[:n], replace(one, wcet=one.wcet + more + 1), *tasks[n + 1 :]], sections):
             more += 1
         assert room == (None if more < 0 else more)
 

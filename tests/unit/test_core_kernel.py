@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The library gives what the integers give: small sets one after another, large ones at random."""
 
 from __future__ import annotations
@@ -68,10 +71,10 @@ def large_sets(draw: st.DrawFn) -> tuple[list[Task], list[Section], Platform]:
     tasks = []
     for n in range(count):
         period = rng.choice(few) if draw(st.booleans()) else rng.randint(1, longest)
-        cost = max(1, int(period * load / count * 2 * rng.random()))
-        tasks.append(Task(f"t{n}", rng.randint(1, levels), period, period, cost))
+        wcet = max(1, int(period * load / count * 2 * rng.random()))
+        tasks.append(Task(f"t{n}", rng.randint(1, levels), period, period, wcet))
     sections = [
-        Section(f"o{rng.randint(0, 3)}", task.name, rng.randint(1, task.cost))
+        Section(f"o{rng.randint(0, 3)}", task.name, rng.randint(1, task.wcet))
         for task in tasks
         if draw(st.integers(0, 9)) == 0
     ]

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Offsets in the analysis of tasks: what they shorten, where they are left out, what is refused."""
 
 from __future__ import annotations
@@ -22,8 +25,8 @@ from ravenchart.analysis.core.sensitivity import network_scaling
 from ravenchart.analysis.core.tasks import TableRow, Task, plain
 
 
-def task(name: str, priority: int, cost: int, period: int, offset: int | None) -> Task:
-    return Task(name, priority, period, period, cost, offset=offset)
+def task(name: str, priority: int, wcet: int, period: int, offset: int | None) -> Task:
+    return Task(name, priority, period, period, wcet, offset=offset)
 
 
 def found(*tasks: Task, platform: Platform | None = None) -> dict[str, Response]:
@@ -66,8 +69,8 @@ def test_no_distance_of_two_epochs_makes_a_longer_response(
     some: list[tuple[int, int, int, bool]],
 ) -> None:
     tasks = [
-        Task(f"t{n}", n, period, 30, cost, offset=offset, epoch="x" if apart else "")
-        for n, (period, cost, offset, apart) in enumerate(some)
+        Task(f"t{n}", n, period, 30, wcet, offset=offset, epoch="x" if apart else "")
+        for n, (period, wcet, offset, apart) in enumerate(some)
     ]
     bounds = fixed_priority.bounds([one.at_any_time() for one in tasks])
     assume(None not in bounds)

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Tasks: parameters refused, overheads, blocking, tables, limits, and what always holds."""
 
 from __future__ import annotations
@@ -19,20 +22,20 @@ from ravenchart.analysis.core.tasks import TableRow, Task, plain
 from tests.support.core_cases import cases, sections_of, tasks_of
 
 
-def task(name: str, priority: int, cost: int, period: int, **more: Any) -> Task:
-    return Task(name, priority, period, more.pop("deadline", period), cost, **more)
+def task(name: str, priority: int, wcet: int, period: int, **more: Any) -> Task:
+    return Task(name, priority, period, more.pop("deadline", period), wcet, **more)
 
 
 @pytest.mark.parametrize(
     ("made", "message"),
     [
         (lambda: task("a", 1, 1, 0), "period of task a must be an integer above 0, not 0"),
-        (lambda: task("a", 1, 0, 9), "cost of task a must be an integer above 0, not 0"),
-        (lambda: task("a", 1, -3, 9), "cost of task a must be an integer above 0, not -3"),
+        (lambda: task("a", 1, 0, 9), "wcet of task a must be an integer above 0, not 0"),
+        (lambda: task("a", 1, -3, 9), "wcet of task a must be an integer above 0, not -3"),
         (lambda: task("a", 1, 1, 9, deadline=0), "deadline of task a must be an integer above 0"),
         (lambda: task("a", 1, 1, 9, jitter=-1), "jitter of task a must be an integer from 0 up"),
         (lambda: task("a", 1, 1, 9.5), "period of task a must be an integer above 0, not 9.5"),  # type: ignore[arg-type]
-        (lambda: TableRow("r", 0), "cost of row r must be an integer above 0, not 0"),
+        (lambda: TableRow("r", 0), "wcet of row r must be an integer above 0, not 0"),
         (lambda: TableRow("r", 1, 2, 2), "phase of row r must be below 2, not 2"),
         (lambda: Section("o", "a", 0), "length of the section of a on o must be an integer above"),
         (lambda: Platform(tick_cost=1), "tick_period of the platform must be above 0"),
@@ -44,7 +47,7 @@ def task(name: str, priority: int, cost: int, period: int, **more: Any) -> Task:
         ),
         (
             lambda: analyse([task("a", 1, 2, 9)], [Section("o", "a", 3)]),
-            "the section of a on o must be at most 2, the cost of the task, not 3",
+            "the section of a on o must be at most 2, the WCET of the task, not 3",
         ),
         (
             lambda: ceilings([task("a", 2, 2, 9)], [Section("o", "a", 1)], {"o": 1}),
@@ -82,8 +85,8 @@ def test_equal_priorities_interfere_both_ways_and_do_not_block() -> None:
 
 def test_one_tick_past_the_deadline_is_a_miss() -> None:
     rival = task("a", 2, 3, 10)
-    for cost, met in ((4, True), (5, False)):
-        assert analyse([rival, task("b", 1, cost, 20, deadline=7)])[1].met == met
+    for wcet, met in ((4, True), (5, False)):
+        assert analyse([rival, task("b", 1, wcet, 20, deadline=7)])[1].met == met
 
 
 def test_tasks_of_other_cores_do_not_meet() -> None:
@@ -142,7 +145,7 @@ def test_demand_is_the_worst_of_all_first_frames() -> None:
 def test_a_table_runs_as_it_is_and_beside_it_the_plain_sum() -> None:
     rows = (TableRow("fast", 2), TableRow("slow", 3, 4, 1), TableRow("other", 4, 4, 3))
     table = task("table", 2, 1, 20, rows=rows)
-    assert [sum(r.cost for r in frame) for frame in table.frames] == [2, 5, 2, 6]
+    assert [sum(r.wcet for r in frame) for frame in table.frames] == [2, 5, 2, 6]
     below = task("below", 1, 14, 80)
     exact = analyse([table, below])
     assert [r.bound for r in exact] == [7, 14 + 7 + 3]
@@ -188,8 +191,8 @@ def test_huge_hyperperiods_just_under_full_load_end(spare: int) -> None:
 
 def test_full_load_of_coprime_periods_ends_without_a_bound() -> None:
     first, second = 1_000_003, 999_983
-    cost = (first - 1) * second // first
-    tasks = [task("a", 2, 1, first, jitter=5), task("b", 1, cost, second, jitter=second)]
+    wcet = (first - 1) * second // first
+    tasks = [task("a", 2, 1, first, jitter=5), task("b", 1, wcet, second, jitter=second)]
     a, b = analyse(tasks)
     assert a.bound == 6
     assert b.bound is not None or b.reason is Reason.EFFORT
@@ -226,7 +229,7 @@ def systems(draw: st.DrawFn) -> tuple[list[Task], list[Section], Platform]:
         timed = draw(st.booleans())
         tasks.append(replace(made, rows=rows, jitter=late, timed=timed, offset=offset))
     sections = [
-        Section(f"o{draw(st.integers(0, 1))}", t.name, draw(st.integers(1, t.plain_cost)))
+        Section(f"o{draw(st.integers(0, 1))}", t.name, draw(st.integers(1, t.plain_wcet)))
         for t in tasks
     ]
     return tasks, sections, draw(st.sampled_from([Platform(), Platform(1, 1, 9, 1)]))
@@ -254,14 +257,14 @@ def test_the_terms_add_up_and_rows_end_with_their_job(
 
 
 @settings(max_examples=200, deadline=None)
-@given(systems(), st.sampled_from(["cost", "jitter", "priority", "section", "platform", "plain"]))
+@given(systems(), st.sampled_from(["wcet", "jitter", "priority", "section", "platform", "plain"]))
 def test_no_bound_falls_when_load_grows(
     system: tuple[list[Task], list[Section], Platform], what: str
 ) -> None:
     tasks, sections, platform = system
     grown, held, worse = list(tasks), list(sections), platform
-    if what == "cost":
-        grown[0] = replace(tasks[0], cost=tasks[0].cost + 1)
+    if what == "wcet":
+        grown[0] = replace(tasks[0], wcet=tasks[0].wcet + 1)
     elif what == "jitter":
         grown[0] = replace(tasks[0], jitter=tasks[0].jitter + 1)
     elif what == "priority":

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Chains whose steps meet on a core or bus: shorter bounds, and never below what happens."""
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ PUBLISHED = """
 bus,bit_rate
 line,1000000000
 
-task,core,priority,period_ms,deadline_ms,cost_ms,best_ms,released_by
+task,core,priority,period_ms,deadline_ms,wcet_ms,best_ms,released_by
 t1,one,30,20,20,4,4,
 t21,one,10,250,250,20,20,
 t22,one,10,250,250,30,30,m2
@@ -129,7 +132,7 @@ def with_shorter_jobs(network: Network, chance: random.Random) -> Network:
     return replace(
         network,
         tasks=tuple(
-            replace(task, cost=chance.randint(max(1, task.best), task.cost))
+            replace(task, wcet=chance.randint(max(1, task.best), task.wcet))
             for task in network.tasks
         ),
         frames={

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A queue that releases its reader: bounds of its wait and backlog, against every tick of runs."""
 
 from __future__ import annotations
@@ -16,8 +19,8 @@ from ravenchart.analysis.core.tasks import Task
 WRITER, READER = "writer", "reader"
 
 
-def task(name: str, priority: int, cost: int, period: int, sporadic: bool = False) -> Task:
-    return Task(name, priority, period, period, cost, core="cpu", sporadic=sporadic)
+def task(name: str, priority: int, wcet: int, period: int, sporadic: bool = False) -> Task:
+    return Task(name, priority, period, period, wcet, core="cpu", sporadic=sporadic)
 
 
 def bound(tasks: tuple[Task, ...], puts: int = 1) -> Latency:
@@ -73,7 +76,7 @@ def observed(
     for now in range(ticks):
         for one in others:
             if following[one.name] == now:
-                jobs[one.name].append([now, chance.randint(max(1, one.cost // 2), one.cost)])
+                jobs[one.name].append([now, chance.randint(max(1, one.wcet // 2), one.wcet)])
                 late = chance.randrange(one.period) if one.sporadic else 0
                 following[one.name] = now + one.period + late
         while True:
@@ -87,7 +90,7 @@ def observed(
                 due = max(now, earliest)
                 least = min(least, due - earliest + reader.period) if earliest else least
             if now >= due:
-                item, left = items.popleft(), chance.randint(1, reader.cost)
+                item, left = items.popleft(), chance.randint(1, reader.wcet)
         if running is None:
             continue
         if running is reader:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What gcov says of a program, by body: lines, branches, and the tracefile that is written."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Names that a model cannot have: imported, checked, exported and played by the bench."""
 
 from __future__ import annotations

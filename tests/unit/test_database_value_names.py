@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Names of values and nodes that a model cannot have, kept for the database of the bus."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Every function, class, method and constant of the package is used by something of the package."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Conditions that nothing can change, and operators without an effect: refused, or left out."""
 
 from __future__ import annotations

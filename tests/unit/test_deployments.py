@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Deployments: named alternatives of one model, each with a program of its own."""
 
 from __future__ import annotations

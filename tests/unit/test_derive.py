@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is derived: priorities, tables, tasks, shared objects and their ceilings."""
 
 from __future__ import annotations
@@ -74,10 +77,10 @@ def test_deadline_of_a_processor_is_the_shortest_of_its_table() -> None:
     assert both.processors[1].deadline == 5_000_000
 
 
-def test_budget_is_the_table_and_the_rows_are_told() -> None:
+def test_wcet_is_the_table_and_the_rows_are_told() -> None:
     tasks = {task.element: task for task in system_of().tasks}
-    assert tasks["regulation"].budget == 20_000 + 30_000 + 30_000
-    assert tasks["reception"].budget == 20_000
+    assert tasks["regulation"].wcet == 20_000 + 30_000 + 30_000
+    assert tasks["reception"].wcet == 20_000
     rows = [(slot.element, slot.divisor, slot.phase) for slot in tasks["regulation"].slots]
     assert rows == [("north.ports", 1, 0), ("north.Control", 1, 0), ("north.tell", 2, 0)]
 
@@ -103,7 +106,7 @@ def test_driver_tasks_stand_above_all_processors() -> None:
 def test_driver_task_of_a_message_has_the_message_s_period() -> None:
     system = system_of()
     drivers = [task for task in system.tasks if ".driver_" in task.element]
-    assert [(t.element, t.period, t.deadline, t.budget) for t in drivers] == [
+    assert [(t.element, t.period, t.deadline, t.wcet) for t in drivers] == [
         ("can_bus.driver_rx.level_in", 10_000_000, 10_000_000, 20_000),
         ("can_bus.driver_tx.valve_out", 20_000_000, 20_000_000, 20_000),
     ]
@@ -197,5 +200,5 @@ def test_probe_stands_above_all_other_tasks() -> None:
     )
     probe = next(task for task in probed.tasks if task.element == "board.probe")
     others = [task.priority for task in probed.tasks if task is not probe]
-    assert (probe.period, probe.deadline, probe.budget) == (1_000_000, 1_000_000, 5_000)
+    assert (probe.period, probe.deadline, probe.wcet) == (1_000_000, 1_000_000, 5_000)
     assert probe.priority > max(others)

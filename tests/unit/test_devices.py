@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Commands bound to devices and tasks: what is generated, and what the analysis counts."""
 
 from __future__ import annotations
@@ -53,12 +56,12 @@ def _text(system: System) -> str:
     return "\n".join(made.text for made in program(system, Claims(), system))
 
 
-def _budgets(system: System) -> dict[str, int]:
+def _wcets(system: System) -> dict[str, int]:
     return {slot.element: slot.timing.wcet for p in system.processors for slot in p.slots}
 
 
-def test_the_work_of_devices_is_in_the_budget_of_who_calls_them() -> None:
-    us = {row: wcet / 1000 for row, wcet in _budgets(_system({})).items()}
+def test_the_work_of_devices_is_in_the_wcet_of_who_calls_them() -> None:
+    us = {row: wcet / 1000 for row, wcet in _wcets(_system({})).items()}
     # the position of both boards; position and current of both; the force
     assert us["servo_1.Estimate"] == 50 + 2 * 10
     assert us["servo_1.Control"] == 100 + 2 * 10 + 2 * 15
@@ -68,7 +71,7 @@ def test_the_work_of_devices_is_in_the_budget_of_who_calls_them() -> None:
 
 
 def test_a_region_may_call_in_each_of_its_steps() -> None:
-    more = _budgets(_system({"        initial: Off": "        steps: 3\n        initial: Off"}))
+    more = _wcets(_system({"        initial: Off": "        steps: 3\n        initial: Off"}))
     assert more["boss.Power"] == 200_000 + 8_000 + 3 * 20_000
 
 
@@ -96,8 +99,8 @@ def test_nothing_is_left_of_a_stand_in_where_the_command_is_provided() -> None:
     for gone in ("Estimate", "Last_Own"):
         assert gone not in text
     assert not any("estimate" in name for name in user_units(system))
-    assert "servo_1.Estimate" not in _budgets(system)
-    assert _budgets(system)["servo_1.Control"] == 157_000
+    assert "servo_1.Estimate" not in _wcets(system)
+    assert _wcets(system)["servo_1.Control"] == 157_000
 
 
 def test_the_user_sees_the_same_whatever_provides_a_command() -> None:
@@ -251,7 +254,7 @@ def test_who_serves_requests_calls_devices_for_each_of_them() -> None:
         ("        writes: [Goal]\n", "        writes: [Goal]\n        calls: [Reset]\n"),
         ("bindings:\n", "bindings:\n  - {from: mover_1.Stop, to: Brake_1}\n"),
     )
-    assert _budgets(called)["mover_1.Serve"] == 100_000 + 2 * 4_000
+    assert _wcets(called)["mover_1.Serve"] == 100_000 + 2 * 4_000
     assert "moving" in called.object("Brake_1").users
 
 
@@ -267,9 +270,9 @@ def test_every_command_is_accounted_for_by_its_binding() -> None:
         ("boss_1.Plan", "Reset"): "direct",
         ("hurry_1.Push", "Set_Goal"): "queued",
     }
-    # the driver works in the budget of its caller; a queue waits for the server's next execution
-    assert of["boss_1.Plan", "Reset"]["budget"] == 4_000
-    assert of["boss_1.Plan", "Home"]["budget"] == 0
+    # the driver works in the WCET of its caller; a queue waits for the server's next execution
+    assert of["boss_1.Plan", "Reset"]["wcet"] == 4_000
+    assert of["boss_1.Plan", "Home"]["wcet"] == 0
     assert 20_000_000 < of["boss_1.Plan", "Home"]["executed"] < 26_000_000
 
 

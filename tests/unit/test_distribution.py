@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Components on several nodes: messages of connections, receptions, and each node's program."""
 
 from __future__ import annotations

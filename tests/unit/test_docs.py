@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the docs name is there."""
 
 from __future__ import annotations
@@ -56,7 +59,7 @@ def test_every_pattern_is_told_in_full() -> None:
 def test_the_door_is_a_picture_two_commands_and_five_links() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert len(re.findall(r"^!\[", text, re.M)) == 1
-    (commands,) = re.findall(r"^```\n(.*?)^```$", text, re.M | re.S)
+    (commands,) = re.findall(r"^```sh\n(.*?)^```$", text, re.M | re.S)
     assert commands.split("\n") == ["make demo", "make test", ""]
     assert len(re.findall(r"(?<!!)\[[^]]+\]\(", text)) == 5
     assert len(text.split()) < 300

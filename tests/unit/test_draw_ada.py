@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Charts drawn from generated Ada: the picture is that of the model they came from."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Drawings of charts: every construct, the same bytes, nothing on top of anything else."""
 
 from __future__ import annotations

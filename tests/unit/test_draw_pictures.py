@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The pictures under docs show the examples as they are, and their READMEs show the pictures."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Expressions and actions as text: what is printed reads back as the same."""
 
 from __future__ import annotations

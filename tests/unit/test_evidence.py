@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A folder of evidence never says more than the facts: each claim falls when its grounds do."""
 
 from __future__ import annotations

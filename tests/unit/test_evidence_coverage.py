@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Claims on what test cases execute, by an LCOV tracefile."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Cheddar and pyCPA, and what no format can say: what is written is never unsafe."""
 
 from __future__ import annotations
@@ -164,7 +167,7 @@ def test_what_is_spelled_out_has_the_same_bounds() -> None:
         chance = random.Random(seed)
         network = random_network(chance)
         tasks = tuple(
-            replace(task, rows=(), cost=task.plain_cost, timed=chance.random() < 0.5)
+            replace(task, rows=(), wcet=task.plain_wcet, timed=chance.random() < 0.5)
             for task in network.tasks
         )
         platforms = {

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """MAST: models are read and printed back, exported ones say the same, and bounds agree."""
 
 from __future__ import annotations

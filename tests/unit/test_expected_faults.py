@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a run lost, missed or overran fails it, unless the scenario or the host accounts for it."""
 
 from __future__ import annotations
@@ -111,7 +114,7 @@ def test_faults_and_missed_deadlines_are_expected_by_name() -> None:
 def test_only_what_the_host_withheld_is_excused() -> None:
     shown = seen(missed={"control": 2})
     late = Comparison("control", 100, 2, observed=900, bound=500, withheld=400)
-    long = Execution("arm.move", observed=1_400, claimed=1_000)
+    long = Execution("arm.move", observed=1_400, wcet=1_000)
     assert expected.counted(shown, (late,), (long,), ENDED) == {}
     assert expected.not_judged((late,), (long,), (), ENDED) == (
         "the host withheld the core for up to 0.0 ms"
@@ -138,7 +141,7 @@ def test_a_reaction_is_excused_for_what_the_host_withheld_at_each_place() -> Non
 
 def test_without_priorities_the_times_of_executions_say_nothing() -> None:
     ended = replace(ENDED, real_time=False)
-    long = Execution("arm.move", observed=9_000, claimed=1_000)
+    long = Execution("arm.move", observed=9_000, wcet=1_000)
     assert expected.counted(seen(), (), (long,), ended) == {}
     assert (
         expected.not_judged((), (long,), (), ended) == "the controller had no real-time priorities"

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Each correction is applied: the wrong files give their code, the corrected ones none."""
 
 from __future__ import annotations

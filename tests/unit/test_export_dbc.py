@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Import, export, and a database again with the same values, names, comments and attributes."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Expressions: grammar, types, literals, units and bounds."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Events from outside: `check` and `simulate` agree on which they are."""
 
 from __future__ import annotations

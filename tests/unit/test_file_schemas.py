@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The JSON Schemas of scenarios and event files: every file here fits, and a mistake does not."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The generator: the same bytes for the same model, and the committed ones."""
 
 from __future__ import annotations

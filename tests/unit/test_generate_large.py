@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Each further region of a large model costs the same work: it grows with the model alone."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Where a region has stopped nothing is selected, in whatever state its terminate stands."""
 
 from __future__ import annotations

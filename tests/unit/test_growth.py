@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How far an execution time may grow: to the microsecond, by the analysis itself."""
 
 from __future__ import annotations

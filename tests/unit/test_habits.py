@@ -1,17 +1,19 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a reader expects at the door of a project: licences, changelog, a build that runs."""
 
 from __future__ import annotations
 
 import hashlib
-import subprocess
 import tomllib
-from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
 import yaml
 
 from ravenchart.paths import ROOT
+from tests.support import licences
 
 LICENCES = ("LICENSE", "LICENSES/Apache-2.0.txt")
 OTHERS = {"LICENSES/MIT.txt": "ravenchart/workbench/assets/preact.js"}
@@ -21,54 +23,72 @@ PREACT = "72284e8e9079c87817145df1110f74e8a2aa040b2fc384922e18dfcb46fc1fd7"
 """SHA-256 of htm/preact/standalone.module.js in htm 3.1.1."""
 
 
-def licensed() -> tuple[tuple[str, ...], ...]:
-    """The paths of each annotation of REUSE.toml."""
-    read = tomllib.loads((ROOT / "REUSE.toml").read_text(encoding="utf-8"))
-    return tuple(tuple(one["path"]) for one in read["annotations"])
-
-
-def uncovered(files: list[str]) -> list[str]:
-    """The files to which no annotation gives a licence."""
-    paths = [path for group in licensed() for path in group]
-    return [file for file in files if not any(fnmatchcase(file, path) for path in paths)]
-
-
 def tracked() -> list[str]:
-    """Every file of the repository, without the texts of licences and REUSE.toml itself."""
+    """Every file of the repository."""
     if not (ROOT / ".git").exists():
         pytest.skip("not a git checkout: no list of tracked files")
-    done = subprocess.run(
-        ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    return [file for file in done.stdout.split("\0") if file and file != "REUSE.toml"]
+    return licences.tracked()
 
 
-def test_every_tracked_file_has_a_licence() -> None:
-    files = tracked()
-    assert len(files) > 100
-    assert [file for file in uncovered(files) if file not in (*LICENCES, *OTHERS)] == []
-
-
-def test_a_new_tree_has_no_licence_before_it_is_listed() -> None:
-    assert uncovered(["new_tree/file.py", "gen/pipeline.py", "new.md"]) == [
-        "new_tree/file.py",
-        "new.md",
+def test_every_file_of_ours_has_its_licence_at_its_head() -> None:
+    assert len(tracked()) > 100
+    wrong = [
+        file
+        for file in licences.wanting()
+        if licences.head((ROOT / file).read_text(encoding="utf-8")) != licences.LINES
     ]
+    assert wrong == [], "run `python -P -m tests.support.licences`"
+
+
+def test_a_file_has_its_licence_in_one_place() -> None:
+    twice = [
+        file
+        for file in set(tracked()) - set(licences.wanting()) - set(licences.TEXTS)
+        if licences.comment(file) and licences.head((ROOT / file).read_text(encoding="utf-8"))
+    ]
+    assert twice == []
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "expected"),
+    [
+        ("a.py", '"""Doc."""\n', '# {0}\n# {1}\n\n"""Doc."""\n'),
+        ("__init__.py", "", "# {0}\n# {1}\n"),
+        ("a.sh", "#!/bin/sh\n# Why.\n", "#!/bin/sh\n# {0}\n# {1}\n\n# Why.\n"),
+        ("a.css", "/* Why. */\n", "/* {0} */\n/* {1} */\n\n/* Why. */\n"),
+        ("Makefile", "all:\n", "# {0}\n# {1}\n\nall:\n"),
+    ],
+)
+def test_a_licence_is_written_below_the_name_of_the_interpreter(
+    file: str, text: str, expected: str
+) -> None:
+    marks = licences.comment(file)
+    assert marks is not None
+    assert licences.head(text) == ()
+    written = licences.with_head(text, marks)
+    assert written == expected.format(*licences.LINES)
+    assert licences.head(written) == licences.LINES
+
+
+def test_a_star_of_a_path_stays_in_a_folder() -> None:
+    of = licences.Annotation(("a/*.yaml", "b/**", "**.md"), "MIT", False).covers
+    assert [of(name) for name in ("a/x.yaml", "b/c/x", "c/d.md", "d.md")] == [True] * 4
+    assert [of(name) for name in ("a/b/x.yaml", "a/xayaml", "new/x.py")] == [False] * 3
 
 
 def test_no_annotation_names_what_is_not_there() -> None:
-    paths = [path for group in licensed() for path in group]
-    assert [path for path in paths if not (ROOT / path.removesuffix("/**")).exists()] == []
+    files = tracked()
+    paths = [path for one in licences.annotated() for path in one.paths]
+    single = [licences.Annotation((path,), "", False) for path in paths]
+    assert [one.paths for one in single if not any(map(one.covers, files))] == []
 
 
 def test_the_licence_is_one_text_and_one_identifier() -> None:
     first, second = ((ROOT / name).read_text(encoding="utf-8") for name in LICENCES)
     assert first == second
-    read = tomllib.loads((ROOT / "REUSE.toml").read_text(encoding="utf-8"))
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    own = [one for one in read["annotations"] if one.get("precedence") != "override"]
-    named = {one["SPDX-License-Identifier"] for one in own}
-    assert named == {project["project"]["license"]} == {"Apache-2.0"}
+    named = {one.licence for one in licences.annotated() if not one.foreign}
+    assert named == {project["project"]["license"]} == {licences.LICENCE}
 
 
 def test_the_map_of_the_house_names_every_folder() -> None:
@@ -88,10 +108,9 @@ def test_files_of_others_tools_name_programs_that_are_here(file: str) -> None:
 
 
 def test_files_of_others_are_as_published_under_a_licence_that_is_here() -> None:
-    read = tomllib.loads((ROOT / "REUSE.toml").read_text(encoding="utf-8"))
-    (foreign,) = [one for one in read["annotations"] if one.get("precedence") == "override"]
-    names = foreign["SPDX-License-Identifier"].split(" AND ")
+    (foreign,) = [one for one in licences.annotated() if one.foreign]
+    names = foreign.licence.split(" AND ")
     assert {f"LICENSES/{name}.txt" for name in names} == {*LICENCES[1:], *OTHERS}
-    assert set(OTHERS.values()) <= set(foreign["path"])
+    assert set(OTHERS.values()) <= set(foreign.paths)
     content = (ROOT / "ravenchart/workbench/assets/preact.js").read_bytes()
     assert hashlib.sha256(content).hexdigest() == PREACT

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Messages whose hint depends on the case: each is what helps there."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The drawing of the house shows the imports as they are, and none goes up."""
 
 from __future__ import annotations

@@ -1,22 +1,28 @@
-"""What of `make hw-test` runs without a guest: its list of steps, its verdict, its cases."""
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What of `make hw-test` runs without a guest: its list of steps, its results, its cases."""
 
 from __future__ import annotations
 
+import json
 import threading
+import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 
 import can
 import pytest
 
+from ravenchart.commands.loopback import answered
 from ravenchart.hw_can.conformance.ends import Ends, Setup, open_ends
-from ravenchart.hw_can.conformance.suite import CaseVerdict, SuiteResult, run
+from ravenchart.hw_can.conformance.suite import CaseResult, CaseVerdict, SuiteResult, run
+from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
-from tests.hardware import __main__ as hw_test
-from tests.hardware.__main__ import Step, Total, load_order, missing, script, steps, total
 from tests.hardware.driver_cases import Driver, cases
-from tests.hardware.fact import facts, junit
+from tests.hardware.guest import Guest, Step, facts, load_order, missing, script, steps
 from tests.support.echo import Echo, Standing
 
 DEPENDENCIES = """\
@@ -50,80 +56,90 @@ def test_each_step_leaves_a_result_of_its_own() -> None:
         "registers-ctucanfd",
         "frames-ctucanfd",
     ]
-    for step, line in zip(chosen, lines, strict=True):
-        assert line.endswith(f"--junit {step.name}.xml > {step.name}.txt 2>&1")
-    assert "'/a b/tests-checks-socketcan/bin/can_echo' vcan0" in lines[1]
-    assert "tests.hardware.remote '/a b/crossing' vcan0" in lines[2]
-    assert "'/a b/tests-checks-socketcan/bin/can_echo' can0 --near can1 --emulated" in lines[3]
-    assert "'/a b/tests-checks-ctucanfd/bin/can_echo' /sys/bus/pci/devices" in lines[4]
-    for line in lines[5:]:
+    for step, line, status in zip(chosen, lines[::2], lines[1::2], strict=True):
+        assert line.endswith(f" > {step.name}.out 2> {step.name}.err")
+        assert status == f"echo $? > {step.name}.status"
+    calls = lines[::2]
+    assert "'/a b/tests-checks-socketcan/bin/can_echo' vcan0" in calls[1]
+    assert "tests.hardware.remote '/a b/crossing' vcan0" in calls[2]
+    assert "'/a b/tests-checks-socketcan/bin/can_echo' can0 --near can1 --emulated" in calls[3]
+    assert "'/a b/tests-checks-ctucanfd/bin/can_echo' /sys/bus/pci/devices" in calls[4]
+    for line in calls[5:]:
         assert "env RAVENCHART_CTUCANFD=/sys/bus/pci/devices/0000:00:11.0/resource1 " in line
-
-
-def _suite(*outcomes: str) -> str:
-    inside = "".join(f"<testcase>{outcome}</testcase>" for outcome in outcomes)
-    return f"<testsuites><testsuite>{inside}</testsuite></testsuites>"
-
-
-PASSED, FAILED, SKIPPED = "<system-out>exact</system-out>", "<failure/>", "<skipped/>"
-
-
-@pytest.mark.parametrize(
-    ("first", "second", "expected", "good"),
-    [
-        (_suite(PASSED, PASSED), _suite(SKIPPED), Total(2, 0, 1, ()), True),
-        (_suite(PASSED), _suite(FAILED, PASSED), Total(2, 1, 0, ()), False),
-        (_suite(SKIPPED), _suite(SKIPPED), Total(0, 0, 2, ()), False),
-        (_suite(PASSED), None, Total(1, 0, 0, ("b",)), False),
-        (_suite(PASSED), _suite("<error/>"), Total(1, 1, 0, ()), False),
-        (_suite(PASSED), "<testsuites>", Total(1, 0, 0, ("b",)), False),
-    ],
-)
-def test_what_the_guest_has_written_is_counted(
-    first: str, second: str | None, expected: Total, good: bool, tmp_path: Path
-) -> None:
-    (tmp_path / "a.xml").write_text(first)
-    if second is not None:
-        (tmp_path / "b.xml").write_text(second)
-    found = total((Step("a", ()), Step("b", ())), tmp_path)
-    assert (found, found.good) == (expected, good)
 
 
 @pytest.mark.parametrize(
     ("output", "status", "expected"),
     [
-        ("ok one\nok two\n", 0, [("one", True), ("two", True)]),
-        ("ok one\nnot ok two\n", 1, [("one", True), ("two", False)]),
-        ("ok one\n", 1, [("one", True), ("it ends well, not with status 1", False)]),
-        ("raised CONSTRAINT_ERROR\n", 1, [("it says a fact", False)]),
-        ("", 0, [("it says a fact", False)]),
+        ("ok one\nok two\n", 0, [("one", "passed"), ("two", "passed")]),
+        ("ok one\nnot ok two\n", 1, [("one", "passed"), ("two", "failed")]),
+        ("ok one\n", 1, [("one", "passed"), ("it ends with status 0", "failed")]),
+        ("raised CONSTRAINT_ERROR\n", 1, [("it says a fact", "failed")]),
+        ("", 0, [("it says a fact", "failed")]),
     ],
 )
 def test_the_facts_of_a_program_become_cases(
-    output: str, status: int, expected: list[tuple[str, bool]], tmp_path: Path
+    output: str, status: int, expected: list[tuple[str, str]]
 ) -> None:
-    found = facts(output, status)
-    assert [(fact.text, fact.holds) for fact in found] == expected
-    (tmp_path / "a.xml").write_text(junit("program", found))
-    held = sum(holds for _, holds in expected)
-    assert total((Step("a", ()),), tmp_path) == Total(held, len(expected) - held, 0, ())
+    assert [(case.name, case.verdict) for case in facts(output, status)] == expected
 
 
-def test_what_is_missing_is_said_and_nothing_is_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def left(home: Path, **files: str) -> Guest:
+    """A guest that has left files of step `one`."""
+    (home / "results").mkdir()
+    for end, text in files.items():
+        (home / "results" / f"one.{end}").write_text(text)
+    return Guest(home, "the guest: given up")
+
+
+def test_a_step_without_a_result_has_no_cases(tmp_path: Path) -> None:
+    (tmp_path / "console.txt").write_text("Kernel panic\n")
+    guest = left(tmp_path)
+    assert guest.cases(Step("one", ())) == ()
+    assert guest.said(Step("one", ())) == "the guest: given up\nKernel panic"
+
+
+@pytest.mark.parametrize("said", ["error: there is no vcan0", '{"result": null}'])
+def test_a_suite_that_could_not_begin_has_no_cases(said: str, tmp_path: Path) -> None:
+    guest = left(tmp_path, out=said, status="2\n")
+    assert guest.cases(Step("one", (), in_json=True)) == ()
+    assert guest.said(Step("one", ())) == said
+
+
+def test_the_cases_of_a_suite_are_read_with_their_reasons(tmp_path: Path) -> None:
+    setup = Setup("virtual", "a", "virtual", "a")
+    found = [
+        CaseResult("order", CaseVerdict.PASSED, "exact", 0.1),
+        CaseResult("burst", CaseVerdict.FAILED, "lost", 0.1),
+        CaseResult("FD frames", CaseVerdict.SKIPPED, "classic", 0.1),
+    ]
+    result = answered(SuiteResult(setup, tuple(found), (), None))
+    guest = left(tmp_path, out=json.dumps({"result": asdict(result)}), status="1\n")
+    seen = [
+        (one.name, one.verdict, one.detail) for one in guest.cases(Step("one", (), in_json=True))
+    ]
+    assert seen == [
+        ("order", "passed", "exact"),
+        ("burst", "failed", "lost"),
+        ("FD frames", "skipped", "classic"),
+    ]
+
+
+def test_what_is_missing_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("shutil.which", lambda name: None)
-    monkeypatch.setattr(hw_test, "KERNEL", tmp_path)
-    monkeypatch.setattr(hw_test, "HOME", tmp_path / "hw-test")
     assert toolchain.have("ip") is False
-    assert len(tuple(missing(tmp_path, "aarch64"))) == 5
-    assert hw_test.main() == 2
-    said = capsys.readouterr().err
-    assert "hw-test: skipped: qemu-system-x86_64 is not on PATH" in said
-    assert f"there is no kernel in {tmp_path}" in said
-    assert "hw-test: skipped: s390x, big-endian: qemu-s390x-static is not on PATH" in said
-    assert "hw-test: skipped: Arm, 32 bits: arm-linux-gnueabihf-gnatmake is not" in said
-    assert said.endswith("hw-test: nothing was run\n")
+    reasons = tuple(missing(tmp_path, "aarch64"))
+    assert len(reasons) == 5
+    assert "qemu-system-x86_64 is not on PATH (Debian package qemu-system-x86)" in reasons
+    assert reasons[-1].startswith(f"there is no kernel in {tmp_path}")
+
+
+def test_only_the_tests_of_the_hardware_wait_for_their_own_command() -> None:
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    collected = set(settings["tool"]["pytest"]["ini_options"]["testpaths"])
+    folders = {path.parent.relative_to(ROOT).as_posix() for path in ROOT.glob("tests/**/test_*.py")}
+    assert folders - collected == {"tests/hardware"}
+    assert collected <= folders
 
 
 def test_the_program_is_read_by_its_lines(tmp_path: Path) -> None:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Identifiers that the model does not give, beside those that it gives."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A CAN database as part of a model, and what comes out of that again."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A signal that a model cannot have as it is changes that signal alone, and never its message."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Names of values of a database: enumerations, other values, and numbers with some names."""
 
 from __future__ import annotations

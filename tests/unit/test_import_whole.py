@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What `import` prints is a model: it passes `check`, and its program can be made."""
 
 from __future__ import annotations

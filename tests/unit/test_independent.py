@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The independent checker agrees with every generated program, and finds what is altered."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Events of interfaces: a binding brings them, as a connection of both ports would."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The interpreter gives the published traces, and keeps its configuration sound."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A whole system in virtual time: ports, queues, activities, processors."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Why each transition from an active state fired or did not, as an observed region says it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """History, orthogonal regions, fork and join, on charts of their own."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Each rule of docs/semantics.md on a chart of its own."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Files of events: what is wrong with one is told at its line, and traces have one form."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Which invariants become contracts of the code, with which facts, and what is said of the rest."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Traces of several nodes as one, and how long values took along the chains in it."""
 
 from __future__ import annotations

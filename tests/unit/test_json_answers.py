@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`--json`: one object on standard output, whatever comes of a call."""
 
 from __future__ import annotations

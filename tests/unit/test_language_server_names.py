@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the language server knows of names: every use, and another name for each."""
 
 from __future__ import annotations

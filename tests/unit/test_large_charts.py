@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A chart of many leaf states is checked to the end, and its code grows with its size alone."""
 
 from __future__ import annotations

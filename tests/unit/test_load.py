@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Files: what is read, what is refused, and where errors are said to be."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The loopback test, over interfaces that work, that cannot do everything, and that fail."""
 
 from __future__ import annotations

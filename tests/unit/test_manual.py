@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The manual page: whole, and without a complaint of the programs that format it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Of very many errors the first are printed, and the others are counted."""
 
 from __future__ import annotations

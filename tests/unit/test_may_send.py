@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Ports on which a body of the user decides in each execution whether it sends (`may_send`)."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Measured execution times and bounds of static tools, beside what a model claims."""
 
 from __future__ import annotations
@@ -233,24 +236,24 @@ def test_what_is_wrong_with_a_file_is_located(system: System, text: str, message
     assert found.startswith(message)
 
 
-def test_bounds_within_the_budgets_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bounds_within_the_wcets_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "b.csv"
     file.write_text(f"row,wcet_us\n{ROW},300\n", encoding="utf-8")
     assert main(["analyse", str(PUMP / "model.yaml"), "--bounds", str(file)]) == OK
     found = capsys.readouterr()
-    assert f"{ROW}: bound 300 us, within its budget of 300 us\n" in found.out
-    assert "bed.ports: no bound is given for its budget of 100 us\n" in found.out
+    assert f"{ROW}: bound 300 us, within its WCET of 300 us\n" in found.out
+    assert "bed.ports: no bound is given for its WCET of 100 us\n" in found.out
     assert "error" not in found.err
 
 
-def test_a_bound_above_its_budget_is_an_error_with_both_places(
+def test_a_bound_above_its_wcet_is_an_error_with_both_places(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = tmp_path / "b.csv"
     file.write_text(f"row,wcet_us\n{ROW},300.01\n", encoding="utf-8")
     assert main(["analyse", str(PUMP / "model.yaml"), "--bounds", str(file)]) == WRONG
     found = capsys.readouterr()
-    assert f"{ROW}: bound 300.1 us, ABOVE its budget of 300 us\n" in found.out
+    assert f"{ROW}: bound 300.1 us, ABOVE its WCET of 300 us\n" in found.out
     first, note, hint = found.err.splitlines()[-3:]
     assert first == f"{file}:2: error: the bound of {ROW}, 300.1 us, is above its `wcet` of 300 us"
     assert note.endswith(f": note: the `wcet` of {ROW} is here")

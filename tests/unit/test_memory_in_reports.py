@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Stacks and memory of programs in the HTML reports of an analysis and of a run."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Offsets of models: whose they are, where they show, and what the certificate says of them."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`analyse --json` and `--export` of models: everything, by the same way as plain files."""
 
 from __future__ import annotations

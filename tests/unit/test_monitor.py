@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What `ravenchart monitor` shows of snapshots, and how it ends where there are none."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Mutants: where rules find their places, which are chosen, when an explanation counts."""
 
 from __future__ import annotations

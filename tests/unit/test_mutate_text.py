@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Breaks of Ada that people wrote: what is broken, and what is left alone."""
 
 from __future__ import annotations

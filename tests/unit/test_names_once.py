@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One word for one thing: a class has a name of its own in the package."""
 
 from __future__ import annotations

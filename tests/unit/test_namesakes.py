@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Names that the generator makes of several of the model's, or of signs, never meet."""
 
 from __future__ import annotations

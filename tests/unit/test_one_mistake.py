@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One mistake is told once: what follows from it is not reported beside it."""
 
 from __future__ import annotations

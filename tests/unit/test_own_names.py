@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Names that generated code has of its own are free for what a model names."""
 
 from __future__ import annotations

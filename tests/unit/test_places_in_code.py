@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Each transition and state in generated Ada says where it stands in the model."""
 
 from __future__ import annotations

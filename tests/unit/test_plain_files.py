@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Plain files: units and rounding, errors by line and column, hostile numbers, large sets."""
 
 from __future__ import annotations
@@ -39,7 +42,7 @@ def problems(text: str, file: str = "a.csv") -> list[str]:
 
 
 def task_file(**columns: str) -> str:
-    given = {"task": "a", "priority": "1", "period_us": "10", "cost_us": "1"} | columns
+    given = {"task": "a", "priority": "1", "period_us": "10", "wcet_us": "1"} | columns
     return f"{','.join(given)}\n{','.join(given.values())}\n"
 
 
@@ -58,12 +61,12 @@ def test_csv_and_json_hold_the_same_system_as_the_reference() -> None:
 
 def test_times_are_rounded_to_the_safe_side() -> None:
     text = (
-        "task,priority,period_us,deadline_us,cost_us,jitter_us,best_us\n"
+        "task,priority,period_us,deadline_us,wcet_us,jitter_us,best_us\n"
         "a,1,10.0009,9.9999,1.0001,0.0001,0.9999\n"
     )
     (task,) = system(text).network.tasks
     assert (task.period, task.deadline) == (10_000, 9_999)
-    assert (task.cost, task.jitter, task.best) == (1_001, 1, 999)
+    assert (task.wcet, task.jitter, task.best) == (1_001, 1, 999)
 
 
 def test_an_offset_is_whole_ns_and_so_is_its_period() -> None:
@@ -78,7 +81,7 @@ def test_an_offset_is_whole_ns_and_so_is_its_period() -> None:
     (told,) = problems(task_file(offset_us="0", sporadic="yes"))
     assert told == "a.csv:2: error: offset of task a has no meaning: it is sporadic"
     assert "offset_us of task a must be at least 0" in problems(task_file(offset_us="-1"))[0]
-    follows = "task,priority,period_us,cost_us,offset_us,released_by\na,1,10,1,,\nb,2,10,1,5,a\n"
+    follows = "task,priority,period_us,wcet_us,offset_us,released_by\na,1,10,1,,\nb,2,10,1,5,a\n"
     assert problems(follows) == ["a.csv:3: error: offset of b has no meaning: a releases it"]
 
 
@@ -86,7 +89,7 @@ def test_offsets_make_bounds_shorter_and_it_is_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "apart.csv"
-    text = "task,priority,period_us,cost_us,offset_us\na,2,10,4,0\nb,1,10,3,5\n"
+    text = "task,priority,period_us,wcet_us,offset_us\na,2,10,4,0\nb,1,10,3,5\n"
     path.write_text(text)
     assert main(["analyse", str(path)]) == 0
     assert "By their offsets: R of b. All others hold for any offsets." in capsys.readouterr().out
@@ -112,7 +115,7 @@ def test_offsets_make_bounds_shorter_and_it_is_said(
     ],
 )
 def test_units_are_exact(title: str, value: str, ns: int) -> None:
-    text = f"task,priority,{title},cost_ns\na,1,{value},1\n"
+    text = f"task,priority,{title},wcet_ns\na,1,{value},1\n"
     assert system(text).network.tasks[0].period == ns
 
 
@@ -121,7 +124,7 @@ def test_tables_flags_identifiers_and_bit_rates() -> None:
 task,priority,period_ms,sporadic
 a,1,10,yes
 
-row,task,cost_us,every,phase
+row,task,wcet_us,every,phase
 fast,a,5,,
 slow,a,7,2,1
 
@@ -154,11 +157,11 @@ o,fd,7,,,,123,10
     [
         ({"period_us": "0"}, "a.csv:2: error: period_us of task a must be above 0, not 0"),
         ({"period_us": "-10"}, "a.csv:2: error: period_us of task a must be above 0, not -10"),
-        ({"cost_us": "0"}, "a.csv:2: error: cost_us of task a must be above 0, not 0"),
+        ({"wcet_us": "0"}, "a.csv:2: error: wcet_us of task a must be above 0, not 0"),
         ({"period_us": "0.0001"}, "period_us of task a must be at least 1 ns, not 0.0001"),
         ({"jitter_us": "-1"}, "jitter_us of task a must be at least 0, not -1"),
         ({"period_us": ""}, "period_us of task a is missing"),
-        ({"cost_us": ""}, "cost_us of task a is missing, and it has no rows"),
+        ({"wcet_us": ""}, "wcet_us of task a is missing, and it has no rows"),
         ({"priority": ""}, "priority of task a is missing"),
         ({"priority": "1.5"}, "priority of task a must be a whole number, not 1.5"),
         ({"period_us": "ten"}, "period_us of task a must be a number such as 12.5, not ten"),
@@ -172,7 +175,7 @@ o,fd,7,,,,123,10
         ({"priority": str(2**63)}, f"priority of task a must be at most {LARGEST} (63 bits)"),
         ({"timed": "maybe"}, "timed of task a must be yes or no, not maybe"),
         ({"period": "5"}, "column period of task must say its unit: period_ns, _us, _ms or _s"),
-        ({"wcet_us": "5"}, "task has no column wcet_us, only core, priority, period_us"),
+        ({"cost_us": "5"}, "task has no column cost_us, only core, priority, period_us"),
         ({"task": ""}, "task needs a name in the column task"),
         ({"released_by": "b"}, "released_by of task a: there is no task or message b"),
         ({"released_by": "a"}, "a is released by itself"),
@@ -191,12 +194,12 @@ def test_a_wrong_value_is_named_by_line_and_column(columns: dict[str, str], mess
         (task_file() + "b,2,10,1,9\n", "a.csv:3: error: the row has 5 columns"),
         (
             task_file() + "\nsection,task,length_us\no,a,2\n",
-            "a.csv:2: error: the section of a on o must be at most 1000, the cost of the task",
+            "a.csv:2: error: the section of a on o must be at most 1000, the WCET of the task",
         ),
         (task_file() + "\nsection,task,length_us\no,c,2\n", "a.csv:5: error: task of section o"),
-        (task_file() + "\nrow,task,cost_us\nr,a,2\nr,a,3\n", "two rows of task a have the name r"),
+        (task_file() + "\nrow,task,wcet_us\nr,a,2\nr,a,3\n", "two rows of task a have the name r"),
         (
-            task_file() + "\nrow,task,cost_us,every,phase\nr,a,2,2,2\n",
+            task_file() + "\nrow,task,wcet_us,every,phase\nr,a,2,2,2\n",
             "a.csv:5: error: phase of row r must be below 2, not 2",
         ),
         (task_file() + "\ncore,release_us\nx,1\n", "a.csv:5: error: no task is on core x"),
@@ -267,7 +270,7 @@ def test_what_does_not_go_together_is_refused_by_line(text: str, message: str) -
         ),
         ("[" * 100_000, "nested too deeply"),
         (
-            '{"task": [{"task": "a", "priority": 1, "cost_us": 1, "period_us": %s}]}'
+            '{"task": [{"task": "a", "priority": 1, "wcet_us": 1, "period_us": %s}]}'
             % ("9" * 9_999),
             "must be a number such as 12.5",
         ),
@@ -286,7 +289,7 @@ def verdict(text: str, file: str = "a.csv") -> Any:
 
 def test_a_blocking_of_the_literature_is_taken_as_it_stands() -> None:
     text = (
-        "task,priority,period_us,cost_us,blocking_ns\n"
+        "task,priority,period_us,wcet_us,blocking_ns\n"
         "a,2,10,2,1500.5\n"
         "b,1,20,4,\n"
     )  # fmt: skip
@@ -297,21 +300,21 @@ def test_a_blocking_of_the_literature_is_taken_as_it_stands() -> None:
 
 
 def test_overload_and_misses_have_a_verdict_and_a_reason() -> None:
-    over = verdict("task,priority,period_us,cost_us\na,2,10,6\nb,1,10,6\n")
+    over = verdict("task,priority,period_us,wcet_us\na,2,10,6\nb,1,10,6\n")
     assert (over["met"], over["load"]) == (False, {"": "6/5"})
     a, b = over["tasks"]
     assert (a["response"], a["met"]) == (6_000, True)
     assert b["response"] is None and b["reason"].startswith("what runs at its level needs more")
-    missed = verdict("task,priority,period_us,deadline_us,cost_us\na,1,10,5,6\n")
+    missed = verdict("task,priority,period_us,deadline_us,wcet_us\na,1,10,5,6\n")
     assert (missed["met"], missed["tasks"][0]["slack"]) == (False, -1_000)
-    full = verdict("task,priority,period_us,cost_us\na,2,10,5\nb,1,10,5\n")
+    full = verdict("task,priority,period_us,wcet_us\na,2,10,5\nb,1,10,5\n")
     assert (full["met"], full["scaling"]) == (True, "1/1")
 
 
-BEST = "task,priority,period_ms,cost_ms,best_ms,released_by\na,2,10,1,{},\nb,1,10,1,1,a\n"
+BEST = "task,priority,period_ms,wcet_ms,best_ms,released_by\na,2,10,1,{},\nb,1,10,1,1,a\n"
 
 
-def test_a_best_case_shrinks_with_the_costs_and_is_never_above_them(tmp_path: Path) -> None:
+def test_a_best_case_shrinks_with_the_wcets_and_is_never_above_them(tmp_path: Path) -> None:
     file = tmp_path / "best.csv"
     file.write_text(BEST.format(1), encoding="utf-8")
     assert main(["analyse", str(file)]) == 0
@@ -324,12 +327,12 @@ def test_huge_hyperperiods_and_numbers_near_64_bits_end_at_once() -> None:
     start = time.perf_counter()
     primes = (10**9 + 7, 10**9 + 9, 10**9 + 21, 10**9 + 33, 10**9 + 87)
     lines = [f"t{n},{n},{p},{p // 6}" for n, p in enumerate(primes)]
-    assert verdict("task,priority,period_ns,cost_ns\n" + "\n".join(lines))["met"] is True
+    assert verdict("task,priority,period_ns,wcet_ns\n" + "\n".join(lines))["met"] is True
     lines = [f"t{n},{n},{LARGEST - n},{LARGEST // 5}" for n in range(4)]
-    big = verdict("task,priority,period_ns,cost_ns\n" + "\n".join(lines))
+    big = verdict("task,priority,period_ns,wcet_ns\n" + "\n".join(lines))
     assert [task["response"] for task in big["tasks"]] == [k * (LARGEST // 5) for k in (4, 3, 2, 1)]
     tight = [f"t{n},{n},{p},{p // 5}" for n, p in enumerate(primes)] + ["last,-1,999999937,3"]
-    assert isinstance(verdict("task,priority,period_ns,cost_ns\n" + "\n".join(tight))["met"], bool)
+    assert isinstance(verdict("task,priority,period_ns,wcet_ns\n" + "\n".join(tight))["met"], bool)
     assert time.perf_counter() - start < 20
 
 
@@ -337,7 +340,7 @@ def test_huge_hyperperiods_and_numbers_near_64_bits_end_at_once() -> None:
 def test_five_thousand_tasks_are_analysed_in_seconds(tmp_path: Path) -> None:
     lines = [f"t{n},{5_000 - n},{100 + n},0.01" for n in range(5_000)]
     file = tmp_path / "many.csv"
-    file.write_text("task,priority,period_ms,cost_ms\n" + "\n".join(lines), encoding="utf-8")
+    file.write_text("task,priority,period_ms,wcet_ms\n" + "\n".join(lines), encoding="utf-8")
     start = time.process_time()
     assert main(["analyse", str(file)]) == 0
     assert main(["analyse", str(file), "--json"]) == 0
@@ -373,7 +376,7 @@ def test_the_command_fails_with_what_is_wrong(
     assert (
         capsys.readouterr().err == f"{file}:2: error: period_us of task a must be above 0, not 0\n"
     )
-    file.write_text("task,priority,period_us,cost_us\na,1,10,11\n", encoding="utf-8")
+    file.write_text("task,priority,period_us,wcet_us\na,1,10,11\n", encoding="utf-8")
     assert main(["analyse", str(file)]) == 1
     assert (
         "a has no bound: it and the tasks that preempt it need 110.0 % of"
@@ -389,7 +392,7 @@ def test_what_to_change_is_told_and_is_in_the_json(
 ) -> None:
     file = tmp_path / "late.csv"
     file.write_text(
-        "task,priority,period_ms,cost_us\nfast,1,2,400\nslow,2,10,1700\n", encoding="utf-8"
+        "task,priority,period_ms,wcet_us\nfast,1,2,400\nslow,2,10,1700\n", encoding="utf-8"
     )
     assert main(["analyse", str(file)]) == 1
     text = capsys.readouterr().out
@@ -402,10 +405,10 @@ def test_what_to_change_is_told_and_is_in_the_json(
 
 
 TABLE = """\
-task,priority,period_ms,cost_us
+task,priority,period_ms,wcet_us
 a,1,10,5
 
-row,task,cost_us,every
+row,task,wcet_us,every
 r,a,20,1
 s,a,30,2
 """
@@ -414,17 +417,17 @@ s,a,30,2
 @pytest.mark.parametrize(
     ("seen", "status", "told"),
     [
-        ("task,cost_us\na,55\n", 0, "a: 55 us, within its budget of 55 us"),
-        ("task,cost_us\na,54.9999\na,55.0001\n", 1, "a: 55.1 us, ABOVE its budget of 55 us"),
-        ("row,task,cost_ns\ns,a,30001\n", 1, "a.s: 30.1 us, ABOVE its budget of 30 us"),
-        ("row,task,cost_us\ns,a,30\n", 0, "a.r: not executed in this run"),
-        ("task,cost_us\nb,1\n", 1, "seen.csv:2: error: there is no task b"),
+        ("task,observed_us\na,55\n", 0, "a: 55 us, within its WCET of 55 us"),
+        ("task,observed_us\na,54.9999\na,55.0001\n", 1, "a: 55.1 us, ABOVE its WCET of 55 us"),
+        ("row,task,observed_ns\ns,a,30001\n", 1, "a.s: 30.1 us, ABOVE its WCET of 30 us"),
+        ("row,task,observed_us\ns,a,30\n", 0, "a.r: not executed in this run"),
+        ("task,observed_us\nb,1\n", 1, "seen.csv:2: error: there is no task b"),
         ("core,tick_us\nb,1\n", 1, "error: core is none of task, row, message"),
-        ("task,cost\na,1\n", 1, "must say its unit"),
+        ("task,observed\na,1\n", 1, "must say its unit"),
         ("", 1, "no execution time was observed"),
     ],
 )
-def test_observed_times_are_held_against_budgets(
+def test_observed_times_are_held_against_wcets(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], seen: str, status: int, told: str
 ) -> None:
     model, times = tmp_path / "a.csv", tmp_path / "seen.csv"
@@ -451,14 +454,14 @@ def test_a_load_of_any_number_of_digits_is_printed_and_no_smaller_than_it_is(
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    lines = ["task,priority,period_ns,cost_ns,deadline_ns"]
+    lines = ["task,priority,period_ns,wcet_ns,deadline_ns"]
     given = [(period, period // 20_000) for period in periods(random.Random(5))]
     lines += [f"t{n},{len(given) - n},{p},{c},{p}" for n, (p, c) in enumerate(given)]
     (tmp_path / "set.csv").write_text("\n".join(lines) + "\n")
     main(["analyse", str(tmp_path / "set.csv"), "--json"])
     (text,) = json.loads(capsys.readouterr().out)["load"].values()
     top, bottom = map(int, text.split("/"))
-    exact = sum(Fraction(cost, period) for period, cost in given)
+    exact = sum(Fraction(wcet, period) for period, wcet in given)
     assert exact.denominator > 10**4300
     assert exact <= Fraction(top, bottom) < exact + Fraction(1, 10**18)
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Plants of scenarios: classes of users and Functional Mock-up Units, sound and not."""
 
 from __future__ import annotations

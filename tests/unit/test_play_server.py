@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The server of the charts in motion: what it refuses, that it lives on, and what it hands out."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Charts in motion: what was done is an event file, and every act can be taken back."""
 
 from __future__ import annotations

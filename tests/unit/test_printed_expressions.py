@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Expressions as they are printed: parentheses where Ada asks for them, and filled lines."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Progress is counted in units, with the time that is left; in a pipe silence is short."""
 
 from __future__ import annotations

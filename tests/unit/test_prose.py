@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The words of the project keep the rules that a program can check."""
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ WORDS = {
     r"never fires?|can(not)? fire": "is never taken",
     r"is told|are told|cannot be told": "is reported, is determined",
     r"is said (once )?on": "is printed to",
+    r"budgets?|(model|file) claims|claims of the (model|file)": "WCET; a budget is enforced",
     r"nobody (asked|acknowledges|reads|can)": "no node, no reader",
     r"leads nowhere": "is not connected",
     r"and here (a|no|is)\b.*(wanted|value|argument|none)": "expected ..., found ...",
@@ -84,6 +88,7 @@ def test_sentences_keep_the_rules(group: str) -> None:
         ("What is lost is said.", "name the thing first"),
         ("`x` never fires: its guard is false", "is never taken"),
         ("One leaf for each lane.", "region"),
+        ("Two rows are above their budgets.", "WCET"),
         (" ".join(["word"] * 33), "33 words"),
     ],
 )

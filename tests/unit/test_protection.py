@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """End-to-end protection in the model and in the analysis."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A proof speaks of the sources that gnatprove has read."""
 
 from __future__ import annotations

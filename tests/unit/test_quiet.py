@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Which models have conditions that the compiler decides, and warns of."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Tables put together anew in a model's text: it means what was proposed, and comments stay."""
 
 from __future__ import annotations

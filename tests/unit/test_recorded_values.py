@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Recorded values: which code records them, and what is made of the trace."""
 
 from __future__ import annotations

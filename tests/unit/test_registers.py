@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Device types with registers, parameters, operations at start and end, and events."""
 
 from __future__ import annotations
@@ -115,7 +118,7 @@ def test_each_register_is_at_the_address_of_its_device_and_its_offset() -> None:
     assert "Right_Dac : Interfaces.Unsigned_32 := 0 with Atomic;" in body
 
 
-def test_asking_for_an_event_is_in_the_budget_of_the_port_handler() -> None:
+def test_asking_for_an_event_is_in_the_wcet_of_the_port_handler() -> None:
     system = _system({})
     (slot,) = (s for p in system.processors for s in p.slots if s.element == "tuner_1.ports")
     assert slot.timing.wcet == 20_000 + 5_000

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Processors that a queued port releases: their chains, queues, code and virtual time."""
 
 from __future__ import annotations

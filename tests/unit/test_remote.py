@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A running controller as an object, over an interface of python-can that has no descriptor."""
 
 from __future__ import annotations

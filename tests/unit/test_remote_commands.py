@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Commands of tasks on other nodes: the messages that carry them, their chains and errors."""
 
 from __future__ import annotations
@@ -10,7 +13,7 @@ import pytest
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.present.report import render as render_report
-from ravenchart.analysis.system.commands import costs
+from ravenchart.analysis.system.commands import command_times
 from ravenchart.analysis.system.depths import depths
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.gen.derive.completion import on_one_node, programs
@@ -209,9 +212,9 @@ def test_its_age_is_bounded_by_how_often_it_is_sent_and_read() -> None:
     #  a value is replaced by the next one after the period of the message
     assert latency.age is not None
     assert 20_000_000 < latency.age <= 60_000_000
-    (cost,) = [one for one in costs(found) if one.command == "Get_Place"]
-    assert (cost.how, cost.provider, cost.waits) == ("over link", "mover_1.Goal", False)
-    assert (cost.answered, cost.limit) == (latency.age, 60_000_000)
+    (read,) = [one for one in command_times(found) if one.command == "Get_Place"]
+    assert (read.how, read.provider, read.waits) == ("over link", "mover_1.Goal", False)
+    assert (read.answered, read.limit) == (latency.age, 60_000_000)
 
 
 def test_requests_from_other_nodes_are_counted_in_the_queue_of_their_server() -> None:
@@ -249,7 +252,7 @@ def test_where_other_nodes_call_a_full_queue_is_an_error_whatever_a_near_caller_
 @pytest.mark.slow
 def test_the_report_says_of_each_command_how_it_is_provided_and_when_it_is_done() -> None:
     found = analyse(_system(*OTHERS))
-    told = {(one.caller, one.command): one for one in costs(found)}
+    told = {(one.caller, one.command): one for one in command_times(found)}
     assert [told[f"boss_{n}.Plan", "Home"].how for n in (1, 2, 3)] == [
         "over link",
         "queued",
@@ -265,8 +268,8 @@ def test_the_report_says_of_each_command_how_it_is_provided_and_when_it_is_done(
     assert "<td>boss_1.Plan</td><td>Home</td>" in render_report(found)
     local = load(REQUESTS)
     assert local.system is not None
-    direct = {one.command: one for one in costs(analyse(local.system))}
-    assert (direct["Reset"].how, direct["Reset"].budget) == ("direct", 4_000)
+    direct = {one.command: one for one in command_times(analyse(local.system))}
+    assert (direct["Reset"].how, direct["Reset"].wcet) == ("direct", 4_000)
     assert (direct["Get_Place"].how, direct["Get_Place"].provider) == ("copied", "mover_1.Now")
 
 

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The compiler sees that a file is another, however soon after the last one it is written."""
 
 from pathlib import Path

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`replay` of a scenario: a log as input, at its times, and only what comes from outside."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Reports of plain files and models: pictures, contents, and what changed between versions."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Lists of requirements, results of tests, and which elements of a model can name ids."""
 
 from __future__ import annotations

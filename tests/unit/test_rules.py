@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Rules: what a valid model may do, and what is refused beside tests/bad_models."""
 
 from __future__ import annotations

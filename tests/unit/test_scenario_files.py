@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Scenarios are held against their model before anything is built; the page of both files."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Proofs run after other tests, a processor each; then tests that run alone. Each runs once."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Nodes with several cores: each analysed on its own, nothing shared, nothing generated yet."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Tables searched with the workers of a Dask scheduler: the same answer, and clear faults."""
 
 from __future__ import annotations

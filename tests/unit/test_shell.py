@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`ravenchart shell`: its lines, their errors, completion, scripts, and its answer as JSON."""
 
 from __future__ import annotations

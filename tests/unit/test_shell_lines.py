@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Lines of any words: the shell refuses each in words of its own, or carries it out."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Simulated tasks and buses against the bounds: never above, and equal where theory says so."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """`new`, `explain`, `clean`, `doctor`: what they refuse, and what they touch."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The files of snapshots: whole ones, torn ones, and those that nobody writes any more."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A message whose period is only a least distance: what is bounded, and what is not."""
 
 from __future__ import annotations

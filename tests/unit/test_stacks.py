@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Longest paths in call graphs of the compiler, and what gives them no bound."""
 
 from __future__ import annotations

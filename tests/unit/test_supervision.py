@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Liveness supervision: its task and its objects, its certificate, and the verdict on releases."""
 
 from __future__ import annotations
@@ -48,7 +51,7 @@ def test_its_demand_is_in_every_response_of_its_core() -> None:
     without = {r.task.name: r.bound for r in analyse(_without(system)).responses}
     supervisor = next(t for t in system.tasks if t.element == "board.supervisor")
     node = system.nodes[0]
-    demand = supervisor.budget + 2 * node.context_switch
+    demand = supervisor.wcet + 2 * node.context_switch
     assert with_it["board.supervisor"] == demand + node.critical_section
     for processor in system.processors:
         bound, before = with_it[processor.name], without[processor.name]

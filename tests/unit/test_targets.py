@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Targets: what a folder says, what is missing to build for it, and what its clock demands."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Small models of which a bound was once too low: what runs, and what is said of it now."""
 
 from __future__ import annotations

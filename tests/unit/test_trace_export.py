@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Traces in the formats of other tools: only what the trace holds, and its losses."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A recorded run shown again: at each instant what a monitor had shown, and a clock of its own."""
 
 from __future__ import annotations

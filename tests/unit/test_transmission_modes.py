@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Messages sent on change, on event, or both periodically and on change: what is bounded."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The transmit buffers of a controller: first in, first out, or by priority as the bus declares."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Values in several frames: what the analysis says of them, and transfers played step by step."""
 
 from __future__ import annotations
@@ -69,7 +72,8 @@ def test_the_value_is_cut_as_the_standard_says(tmp_path: Path) -> None:
     assert items["line.table"].period == 8 * MS
     assert items["line.table_Flow"].period == 5 * MS
     assert items["line.report_Flow"].period == 4 * MS
-    assert items["line.report"].cost == items["line.table_Flow"].cost
+    frames = {frame.name: frame for frame in analysis.network.frames["line"]}
+    assert frames["line.report"].cost == frames["line.table_Flow"].cost
 
 
 def _played(one: Transfer, chance: random.Random, *, worst: bool) -> int:

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Two main files in one folder: each has a program of its own, and none touches the other's."""
 
 from __future__ import annotations

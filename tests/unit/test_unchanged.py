@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Where nothing has changed, nothing is done again, and all is said again; else all is done."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is not proved is said in the user's words, whichever age of gnatprove says it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Verdicts of provers that are kept: proofs alone, under the tool's version; no cache is needed."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What is said on a bus: commands, fields and values, by the names of the model."""
 
 from __future__ import annotations

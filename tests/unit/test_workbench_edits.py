@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Changes of a model's text: what is not changed keeps every byte, and its comments."""
 
 from __future__ import annotations

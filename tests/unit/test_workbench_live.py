@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The running controllers on the page of the workbench, without a browser."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The server of the workbench: who may talk to it, what it refuses, and that it lives on."""
 
 from __future__ import annotations

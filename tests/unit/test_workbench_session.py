@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A model under change: what is written, what is taken back, and what is never overwritten."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How long a change of a hundred activities takes, from the message to the state for the page."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 "use strict";
 // Sorts and filters the tables. Without it the report says the same, in its own order.
 

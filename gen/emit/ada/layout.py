@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Documents, and their layout within a width, after Wadler and Lindig.
 
 A document is text, or parts that stand on one line or break at their soft places.

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Names in the generated Ada: one place decides how a model element is called."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the units of a program declare, read for names that bar each other.
 
 Units are read in their order: a child after its parent, a body after its spec.

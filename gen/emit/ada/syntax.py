@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The Ada constructs that Ravenchart emits, as typed nodes.
 
 An emitter builds a `Unit` from these nodes; `ada_text.print_unit` lays it out.

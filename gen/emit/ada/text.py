@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The printer of the Ada constructs: the only place that knows about layout.
 
 Three spaces, 79 columns, one statement a line; long parameter lists and

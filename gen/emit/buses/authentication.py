@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Authentication in the code of a bus, and the unit of the user that computes the MACs."""
 
 from __future__ import annotations

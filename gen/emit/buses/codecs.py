@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Frame codecs: a Pack and an Unpack for each layout that travels on a bus.
 
 A frame of up to 8 bytes is one 64-bit word, a longer one several: byte 0 is the lowest

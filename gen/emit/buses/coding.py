@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How scalars become the bits of a signal and back: the step from values to bits.
 
 Provers take integers and bits apart, so each step between them is a function of its own,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The controller of a bus: how it is configured, and that it runs as certified."""
 
 from __future__ import annotations

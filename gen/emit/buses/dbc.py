@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The CAN database (DBC) of a bus, written by cantools from the same layout as the codecs.
 
 Physical values are what the model's values count: a value of a type in `0.1 degC` is

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The layout table of a message in Ada, its frame, and what contracts say by them.
 
 A row is what the model says of a signal, number by number; `Ravenchart.Can.Layouts` gives it

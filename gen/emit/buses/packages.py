@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Buses: the controller, one procedure for each message sent, and the receiver."""
 
 from __future__ import annotations

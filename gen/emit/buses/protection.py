@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """End-to-end protection in the code of a bus: before a frame goes, and before one is unpacked."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Transmission modes in the code of a bus: a value waits until the end of its row's execution."""
 
 from __future__ import annotations

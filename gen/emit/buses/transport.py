@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Values in several frames: the two ends of a transfer in the code of a bus.
 
 The sender's row makes a segment at the end of an execution, and looks at flow control, which

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The watch of a bus: one look at the controller, and the events that its faults raise."""
 
 from __future__ import annotations

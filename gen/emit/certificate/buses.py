@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The messages of a bus in the timing certificate, and the reception's queue.
 
 A frame waits for the longest one that goes behind it and has begun, for what goes

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The code takes its facts from the timing certificate, and a build fails where it does not.
 
 An instance of the runtime shows what it was given. Scalars are compared by the compiler,

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The chains of a model in the timing certificate: sums of what tasks and messages claim.
 
 Which sums, the model says (`certificate_hops`); claims are numbers only.

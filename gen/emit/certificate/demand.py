@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a window must hold: the work of a task, of all that can delay it, and the platform's."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How long the frames of a message are, in the timing certificate.
 
 From the start of the frame to the next one, with as many stuff bits as there can be. A CAN

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a chain's values wait for, read from the model: the steps that its claims are about.
 
 A row later in the same table, run as often, follows at once; any other row samples at

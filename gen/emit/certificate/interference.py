@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What can delay a task or a message within a window, as static functions of the certificate.
 
 Each of those that go before each other adds what it asks for to the function of the one before

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Deadlines that a processor keeps by its offset: every instant at which releases meet.
 
 Its claimed response is that for any offsets, and above the deadline. A busy period in which

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The timing certificate: named numbers and static functions, every claim checked by the compiler.
 
 Both are exact and known before anything runs; what is too much for a function is longer than
@@ -200,7 +203,7 @@ def _terms(system: System, task: Task) -> list[Decl]:
     for slot in task.slots:
         items.append(stated(f"{name_of(slot.element)}_Budget", slot.timing.wcet))
     if not task.slots:
-        items.append(stated(f"{own}_Budget", task.budget))
+        items.append(stated(f"{own}_Budget", task.wcet))
     items += [stated(f"{own}_T", task.period), stated(f"{own}_D", task.deadline)]
     if has_offset(system, task):
         items.append(stated(f"{own}_O", task.offset))

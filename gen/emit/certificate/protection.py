@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What end-to-end protection finds, in the timing certificate: how surely, and how soon.
 
 The residual error probability is that of IEC 61784-3 for a black channel: the bits of a frame

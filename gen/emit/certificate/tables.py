@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The facts that the code takes from the timing certificate: priorities and tables.
 
 The sums of the certificate suppose an order of the tasks and a divisor for each row. So

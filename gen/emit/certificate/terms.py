@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Named numbers and the checks between them, as Ada constructs."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Values that travel in several frames in the timing certificate (ISO-TP).
 
 A round trip ends with the first release of the sender's row behind the delivery of a segment,

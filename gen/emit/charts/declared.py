@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A region's package spec: its types, and the chart as declared.
 
 `Enabled`, `In_Source` and `Target` are to be read against the model, a line for

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Deferral: which of the events that are kept come next.
 
 A kept event is due when no active state defers it, and also from the exit of a state that

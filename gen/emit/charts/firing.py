@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Exits, effects and entries of one region, with the ghost that proves their order.
 
 A state may be exited only when it is active and nothing inside it is; entered

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """All guards of a chart, all its flows, and which operators the guards use."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Histories: what they restore, as declared and as code.
 
 The memory of a region is the last leaf left in it. Deep history enters that leaf

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A step that can fire more than one: a transition in each lane, each with its segments.
 
 `Follows` is the contract: what a step fires is what was chosen for the lanes, in

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What outlasts a firing: time-outs, the memory of histories, and what is deferred.
 
 The *domain* of a transition is the innermost region that holds all it leaves and

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Exits and entries of one region: a procedure for each state where one does something.
 
 A state without actions, time-outs or history is exited and entered in the ghost of the

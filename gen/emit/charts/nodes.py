@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The ghost of the states that are active: when one may be exited or entered.
 
 In each lane the active states are a path, from the outermost to the innermost, so the

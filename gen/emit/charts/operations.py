@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a region offers to its instances, with the contracts that are proved.
 
 All contracts are in terms of the chart as declared.

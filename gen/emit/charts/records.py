@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The types of a region's package: what a step reads, keeps, sends and remembers."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Invariants of the model as contracts of a region's code.
 
 `Is_Safe` joins the conditions of `never` that are about this region, with the facts without

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Selection: for one occurrence the transition of each lane, by small functions.
 
 There is one for each composite state, with what its leaves select. A leaf has its own

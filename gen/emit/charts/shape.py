@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a region's package consists of: its occurrences, its memory, who reads what."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Do activities that complete their state: what a region knows of them, and how it is told.
 
 A region counts the visits of such a state and publishes them. Its do activity names

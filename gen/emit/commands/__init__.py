@@ -1,1 +1,4 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Commands in Ada: devices, calls, and both between nodes."""

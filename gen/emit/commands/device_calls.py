@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """How an instance calls what its required commands are bound to, and how calls are served."""
 
 from __future__ import annotations

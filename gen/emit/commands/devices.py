@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Devices: the specs of drivers, a package for each device, and simulated drivers."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Start and end of devices: initialised and tested before the first release, made safe at the end.
 
 The main program leads both. A supervisor, or the last-chance handler of the runtime, makes devices

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Registers of devices: which devices a type has, access to their registers, and what is behind.
 
 A driver reads and writes registers by procedures of one package for its type. That has two bodies:

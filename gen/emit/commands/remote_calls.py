@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Commands between nodes: how an instance sends and hears calls, and replies to them.
 
 The caller numbers its calls, and gives one up when its limit has passed; the provider

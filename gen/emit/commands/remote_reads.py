@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Read commands between nodes: how an instance publishes, and what its readers keep of it."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Contracts of activities as `Pre` and `Post`, and what is known of the data that they require."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """First bodies of the user's activities: they compile, are proved and do nothing yet."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What all instances of a component share: events, states, port views, activities."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One package per component instance: its protected objects, and the glue.
 
 The glue copies in what a region or activity reads, calls the component's

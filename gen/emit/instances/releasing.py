@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a queued port has besides that releases a processor: where that waits for a value."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """One execution of a port region, a region or an activity: copy in, call, publish."""
 
 from __future__ import annotations

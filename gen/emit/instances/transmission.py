@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What a row does last for the messages with a transmission mode that it sends."""
 
 from __future__ import annotations

@@ -1,1 +1,4 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The terms of a model in Ada: types, events, expressions, configurations."""

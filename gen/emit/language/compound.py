@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Compound transitions: what each way through the chart leaves, does and enters.
 
 A *firing* is one line of the declared chart: a transition of a state, together

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Events in Ada: an enumeration, or a record with the value that some of them carry."""
 
 from __future__ import annotations

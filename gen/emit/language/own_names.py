@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Transitions, states and events with names of generated code: their kind is added in Ada.
 
 So no name is reserved: a transition `t` is the literal ``T_Transition``. Traces, drawings

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Configurations in Ada: the types of the leaves, and the test for a state.
 
 The leaves of a lane are one enumeration in tree order, and a composite is the

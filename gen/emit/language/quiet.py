@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Models in which the compiler can decide conditions, and what keeps it from saying so.
 
 A type of one value, a region of one leaf or a guard that ranges decide are

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Expressions and flows of the model as Ada expressions and statements."""
 
 from __future__ import annotations

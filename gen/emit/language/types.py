@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The root package: one Ada type per unit, one subtype or type per model type."""
 
 from __future__ import annotations

@@ -1,1 +1,4 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The program of a node: its tasks, supervision, reports and project."""

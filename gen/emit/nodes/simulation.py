@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The program for simulation: the generated code without tasks and buses, in virtual time.
 
 Components, regions and instances are those of the controller, by the same

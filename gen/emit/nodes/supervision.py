@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The liveness supervision of a node, and what makes the node safe before its program ends."""
 
 from __future__ import annotations

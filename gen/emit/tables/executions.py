@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Each row of a table is executed once: what its procedure says, and who calls it checks.
 
 The procedure of a row leaves the row's number in a parameter that must be 0 before. So a

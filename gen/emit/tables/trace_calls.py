@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Trace calls: present only when the node declares a trace."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Element ids: numbers in the generated program, names and places in trace.json.
 
 The numbers follow model order; the rows of a processor follow its own number

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Calls that record values: present only where the model has `record`."""
 
 from __future__ import annotations

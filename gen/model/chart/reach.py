@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Which states of a chart can be entered at all, and from where which can follow.
 
 Guards are not looked into, and what regions side by side do is not related: what is

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What one step of a region sends and raises at most.
 
 One occurrence fires at most one transition in each lane, each with the choices and

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The tree of a chart: what stands where, and what lies between two vertices.
 
 A *place* is a region of the chart: the top-level region is ``(None, "")``, a

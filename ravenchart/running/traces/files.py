@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The trace files of a run, one for each node, read by the names of its program."""
 
 from __future__ import annotations

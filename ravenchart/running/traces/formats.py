@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A timeline as CSV, as MDF 4, and as JSON in the trace event format that Perfetto and Chrome open.
 
 The format: "Trace Event Format" (Google). Times (``ts``, ``dur``) are in microseconds. A slice is a

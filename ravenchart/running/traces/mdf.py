@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Recorded values and states as MDF 4 (ASAM), which asammdf writes: an optional package.
 
 A channel is an element, in a group of its own: each has its own times, in s. It holds the numbers

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The trace that `ravenchart simulate` prints, as text or as JSON lines, read again."""
 
 from __future__ import annotations

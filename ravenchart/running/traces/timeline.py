@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A trace as tracks of slices and marks, and as rows: what the formats are made of."""
 
 from __future__ import annotations

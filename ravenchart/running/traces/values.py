@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Recorded values in their units: literals by name, and what one count of an integer stands for."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // All periodic rows put together anew: a search with its best so far, and the button that takes it.
 
 import { html, useState } from "./preact.js";

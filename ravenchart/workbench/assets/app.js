@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // The workbench: one state from the server, shown in three panes.
 
 import { html, render, useEffect, useLayoutEffect, useRef, useState } from "./preact.js";

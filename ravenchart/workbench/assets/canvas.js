@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // A pane with a drawing of the model, as `ravenchart draw` draws it: chosen by its name, and zoomed.
 
 import { html, useEffect, useLayoutEffect, useRef, useState } from "./preact.js";

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // Left: the components, what they have to run with its times, and the processor of each instance.
 
 import { html } from "./preact.js";

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // Middle: the structure and the charts. A click on an element shows where it stands in the source.
 
 import { html } from "./preact.js";

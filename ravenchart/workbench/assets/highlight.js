@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // What is active in a drawing of a chart, and what its last execution took.
 
 import { plain } from "./canvas.js";

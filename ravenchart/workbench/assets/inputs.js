@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // Left: what may come from outside. Events and values are offered for the next release.
 
 import { html, useState } from "./preact.js";

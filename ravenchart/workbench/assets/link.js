@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // The link to the server: the state as a stream, and messages one after the other.
 // All addresses are relative, so they begin with the token.
 

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // The running controllers, as `ravenchart monitor` shows them, or those of a replay: ten times a second
 // while this tab is open.
 

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // Below the drawing: what is wrong, chains, buses, advice, tables, and the source of what was clicked.
 
 import { html, useEffect, useRef, useState } from "./preact.js";
@@ -69,7 +72,7 @@ function Buses() {
     <th class="number">R</th><th class="number">saved</th><th class="number">D</th><th>R of D</th>
     <th>verdict</th></tr></thead><tbody>${state.messages.map((one) => html`<tr key=${one.bus + one.name}>
       <td><${Place} at=${one}>${one.name}<//></td><td><code>${one.identifier}</code></td>
-      <td class="number">${one.period}</td><td class="number">${one.cost_text} us</td>
+      <td class="number">${one.period}</td><td class="number">${one.wcet_text} us</td>
       <td class="number"><b>${time(one.bound)}</b></td>
       <td class="number ${one.saved === one.bound ? "" : "moved"}">${one.saved === null ? "none" : time(one.saved)}</td>
       <td class="number">${time(one.limit)}</td><td><${Bar} of=${one} /></td><td><${Word} met=${one.met} text=${one.word} /></td></tr>`)}</tbody></table>`;

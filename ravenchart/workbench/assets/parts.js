@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // Parts that several panes of the page have in common.
 
 import { createContext, html, useContext, useEffect, useRef, useState } from "./preact.js";

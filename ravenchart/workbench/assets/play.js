@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // Charts in motion: one situation from the server, shown as drawing, reasons, values and trace.
 
 import { html, render, useEffect, useRef, useState } from "./preact.js";

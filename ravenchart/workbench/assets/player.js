@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // How the time of a replay goes on: the clock is in the server, so all pages show the same instant.
 
 import { html, useRef, useState } from "./preact.js";

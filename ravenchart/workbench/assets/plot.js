@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // A recorded value over time: it holds until the next one is recorded.
 
 import { html } from "./preact.js";

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // Right: the processors with their responses, and their activities in order. A row is moved by
 // dragging, by Shift and the arrow keys, or by the controls below it once it is selected.
 

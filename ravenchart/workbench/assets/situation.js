@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 // Below the drawing and right of it: what the last execution did and why, trace, values, event file.
 
 import { html, useState } from "./preact.js";

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """What the page of the charts asks for: each message in one form, and nothing else is accepted."""
 
 from __future__ import annotations

@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The server of the charts in motion: beside what every page has, the event file."""
 
 from __future__ import annotations

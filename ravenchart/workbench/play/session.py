@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """A system that people execute step by step: what they did, and every situation it came to.
 
 A stimulus is offered at once, at the time of the next release, where `simulate` takes it too. So

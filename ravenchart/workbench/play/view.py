@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """The situation of a play as the page gets it: one JSON object, complete each time."""
 
 from __future__ import annotations

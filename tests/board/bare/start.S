@@ -1,3 +1,6 @@
+/* SPDX-FileCopyrightText: Ravenchart contributors */
+/* SPDX-License-Identifier: Apache-2.0 */
+
 /* From reset to the main program, at the exception level where the emulator begins.
    Exceptions end the run with status 2, by semihosting. */
 

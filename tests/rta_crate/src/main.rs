@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: Ravenchart contributors
+// SPDX-License-Identifier: Apache-2.0
+
 //! Response times of plain fixed-priority task sets, by the crate `response-time-analysis`.
 //!
 //! Reads one set a line, `period cost period cost ...`, most urgent task first. Writes one

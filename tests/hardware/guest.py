@@ -1,33 +1,28 @@
-"""`make hw-test`: drivers of CAN controllers, in a guest of QEMU; and other machines.
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A guest of QEMU in which `make hw-test` tries the drivers of CAN controllers.
 
 The guest runs Debian's kernel, sees the root of this machine read-only, and has a virtual
 interface, vcan0, two emulated SJA1000 on one bus, can0 and can1, and two cards with two
 emulated CTU CAN FD each, for which it has no driver: one on the same bus, one on its own.
-Beside it, the Ada tests and generated codecs run on a big-endian machine and on one of 32
-bits, in QEMU's user mode. Exit status: 0 all that was run passed; 1 something failed; 2
-nothing could be run, for the reasons printed.
+It runs a program for each step, and leaves output and exit status in a folder of this machine.
 """
 
 from __future__ import annotations
 
-import itertools
-import platform
+import json
 import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree
 
 from ravenchart.building import checking, generation, programs
-from ravenchart.failures import ToolFailed
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
-from ravenchart.tools.toolchain import ToolMissing
-
-from . import machines
 
 QEMU = "qemu-system-x86_64"
 KERNEL = ROOT / "build" / "guest"
@@ -43,9 +38,6 @@ PROGRAMS = {
 }
 """What is built with each driver."""
 
-ELSEWHERE = ("tests/system/test_other_machines.py", "tests/system/test_codecs.py")
-"""What is run on other machines: of the latter the tests that are named after one."""
-
 PATIENCE = 1_200
 """Seconds after which a guest is given up; it needs about a minute."""
 
@@ -59,39 +51,81 @@ SHARED_SLOT, OWN_SLOT = 0x10, 0x11
 """Of the card on the bus of the SJA1000, and of the one that has a bus of its own."""
 
 TAIL = 15
-"""Lines that are shown of a guest's console, or of a step without a result."""
+"""Lines that are shown of a guest's console."""
+
+PASSED, FAILED, SKIPPED = "passed", "failed", "skipped"
+"""How a case of a step ended."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One program to run in the guest, which writes JUnit XML to ``name``.xml."""
+    """One program to run in the guest; with ``in_json`` it prints its cases as JSON."""
 
     name: str
     command: tuple[str, ...]
+    in_json: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class Total:
-    """What all steps came to; ``lost`` names those without a result."""
+class GuestCase:
+    """One thing that a step tried, and how that ended."""
 
-    passed: int
-    failed: int
-    skipped: int
-    lost: tuple[str, ...]
+    name: str
+    verdict: str
+    detail: str = ""
 
-    def __add__(self, other: Total) -> Total:
-        """Both together."""
-        return Total(
-            self.passed + other.passed,
-            self.failed + other.failed,
-            self.skipped + other.skipped,
-            self.lost + other.lost,
+
+@dataclass(frozen=True, slots=True)
+class Guest:
+    """A guest that has run: its folder, and why it ended early, if it did."""
+
+    home: Path
+    trouble: str = ""
+
+    def said(self, step: Step) -> str:
+        """All that a step printed, or how the guest ended if it never came to it."""
+        texts = [self.home / "results" / f"{step.name}.{end}" for end in ("out", "err")]
+        found = [text.read_text(encoding="utf-8", errors="replace") for text in texts if _is(text)]
+        return "\n".join(found or [self.trouble, _tail(self.home / "console.txt")])
+
+    def cases(self, step: Step) -> tuple[GuestCase, ...]:
+        """What a step tried: nothing when it has no result."""
+        results = self.home / "results"
+        status, output = results / f"{step.name}.status", results / f"{step.name}.out"
+        if not (_is(status) and _is(output)):
+            return ()
+        text = output.read_text(encoding="utf-8", errors="replace")
+        if step.in_json:
+            return _cases_in_json(text)
+        return facts(text, int(status.read_text(encoding="utf-8")))
+
+
+def facts(output: str, status: int) -> tuple[GuestCase, ...]:
+    """The "ok" and "not ok" lines of a program, and that it ends with status 0 if all hold."""
+    found = [
+        GuestCase(
+            line.removeprefix("not ").removeprefix("ok "),
+            PASSED if line.startswith("ok ") else FAILED,
         )
+        for line in output.splitlines()
+        if line.startswith(("ok ", "not ok "))
+    ]
+    if not found:
+        found.append(GuestCase("it says a fact", FAILED))
+    if status != 0 and all(case.verdict == PASSED for case in found):
+        found.append(GuestCase("it ends with status 0", FAILED, f"it ended with {status}"))
+    return tuple(found)
 
-    @property
-    def good(self) -> bool:
-        """Nothing failed, nothing was lost, and something passed."""
-        return self.passed > 0 and self.failed == 0 and not self.lost
+
+def _cases_in_json(text: str) -> tuple[GuestCase, ...]:
+    """The cases of a conformance suite, as `ravenchart loopback --json` prints them."""
+    try:
+        result = json.loads(text)["result"]
+    except ValueError:
+        return ()
+    if result is None:
+        return ()
+    return tuple(GuestCase(one["name"], one["verdict"], one["detail"]) for one in result["cases"])
 
 
 def steps(python: str, objects: Path, controller: Path) -> tuple[Step, ...]:
@@ -99,42 +133,25 @@ def steps(python: str, objects: Path, controller: Path) -> tuple[Step, ...]:
 
     ``controller`` is that of the crossing.
     """
-    loopback = (
-        python,
-        "-P",
-        "-m",
-        "ravenchart",
-        "loopback",
-        "--interface",
-        "socketcan",
-        "--channel",
-    )
-    driver = (python, "-P", "-m", "tests.hardware.driver")
-    fact = (python, "-P", "-m", "tests.hardware.fact")
-    remote = (python, "-P", "-m", "tests.hardware.remote")
+    module = (python, "-P", "-m")
+    loopback = (*module, "ravenchart", "loopback", "--json", "--interface", "socketcan")
+    driver = (*module, "tests.hardware.driver", "--json")
+    remote = (*module, "tests.hardware.remote")
     socketcan, ctucanfd = (
         objects / f"tests-{MODE}-{name}" / "bin" for name in ("socketcan", "ctucanfd")
     )
     shared, own = CARDS.format(SHARED_SLOT), CARDS.format(OWN_SLOT)
     echo = str(socketcan / "can_echo")
-    near = ("--near", "can0", "--emulated")
+    card = (str(ctucanfd / "can_echo"), f"{shared}:1", "--driver", "ctucanfd")
+    with_own = ("env", f"RAVENCHART_CTUCANFD={own}")
     return (
-        Step("loopback-vcan0", (*loopback, "vcan0", "--fd")),
-        Step("driver-vcan0", (*driver, echo, "vcan0")),
+        Step("loopback-vcan0", (*loopback, "--channel", "vcan0", "--fd"), in_json=True),
+        Step("driver-vcan0", (*driver, echo, "vcan0"), in_json=True),
         Step("remote-vcan0", (*remote, str(controller), "vcan0")),
-        Step("driver-can0", (*driver, echo, "can0", "--near", "can1", "--emulated")),
-        Step(
-            "driver-ctucanfd",
-            (*driver, str(ctucanfd / "can_echo"), f"{shared}:1", "--driver", "ctucanfd", *near),
-        ),
-        Step(
-            "registers-ctucanfd",
-            ("env", f"RAVENCHART_CTUCANFD={own}", *fact, str(ctucanfd / "test_ctu_cores")),
-        ),
-        Step(
-            "frames-ctucanfd",
-            ("env", f"RAVENCHART_CTUCANFD={own}", *fact, str(ctucanfd / "test_ctu_driver")),
-        ),
+        Step("driver-can0", (*driver, echo, "can0", "--near", "can1", "--emulated"), in_json=True),
+        Step("driver-ctucanfd", (*driver, *card, "--near", "can0", "--emulated"), in_json=True),
+        Step("registers-ctucanfd", (*with_own, str(ctucanfd / "test_ctu_cores"))),
+        Step("frames-ctucanfd", (*with_own, str(ctucanfd / "test_ctu_driver"))),
     )
 
 
@@ -142,8 +159,9 @@ def script(chosen: Sequence[Step]) -> str:
     """The steps as the guest's shell runs them, in the folder of results."""
     lines = []
     for step in chosen:
-        told = ("timeout", str(LIMIT), *step.command, "--junit", f"{step.name}.xml")
-        lines.append(f"{shlex.join(told)} > {step.name}.txt 2>&1\n")
+        command = shlex.join(("timeout", str(LIMIT), *step.command))
+        lines.append(f"{command} > {step.name}.out 2> {step.name}.err\n")
+        lines.append(f"echo $? > {step.name}.status\n")
     return "".join(lines)
 
 
@@ -238,22 +256,9 @@ def boot(kernel: Path, archive: Path, home: Path) -> None:
     )  # fmt: skip
 
 
-def total(chosen: Sequence[Step], results: Path) -> Total:
-    """What the guest has written; a step without a well-formed result is lost."""
-    passed = failed = skipped = 0
-    lost = []
-    for step in chosen:
-        try:
-            root = ElementTree.parse(results / f"{step.name}.xml").getroot()
-        except (OSError, ElementTree.ParseError):
-            lost.append(step.name)
-            continue
-        for case in root.iter("testcase"):
-            kinds = {child.tag for child in case}
-            failed += bool(kinds & {"failure", "error"})
-            skipped += "skipped" in kinds
-            passed += not kinds & {"failure", "error", "skipped"}
-    return Total(passed, failed, skipped, tuple(lost))
+def _is(path: Path) -> bool:
+    """Whether there is a file that has been written."""
+    return path.is_file() and path.stat().st_size > 0
 
 
 def _tail(path: Path) -> str:
@@ -279,70 +284,16 @@ def _build() -> None:
         toolchain.run("gprbuild", options, ROOT / "tests" / "ada", scenario)
 
 
-def _told(chosen: Sequence[Step], home: Path) -> Total:
-    """Print what the guest found, and count it."""
-    results = home / "results"
-    for step in chosen:
-        text = results / f"{step.name}.txt"
-        print(f"\n== {step.name}\n")
-        print(text.read_text(encoding="utf-8", errors="replace") if text.exists() else "not run")
-    found = total(chosen, results)
-    if found.lost:
-        print(f"\nwithout a result: {', '.join(found.lost)}; the guest's console ended with")
-        print(_tail(home / "console.txt"))
-    return found
-
-
-def guest() -> Total:
-    """Build, boot, and print what came of it; ToolMissing or ToolFailed before that."""
-    _build()
-    chosen = steps(sys.executable, ROOT / "obj", crossing())
-    (HOME / "results" / "steps").write_text(script(chosen), encoding="utf-8")
-    try:
-        boot(KERNEL, make_initramfs(KERNEL, HOME), HOME)
-    except subprocess.SubprocessError as failed:
-        print(f"hw-test: the guest: {failed}", file=sys.stderr)
-    return _told(chosen, HOME)
-
-
-def elsewhere() -> Total:
-    """The tests for other machines, as far as there are tools for them."""
-    step = Step("other-machines", ())
-    told = [sys.executable, "-m", "pytest", "-q", "-rs", *ELSEWHERE]
-    names = " or ".join(machine.name for machine in machines.OTHERS)
-    result = HOME / "results" / f"{step.name}.xml"
-    print(f"\n== {step.name}\n", flush=True)
-    subprocess.run([*told, "-k", names, f"--junitxml={result}"], cwd=ROOT, check=False)
-    return total((step,), HOME / "results")
-
-
-def main() -> int:
-    """Run what can be run, and say what came of it."""
+def run(wanted: Collection[str]) -> Guest:
+    """Build, boot and run the steps of these names; ToolMissing or ToolFailed before that."""
     shutil.rmtree(HOME / "results", ignore_errors=True)
     (HOME / "results").mkdir(parents=True)
-    reasons = list(missing(KERNEL, platform.machine()))
-    others = [list(machine.missing()) for machine in machines.OTHERS]
-    found = Total(0, 0, 0, ())
+    _build()
+    every = steps(sys.executable, ROOT / "obj", crossing())
+    chosen = script([step for step in every if step.name in wanted])
+    (HOME / "results" / "steps").write_text(chosen, encoding="utf-8")
     try:
-        if not reasons:
-            found += guest()
-        if not all(others):
-            found += elsewhere()
-    except ToolMissing as tool:
-        reasons.append(str(tool))
-    except ToolFailed as failed:
-        print(str(failed).rstrip(), file=sys.stderr)
-        return 1
-    for reason in itertools.chain(reasons, *others):
-        print(f"hw-test: skipped: {reason}", file=sys.stderr)
-    if found == Total(0, 0, 0, ()):
-        print("hw-test: nothing was run", file=sys.stderr)
-        return 2
-    word = "PASS" if found.good else "FAIL"
-    counts = f"{found.passed} passed, {found.failed} failed, {found.skipped} skipped"
-    print(f"\nhw-test: {word}: {counts}")
-    return 0 if found.good else 1
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+        boot(KERNEL, make_initramfs(KERNEL, HOME), HOME)
+    except subprocess.SubprocessError as problem:
+        return Guest(HOME, f"the guest: {problem}")
+    return Guest(HOME)

@@ -1,4 +1,7 @@
-"""`analyse --observed`: what a run recorded against the budgets of the model."""
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""`analyse --observed`: what a run recorded against the WCETs of the model."""
 
 from __future__ import annotations
 
@@ -34,14 +37,14 @@ def trace(folder: Path, text: str, model: str | None = None) -> str:
     return str(path)
 
 
-def test_executions_within_their_budgets_pass(
+def test_executions_within_their_wcets_pass(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     lines = "".join(f"A {number} 1000\n" for number in rows().values())
     assert main(["analyse", str(MODEL), "--observed", trace(tmp_path, lines + "END\n")]) == OK
     found = capsys.readouterr().out
     for name in rows():
-        assert f"{name}: 1 us, within its budget of " in found
+        assert f"{name}: 1 us, within its WCET of " in found
 
 
 @pytest.mark.slow
@@ -51,8 +54,8 @@ def test_what_a_trace_shows_is_in_the_report(tmp_path: Path) -> None:
     path = trace(tmp_path, lines + "END\n")
     assert main(["analyse", str(MODEL), "--observed", path, "--html", str(page)]) == OK
     text = page.read_text(encoding="utf-8")
-    assert "every observed execution time is within its budget" in text
-    assert "Executions beside the model" in text
+    assert "every observed execution time is within its WCET" in text
+    assert "Executions beside their WCETs" in text
 
 
 @pytest.mark.slow
@@ -65,14 +68,14 @@ def test_reactions_are_drawn_beside_their_bound() -> None:
     assert "flow: how often each reaction was observed, beside its bound" in text
 
 
-def test_an_execution_above_its_budget_fails_and_is_named(
+def test_an_execution_above_its_wcet_fails_and_is_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (first, number), *others = rows().items()
     path = trace(tmp_path, f"A {number} 999999999\nEND\n")
     assert main(["analyse", str(MODEL), "--observed", path]) == WRONG
     found = capsys.readouterr().out
-    assert f"{first}: 1000000 us, ABOVE its budget of " in found
+    assert f"{first}: 1000000 us, ABOVE its WCET of " in found
     for name, _ in others:
         assert f"{name}: not executed in this run" in found
 
