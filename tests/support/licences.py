@@ -28,6 +28,7 @@ LINES = (f"SPDX-FileCopyrightText: {HOLDER}", f"SPDX-License-Identifier: {LICENC
 HASH, SLASHES, STARS = ("# ", ""), ("// ", ""), ("/* ", " */")
 COMMENTS = {
     ".S": STARS,
+    ".c": STARS,
     ".css": STARS,
     ".js": SLASHES,
     ".ld": STARS,

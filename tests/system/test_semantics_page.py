@@ -17,7 +17,9 @@ from ravenchart.paths import ROOT
 from tests.support.pump import loaded
 
 PAGE = (ROOT / "docs" / "semantics.md").read_text()
-FRAGMENTS: list[tuple[str, str]] = re.findall(r"```yaml\n(initial:.*?)```\n\n```text\n(.*?)```", PAGE, re.S)
+FRAGMENTS: list[tuple[str, str]] = re.findall(
+    r"```yaml\n(initial:.*?)```\n\n```text\n(.*?)```", PAGE, re.S
+)
 
 MODEL = """\
 system: Fragment

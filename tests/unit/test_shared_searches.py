@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from distributed import LocalCluster
@@ -61,7 +60,7 @@ def test_a_worker_of_another_version_is_refused(
 def test_a_scheduler_that_goes_is_named(pump: Analysis) -> None:
     with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as made:
         address = made.scheduler_address
-        refused = pytest.raises(Unusable, match="the Dask scheduler at .* was lost")
+        refused = pytest.raises(Unusable, match=r"the Dask scheduler at .* was lost")
         with refused, helpers.scheduled(address) as there:
             propose(pump, "slack", lambda _: made.close(), there)
 

@@ -1,3 +1,6 @@
+/* SPDX-FileCopyrightText: Ravenchart contributors */
+/* SPDX-License-Identifier: Apache-2.0 */
+
 /* The oven of docs/plants.md as a Functional Mock-up Unit: FMI 3.0, or 2.0 with -DFMI2. */
 
 #include <stdbool.h>
