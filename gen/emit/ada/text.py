@@ -6,60 +6,90 @@ expressions break one item a line (`layout` decides).
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
-from .layout import CUT, SOFT, STEP, Doc, cat, group, laid_out, nest, upright
-from .syntax import (
-    NULL,
-    Aggregate,
-    Arg,
+from .declarations import (
+    AbstractState,
+    ArrayDefinition,
     Aspect,
-    Assign,
-    Call,
-    Case,
-    CaseExpr,
-    Comment,
     Decl,
-    Do,
+    Definition,
+    DerivedDefinition,
     EnumType,
-    Expr,
-    ForAll,
-    ForSome,
     GenericInstance,
-    IfExpr,
-    IfStatement,
-    Loop,
+    IndexConstrained,
+    ModularDefinition,
     Object,
-    Old,
-    OperatorChain,
     Package,
     Param,
-    PlainType,
-    Pragma,
-    Prefix,
     Protected,
+    RangeConstrained,
+    RangeDefinition,
     RecordDeclaration,
-    Ref,
-    Rename,
-    Return,
-    Say,
-    Stmt,
     Subprogram,
+    Subtype,
+    SubtypeDeclaration,
+    TypeDeclaration,
     Unit,
     UsePackage,
     UseType,
-    arguments,
 )
+from .expressions import (
+    Aggregate,
+    Arg,
+    Attribute,
+    BoxMark,
+    Call,
+    CaseExpr,
+    Choice,
+    ChoiceList,
+    Domain,
+    Expr,
+    ForAll,
+    ForSome,
+    IfExpr,
+    Indexed,
+    IntegerLiteral,
+    Membership,
+    NullLiteral,
+    OperatorChain,
+    Others,
+    Parenthesized,
+    Power,
+    Prefix,
+    Qualified,
+    Range,
+    Selected,
+    StringLiteral,
+)
+from .layout import CUT, SOFT, STEP, Doc, cat, group, laid_out, nest, upright
+from .named import DottedName, ref
+from .statements import (
+    NULL,
+    Assign,
+    Case,
+    Comment,
+    DelayUntil,
+    Do,
+    ExitStatement,
+    ForLoop,
+    IfStatement,
+    Loop,
+    NullStatement,
+    Pragma,
+    RaiseStatement,
+    Return,
+    Stmt,
+)
+from .walking import nodes_in
 
 WIDTH = 79
 ONE_LINE = 60
 """Longer parameter lists go one to a line."""
 LONG_REFERENCE = 56
 """Longer names do not fit where they stand deep in other constructs."""
-ADA_NAME = re.compile(r"[\w.]+( \(\w+\)(\.\w+)?)?")
-"""A name of one or several words, perhaps of a component of an array."""
 
 
 def _join(docs: Sequence[Doc], separator: str = "") -> list[Doc]:
@@ -81,16 +111,24 @@ def _filled(docs: Sequence[Doc], separator: str = ",") -> Doc:
     return cat(first, *(group(SOFT, doc) for doc in rest))
 
 
-def _args(args: Sequence[Arg]) -> Doc:
+def _listed(docs: Sequence[Doc]) -> Doc:
     """Arguments on one line; else named ones have a line each, and positional ones fill lines."""
-    return group("(", nest(*_join([_arg(a) for a in args], ","), by=1), ")")
+    return group("(", nest(*_join(docs, ","), by=1), ")")
 
 
 def _given(head: str, args: Sequence[Arg], end: str = "") -> Doc:
     """A name and its arguments; positional ones begin behind it."""
-    if len(args) < 2 or any(a.name is not None for a in args):
-        return group(head, nest(SOFT, _args(args), by=2), end)
-    first, *rest = (_arg(a) for a in args)
+    docs = [_arg(a) for a in args]
+    if any(a.name is not None for a in args):
+        return group(head, nest(SOFT, _listed(docs), by=2), end)
+    return _behind(head, docs, end)
+
+
+def _behind(head: str, docs: Sequence[Doc], end: str) -> Doc:
+    """A name and what fills the lines behind it."""
+    if len(docs) < 2:
+        return group(head, nest(SOFT, _listed(docs), by=2), end)
+    first, *rest = docs
     behind = [group(SOFT, doc, "," if n < len(rest) else ")") for n, doc in enumerate(rest, 1)]
     begin = group(SOFT, "(", nest(first, by=1), ",")
     return group(head, nest(begin, nest(*behind, by=1), by=2), end)
@@ -98,12 +136,16 @@ def _given(head: str, args: Sequence[Arg], end: str = "") -> Doc:
 
 def _arg(arg: Arg) -> Doc:
     value = expression(arg.value)
-    return value if arg.name is None else group(arg.name, " =>", nest(SOFT, value, by=2))
+    return value if arg.name is None else group(_selector(arg), " =>", nest(SOFT, value, by=2))
+
+
+def _selector(arg: Arg) -> str:
+    return arg.name if isinstance(arg.name, str) else _choice(arg.name or Others())
 
 
 _LEVELS = (
     ("and", "or", "xor", "and then", "or else"),
-    ("=", "/=", "<", "<=", ">", ">=", "in", "not in"),
+    ("=", "/=", "<", "<=", ">", ">=", "in"),
     ("+", "-", "&"),
     ("*", "/", "mod", "rem"),
     ("**",),
@@ -120,8 +162,9 @@ def _operand(expr: Expr, operator: str = "", first: bool = False) -> Doc:
     The first one of an arithmetic operator needs none where it has an operator of the same level.
     """
     doc = expression(expr)
-    if isinstance(expr, OperatorChain):
-        own, around = _CLOSENESS[expr.operator], _CLOSENESS.get(operator, len(_LEVELS))
+    if isinstance(expr, OperatorChain | Membership):
+        own = _CLOSENESS["in" if isinstance(expr, Membership) else expr.operator]
+        around = _CLOSENESS.get(operator, len(_LEVELS))
         alike = first and own == around and operator in _ARITHMETIC
         if not (alike or own > around) or operator == "**":
             return cat("(", nest(doc, by=1), ")")
@@ -139,31 +182,97 @@ def _bare(*docs: Doc) -> Doc:
     return group("(", nest(*docs, by=1), ")")
 
 
-def _choices(text: str) -> Doc:
+def _choices(choices: ChoiceList, end: str = "") -> Doc:
     """``A | B``, in as many lines as it takes."""
-    first, *others = text.split(" | ")
+    *texts, last = map(_choice, choices.choices)
+    first, *others = [*texts, f"{last}{end}"]
     return cat(first, *(group(SOFT, "| ", choice) for choice in others)) if others else first
 
 
-def _reference(text: str) -> Doc:
-    """A name; one too long for some lines may break before its index, or else before its end."""
-    if len(text) <= LONG_REFERENCE or not ADA_NAME.fullmatch(text):
+def _choice(choice: Choice | Domain) -> str:
+    match choice:
+        case Others():
+            return "others"
+        case Range(low, high):
+            return f"{flat(low)} .. {flat(high)}"
+    return flat(choice)
+
+
+def _among(choices: ChoiceList) -> Doc:
+    """What stands behind ``in``."""
+    match choices.choices:
+        case (DottedName() as only,):
+            return _dotted(only)
+    return _choices(choices)
+
+
+def flat(expr: Expr) -> str:
+    """An expression on one line."""
+    if isinstance(expr, DottedName):
+        return expr.text
+    doc = expression(expr)
+    return doc if isinstance(doc, str) else doc.flat
+
+
+def _dotted(name: DottedName) -> Doc:
+    """A name; one too long for some lines may break before its end."""
+    text = name.text
+    if len(text) <= LONG_REFERENCE or len(name.parts) == 1:
         return text
-    head, paren, index = text.partition(" (")
-    if paren:
-        return group(head, nest(SOFT, f"({index}", by=2))
-    head, dot, end = text.rpartition(".")
-    return group(head, nest(CUT, f".{end}", by=2)) if dot else text
+    return group(name.parent.text, nest(CUT, f".{name.last}", by=2))
+
+
+def _element(prefix: Expr, index: Expr, end: str = "") -> Doc:
+    """An element of an array, or what ``end`` selects of it; it may break before its index."""
+    head, place = flat(prefix), f"({flat(index)}){end}"
+    long = len(head) + 1 + len(place) > LONG_REFERENCE
+    is_word = isinstance(index, IntegerLiteral) or (
+        isinstance(index, DottedName) and len(index.parts) == 1
+    )
+    if long and is_word and isinstance(prefix, DottedName):
+        return group(head, nest(SOFT, place, by=2))
+    return f"{head} {place}"
+
+
+def _integer(literal: IntegerLiteral) -> str:
+    if literal.base == 16:
+        return f"16#{literal.value:_X}#" if literal.grouped else f"16#{literal.value:X}#"
+    return f"{literal.value:_}" if literal.grouped else str(literal.value)
+
+
+def _word(expr: Expr) -> Doc:
+    """An expression that has no place for a break, or a name."""
+    match expr:
+        case DottedName():
+            return _dotted(expr)
+        case Selected(Indexed(prefix, index), selector):
+            return _element(prefix, index, f".{selector}")
+        case Selected(prefix, selector):
+            return f"{flat(prefix)}.{selector}"
+        case Indexed(prefix, index):
+            return _element(prefix, index)
+        case Attribute(prefix, designator):
+            return f"{flat(prefix)}'{designator}"
+        case Qualified(mark, operand):
+            return f"{mark.text}'({flat(operand)})"
+        case IntegerLiteral():
+            return _integer(expr)
+        case Power(base, exponent):
+            return f"{base}**{exponent}"
+        case StringLiteral(words):
+            doubled = words.replace('"', '""')
+            return f'"{doubled}"'
+        case NullLiteral():
+            return "null"
+        case BoxMark():
+            return "<>"
+    raise TypeError(expr)
 
 
 @lru_cache(maxsize=8192)
 def expression(expr: Expr) -> Doc:
     """The layout of one expression; a program has few that it does not repeat."""
     match expr:
-        case Ref(text):
-            return _choices(text) if " | " in text else _reference(text)
-        case Old(name, part):
-            return f"{name}'Old{part}"
         case OperatorChain(operator, operands):
             #  GNAT wants to see what a sign before a product is of
             begin = _signed if operator in ("*", "/") else _operand
@@ -173,13 +282,18 @@ def expression(expr: Expr) -> Doc:
             return group(head, *(place(SOFT, f"{operator} ", nest(r, by=2)) for r in rest))
         case Prefix(operator, operand):
             return cat(operator if operator == "-" else f"{operator} ", _signed(operand))
+        case Parenthesized(operand):
+            return cat("(", nest(expression(operand), by=1), ")")
+        case Membership(item, among):
+            head = _operand(item, "in", first=True)
+            return group(head, SOFT, "in ", nest(_among(among), by=2))
         case Call(name, args):
-            return _given(name, args)
-        case Aggregate(args, _, str(base)):
-            changed = _join([_arg(a) for a in args], ",")
-            return _bare(f"{base}{_DELTA}", nest(SOFT, *changed, by=2))
-        case Aggregate(args, of_type):
-            return group(f"{of_type}'" if of_type else "", _args(args))
+            return _given(flat(name), args)
+        case Aggregate(args, of_type, base):
+            docs = [_arg(a) for a in args]
+            if base is not None:
+                return _bare(f"{flat(base)} with delta", nest(SOFT, *_join(docs, ","), by=2))
+            return group(f"{of_type.text}'" if of_type else "", _listed(docs))
         case IfExpr(branches, otherwise):
             parts: list[Doc] = [
                 group(
@@ -194,14 +308,16 @@ def expression(expr: Expr) -> Doc:
             return _bare(*_join(parts))
         case CaseExpr(selector, branches):
             rows = [
-                group("when ", nest(_choices(f"{choice} =>")), nest(SOFT, expression(value)))
-                for choice, value in branches
+                group("when ", nest(_choices(choices, " =>")), nest(SOFT, expression(value)))
+                for choices, value in branches
             ]
             body = nest(SOFT, *_join(rows, ","), by=2)
             return upright("(", nest("case ", expression(selector), " is", body, by=1), ")")
         case ForAll(variable, domain, condition) | ForSome(variable, domain, condition):
             word = "all" if isinstance(expr, ForAll) else "some"
-            return _bare(f"for {word} {variable} in {domain} =>", nest(SOFT, expression(condition)))
+            head = f"for {word} {variable} in {_choice(domain)} =>"
+            return _bare(head, nest(SOFT, expression(condition)))
+    return _word(expr)
 
 
 @lru_cache(maxsize=8192)
@@ -227,11 +343,9 @@ def statement(stmt: Stmt) -> Doc:
     """The layout of one statement."""
     match stmt:
         case Assign(target, value):
-            return group(f"{target} :=", nest(SOFT, expression(value), by=2), ";")
-        case Do(name, ()):
-            return f"{name};"
+            return group(f"{flat(target)} :=", nest(SOFT, expression(value), by=2), ";")
         case Do(name, args):
-            return _given(name, args, ";")
+            return _given(name.text, args, ";") if args else f"{name.text};"
         case IfStatement(branches, otherwise):
             parts: list[Doc] = []
             for index, (condition, body) in enumerate(branches):
@@ -244,41 +358,65 @@ def statement(stmt: Stmt) -> Doc:
             return upright(*parts, "end if;")
         case Case(selector, branches):
             rows = [
-                upright(group("when ", nest(_choices(f"{choice} =>"))), _block(body))
-                for choice, body in branches
+                upright(group("when ", nest(_choices(choices, " =>"))), _block(body))
+                for choices, body in branches
             ]
             return upright("case ", expression(selector), " is", _lines(rows), SOFT, "end case;")
         case Loop(head, body):
-            start = f"{head} loop" if head else "loop"
-            return upright(start, _block(body), SOFT, "end loop;")
-        case Say(text):
-            return f"{text};"
+            return upright(f"{_head(head)}loop", _block(body), SOFT, "end loop;")
         case Return(value):
             return group("return", nest(SOFT, expression(value), by=2), ";")
         case Pragma(name, args):
             return _pragma(name, args)
         case Comment(text):
             return _comment(text)
+    return f"{_simple(stmt)};"
 
 
-def _pragma(name: str, args: Sequence[Expr]) -> Doc:
+def _head(head: ForLoop | None) -> str:
+    return "" if head is None else f"for {head.variable} in {_choice(head.domain)} "
+
+
+def _simple(stmt: NullStatement | ExitStatement | DelayUntil | RaiseStatement) -> str:
+    """A statement of a few words, without its semicolon."""
+    match stmt:
+        case NullStatement():
+            return "null"
+        case ExitStatement(condition):
+            return "exit" if condition is None else f"exit when {flat(condition)}"
+        case DelayUntil(time):
+            return f"delay until {flat(time)}"
+        case RaiseStatement(exception, words):
+            return f"raise {exception.text} with {flat(words)}"
+
+
+def _pragma(name: str, args: Sequence[Expr | Arg]) -> Doc:
     if not args:
         return f"pragma {name};"
-    return _given(f"pragma {name}", arguments(*args), ";")
+    docs = [
+        f"{_selector(a)} => {flat(a.value)}" if isinstance(a, Arg) else expression(a) for a in args
+    ]
+    return _behind(f"pragma {name}", docs, ";")
 
 
 @lru_cache(maxsize=8192)
 def _aspects(aspects: Sequence[Aspect]) -> Doc:
     docs = [
-        a.name if a.value is None else group(f"{a.name} =>", nest(SOFT, expression(a.value), by=2))
+        a.name if a.value is None else group(f"{a.name} =>", nest(SOFT, _given_to(a.value), by=2))
         for a in aspects
     ]
     return cat(SOFT, group("with", nest(SOFT, *_join(docs, ","), by=2)))
 
 
+def _given_to(value: Expr | AbstractState) -> Doc:
+    if isinstance(value, AbstractState):
+        return f"({value.name} with {', '.join(value.options)})"
+    return expression(value)
+
+
 @lru_cache(maxsize=8192)
 def _params(params: Sequence[Param]) -> Doc:
-    texts = [f"{'' if p.mode == 'in' else p.mode + ' '}{p.type}" for p in params]
+    texts = [_formal(p) for p in params]
     plain = sum(len(p.name) + len(t) + 5 for p, t in zip(params, texts, strict=True))
     #  names are padded only where each stands on a line of its own
     width = max(len(p.name) for p in params) if plain > ONE_LINE else 0
@@ -286,12 +424,19 @@ def _params(params: Sequence[Param]) -> Doc:
     return nest(SOFT, group("(", nest(*_join(docs, ";"), by=1), ")"), by=2)
 
 
+def _formal(param: Param) -> str:
+    """What stands behind the colon."""
+    mode = "" if param.mode == "in" else f"{param.mode} "
+    default = "" if param.default is None else f" := {flat(param.default)}"
+    return f"{mode}{flat(param.type)}{default}"
+
+
 def _subprogram(sub: Subprogram) -> Doc:
     keyword = "function" if sub.result else "procedure"
     head = group(
         f"{keyword} {sub.name}",
         _params(sub.params) if sub.params else "",
-        nest(SOFT, f"return {sub.result}", by=2) if sub.result else "",
+        nest(SOFT, f"return {sub.result.text}", by=2) if sub.result else "",
     )
     aspects = _aspects(sub.aspects) if sub.aspects else ""
     if sub.expression is not None:
@@ -320,7 +465,8 @@ def _subprogram(sub: Subprogram) -> Doc:
 
 def _object(decl: Object) -> Doc:
     """An object; its name and type stand below each other where no line holds both."""
-    words = " ".join(w for w in ("constant" if decl.constant else "", decl.type or "") if w)
+    of_type = [] if decl.type is None else [" ".join(_subtype(decl.type))]
+    words = " ".join([*(["constant"] if decl.constant else []), *of_type])
     start: list[Doc] = [f"{decl.name} : {words}"]
     if len(f"{decl.name} : {words} :=") > WIDTH - STEP:
         start = [upright(f"{decl.name} :", nest(SOFT, words, by=2))]
@@ -333,29 +479,32 @@ def _declaration(decl: Decl) -> Doc:
     match decl:
         case EnumType():
             return _enumeration(decl)
-        case PlainType():
-            return _plain_type(decl)
+        case TypeDeclaration(name, definition):
+            return _is(f"type {name} is", _subtype(definition))
+        case SubtypeDeclaration(name, base, aspects):
+            return _is(f"subtype {name} is", _subtype(base), aspects)
         case RecordDeclaration(name, ()):
             return f"type {name} is null record;"
         case RecordDeclaration(name, components):
             width = max(len(c.name) for c in components)
-            rows = [_component(f"{c.name:<{width}} : {c.type}", c.initial) for c in components]
+            rows = [
+                _component(f"{c.name:<{width}} : {' '.join(_subtype(c.type))}", c.initial)
+                for c in components
+            ]
             return upright(f"type {name} is record", _lines(rows), SOFT, "end record;")
         case Object():
             return _object(decl)
         case Subprogram():
             return _subprogram(decl)
         case GenericInstance(name, generic, args, kind):
-            head = f"{kind} {name} is new {generic}"
-            return group(head, nest(SOFT, _args(args), by=2), ";")
+            head = f"{kind} {name} is new {generic.text}"
+            return group(head, nest(SOFT, _listed([_arg(a) for a in args]), by=2), ";")
         case Package():
             return _package(decl)
         case Protected():
             return _protected(decl)
-        case Rename(name, other):
-            return f"package {name} renames {other};"
         case UseType(name) | UsePackage(name):
-            return f"use {'type ' if isinstance(decl, UseType) else ''}{name};"
+            return f"use {'type ' if isinstance(decl, UseType) else ''}{name.text};"
         case Pragma(name, args):
             return _pragma(name, args)
         case Comment(text):
@@ -391,17 +540,35 @@ def _component(head: str, initial: Expr | None) -> Doc:
     return group(f"{head} :=", nest(SOFT, expression(initial), by=2), ";")
 
 
-def _plain_type(decl: PlainType) -> Doc:
-    parts = decl.definition.replace(" range ", "\n range ").replace(" .. ", "\n.. ")
-    whole, *bounds = [part.strip() for part in parts.split("\n")]
-    head = f"{'subtype' if decl.subtype else 'type'} {decl.name} is"
-    base = nest(SOFT, whole, *(cat(SOFT, b) for b in bounds), by=2)
-    if decl.aspects:
-        return group(group(head, base), _aspects(decl.aspects), ";")
+def _subtype(decl: Subtype | Definition) -> list[str]:
+    """A subtype or the definition of a type, in the pieces between which a line may end."""
+    match decl:
+        case RangeConstrained(mark, bounds):
+            return [mark.text, f"range {flat(bounds.low)}", f".. {flat(bounds.high)}"]
+        case IndexConstrained(mark, bounds):
+            return [f"{mark.text} ({_choice(bounds)})"]
+        case RangeDefinition(bounds):
+            return [f"range {flat(bounds.low)}", f".. {flat(bounds.high)}"]
+        case DerivedDefinition(parent):
+            return [f"new {parent.text}"]
+        case ModularDefinition(modulus):
+            return [f"mod {flat(modulus)}"]
+        case ArrayDefinition(index, component):
+            return [f"array ({_choice(index)}) of {component.text}"]
+    return [flat(decl)]
+
+
+def _is(head: str, pieces: Sequence[str], aspects: Sequence[Aspect] = ()) -> Doc:
+    """The declaration of a type."""
+    base = nest(SOFT, pieces[0], *(cat(SOFT, piece) for piece in pieces[1:]), by=2)
+    if aspects:
+        return group(group(head, base), _aspects(tuple(aspects)), ";")
     return group(head, base, ";")
 
 
-_TIGHT = (Object, PlainType, Rename, UseType, Pragma)
+_TYPES = (TypeDeclaration, SubtypeDeclaration)
+_TIGHT = (_TYPES, Object, UseType, Pragma)
+"""What stands together where one of these comes behind another."""
 
 
 def _alike(item: Decl, before: Decl | None) -> bool:
@@ -411,7 +578,7 @@ def _alike(item: Decl, before: Decl | None) -> bool:
             return True
         case (Subprogram(aspects=(Aspect("Static"),)), Subprogram(aspects=(Aspect("Static"),))):
             return True
-    return isinstance(item, _TIGHT) and type(item) is type(before)
+    return any(isinstance(item, kind) and isinstance(before, kind) for kind in _TIGHT)
 
 
 def _items(items: Sequence[Decl]) -> list[Doc]:
@@ -435,9 +602,9 @@ def _items(items: Sequence[Decl]) -> list[Doc]:
 
 def _package(package: Package) -> Doc:
     keyword = "package body" if package.is_body else "package"
-    head = f"{keyword} {package.name}"
+    head = f"{keyword} {package.name.text}"
     aspects = cat(_aspects(package.aspects), SOFT, "is") if package.aspects else " is"
-    return upright(head, aspects, _lines(_items(package.items)), SOFT, f"end {package.name};")
+    return upright(head, aspects, _lines(_items(package.items)), SOFT, f"end {package.name.text};")
 
 
 def _protected(decl: Protected) -> Doc:
@@ -450,28 +617,44 @@ def _protected(decl: Protected) -> Doc:
     return upright(*parts, SOFT, f"end {decl.name};")
 
 
-_DELTA = " with delta"
-_STATIC = "with Static;"
+@dataclass(frozen=True, slots=True)
+class PrintedItem:
+    """The text of what a unit consists of, and the pragmas that it asks for before the context."""
+
+    text: str
+    pragmas: tuple[Pragma, ...]
+
+
+_NEWER = Pragma("Ada_2022")
 """What the language of the other units does not have."""
+_OF_ARRAYS = Pragma("Warnings", (ref("Off"), StringLiteral("*array aggregate using*")))
 
 
-def print_item(unit: Unit) -> str:
-    """The text of ``unit`` without its header and context, ending in a newline."""
-    return _laid_out(_declaration(unit.item))
+def _language(unit: Unit) -> tuple[Pragma, ...]:
+    """The pragmas that static functions or delta aggregates in a unit ask for."""
+    changing = False
+    for node in nodes_in(unit.item):
+        if isinstance(node, Aspect) and node.name == "Static":
+            return (_NEWER,)
+        changing |= isinstance(node, Aggregate) and node.base is not None
+    return (_NEWER, _OF_ARRAYS) if changing else ()
 
 
-def print_unit(unit: Unit, item: str | None = None) -> str:
+def print_item(unit: Unit) -> PrintedItem:
+    """``unit`` without its header and context; its text ends in a newline."""
+    return PrintedItem(_laid_out(_declaration(unit.item)), _language(unit))
+
+
+def print_unit(unit: Unit, item: PrintedItem | None = None) -> str:
     """The text of ``unit``, ending in a newline; ``item`` is what `print_item` made of it."""
-    text = print_item(unit) if item is None else item
+    printed = print_item(unit) if item is None else item
     parts: list[Doc] = [_comment(unit.header), ""]
-    if _STATIC in text:
-        parts += ["pragma Ada_2022;", ""]
-    elif _DELTA in text:
-        parts += ["pragma Ada_2022;", 'pragma Warnings (Off, "*array aggregate using*");', ""]
-    parts += [f"with {name};" for name in unit.withs]
+    if printed.pragmas:
+        parts += [*map(_declaration, printed.pragmas), ""]
+    parts += [f"with {name.text};" for name in unit.withs]
     head = _laid_out(upright(*_join(parts)))
     gap = "\n" if unit.withs else ""
-    return head + gap + text
+    return head + gap + printed.text
 
 
 def _laid_out(doc: Doc) -> str:
