@@ -214,6 +214,8 @@ def _seeing_runtime(unit: Unit) -> Unit:
 
 def _pruned(unit: Unit, root: str) -> Unit:
     """The unit without the context that nothing in it names, below the root without that."""
+    if not unit.withs:
+        return unit
     named = named_units(unit)
     named |= {ref(root, name) for name in named}
     return replace(unit, withs=tuple(name for name in unit.withs if name in named))

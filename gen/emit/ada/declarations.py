@@ -366,8 +366,7 @@ class Unit:
     @property
     def file_name(self) -> str:
         """GNAT's name for the file that holds it."""
-        stem = "-".join(self.name.parts).lower()
-        return f"{stem}.{'adb' if self.is_body else 'ads'}"
+        return f"{self.name.file_stem}.{'adb' if self.is_body else 'ads'}"
 
 
 SPARK = Aspect("SPARK_Mode")

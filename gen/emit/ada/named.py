@@ -34,6 +34,11 @@ class DottedName:
         """What it is in; of a child unit, its parent."""
         return DottedName(self.parts[:-1])
 
+    @property
+    def file_stem(self) -> str:
+        """GNAT's name for the files of a unit of this name, without what stands behind a dot."""
+        return "-".join(self.parts).lower()
+
     def __lt__(self, other: DottedName) -> bool:
         """The order of the texts: a dot comes before all that identifiers consist of."""
         return self.parts < other.parts

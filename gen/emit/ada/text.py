@@ -1,4 +1,4 @@
-"""The printer of the Ada constructs: the only place that knows about layout.
+"""The printer of statements, declarations and units, over that of expressions.
 
 Three spaces, 79 columns, one statement a line; long parameter lists and
 expressions break one item a line (`layout` decides).
@@ -36,36 +36,42 @@ from .declarations import (
     UsePackage,
     UseType,
 )
+from .expression_text import (
+    argument,
+    behind_name,
+    choice_text,
+    choices_text,
+    expression,
+    flat,
+    given,
+    listed,
+    selector_of,
+)
 from .expressions import (
     Aggregate,
     Arg,
-    Attribute,
-    BoxMark,
-    Call,
     CaseExpr,
-    Choice,
-    ChoiceList,
-    Domain,
     Expr,
     ForAll,
     ForSome,
     IfExpr,
-    Indexed,
-    IntegerLiteral,
-    Membership,
-    NullLiteral,
-    OperatorChain,
-    Others,
-    Parenthesized,
-    Power,
-    Prefix,
-    Qualified,
-    Range,
-    Selected,
     StringLiteral,
 )
-from .layout import CUT, SOFT, STEP, Doc, cat, group, laid_out, nest, upright
-from .named import DottedName, ref
+from .layout import (
+    SOFT,
+    STEP,
+    Doc,
+    cat,
+    filled,
+    group,
+    joined,
+    laid_out,
+    nest,
+    parenthesized,
+    stacked,
+    upright,
+)
+from .named import ref
 from .statements import (
     NULL,
     Assign,
@@ -88,236 +94,6 @@ from .walking import nodes_in
 WIDTH = 79
 ONE_LINE = 60
 """Longer parameter lists go one to a line."""
-LONG_REFERENCE = 56
-"""Longer names do not fit where they stand deep in other constructs."""
-
-
-def _join(docs: Sequence[Doc], separator: str = "") -> list[Doc]:
-    """The documents with a separator and a soft place between them."""
-    between = (separator, SOFT) if separator else (SOFT,)
-    parts = [part for doc in docs for part in (doc, *between)]
-    return parts[: -len(between)]
-
-
-def _lines(docs: Sequence[Doc]) -> Doc:
-    """Each on a line of its own, nested, with a line break before each."""
-    return nest(*(part for doc in docs for part in (SOFT, doc)))
-
-
-def _filled(docs: Sequence[Doc], separator: str = ",") -> Doc:
-    """The documents with a separator, as many on a line as it holds."""
-    *others, last = docs
-    first, *rest = [*(cat(doc, separator) for doc in others), last]
-    return cat(first, *(group(SOFT, doc) for doc in rest))
-
-
-def _listed(docs: Sequence[Doc]) -> Doc:
-    """Arguments on one line; else named ones have a line each, and positional ones fill lines."""
-    return group("(", nest(*_join(docs, ","), by=1), ")")
-
-
-def _given(head: str, args: Sequence[Arg], end: str = "") -> Doc:
-    """A name and its arguments; positional ones begin behind it."""
-    docs = [_arg(a) for a in args]
-    if any(a.name is not None for a in args):
-        return group(head, nest(SOFT, _listed(docs), by=2), end)
-    return _behind(head, docs, end)
-
-
-def _behind(head: str, docs: Sequence[Doc], end: str) -> Doc:
-    """A name and what fills the lines behind it."""
-    if len(docs) < 2:
-        return group(head, nest(SOFT, _listed(docs), by=2), end)
-    first, *rest = docs
-    behind = [group(SOFT, doc, "," if n < len(rest) else ")") for n, doc in enumerate(rest, 1)]
-    begin = group(SOFT, "(", nest(first, by=1), ",")
-    return group(head, nest(begin, nest(*behind, by=1), by=2), end)
-
-
-def _arg(arg: Arg) -> Doc:
-    value = expression(arg.value)
-    return value if arg.name is None else group(_selector(arg), " =>", nest(SOFT, value, by=2))
-
-
-def _selector(arg: Arg) -> str:
-    return arg.name if isinstance(arg.name, str) else _choice(arg.name or Others())
-
-
-_LEVELS = (
-    ("and", "or", "xor", "and then", "or else"),
-    ("=", "/=", "<", "<=", ">", ">=", "in"),
-    ("+", "-", "&"),
-    ("*", "/", "mod", "rem"),
-    ("**",),
-)
-"""The binary operators of Ada, each row binding its operands closer than the one before."""
-_CLOSENESS = {operator: level for level, row in enumerate(_LEVELS) for operator in row}
-_ARITHMETIC = _LEVELS[2] + _LEVELS[3]
-"""Operators without which a line may go on: their operands fill the lines."""
-
-
-def _operand(expr: Expr, operator: str = "", first: bool = False) -> Doc:
-    """One operand, in parentheses where the precedence of Ada asks for them.
-
-    The first one of an arithmetic operator needs none where it has an operator of the same level.
-    """
-    doc = expression(expr)
-    if isinstance(expr, OperatorChain | Membership):
-        own = _CLOSENESS["in" if isinstance(expr, Membership) else expr.operator]
-        around = _CLOSENESS.get(operator, len(_LEVELS))
-        alike = first and own == around and operator in _ARITHMETIC
-        if not (alike or own > around) or operator == "**":
-            return cat("(", nest(doc, by=1), ")")
-    return doc
-
-
-def _signed(expr: Expr, operator: str = "", first: bool = False) -> Doc:
-    """An operand after an operator: there Ada has no sign, ``abs`` or ``not`` of its own."""
-    nested = isinstance(expr, Prefix) and (expr.operator == "-" or not operator)
-    return _bare(expression(expr)) if nested else _operand(expr, operator, first)
-
-
-def _bare(*docs: Doc) -> Doc:
-    """Between parentheses, one column in."""
-    return group("(", nest(*docs, by=1), ")")
-
-
-def _choices(choices: ChoiceList, end: str = "") -> Doc:
-    """``A | B``, in as many lines as it takes."""
-    *texts, last = map(_choice, choices.choices)
-    first, *others = [*texts, f"{last}{end}"]
-    return cat(first, *(group(SOFT, "| ", choice) for choice in others)) if others else first
-
-
-def _choice(choice: Choice | Domain) -> str:
-    match choice:
-        case Others():
-            return "others"
-        case Range(low, high):
-            return f"{flat(low)} .. {flat(high)}"
-    return flat(choice)
-
-
-def _among(choices: ChoiceList) -> Doc:
-    """What stands behind ``in``."""
-    match choices.choices:
-        case (DottedName() as only,):
-            return _dotted(only)
-    return _choices(choices)
-
-
-def flat(expr: Expr) -> str:
-    """An expression on one line."""
-    if isinstance(expr, DottedName):
-        return expr.text
-    doc = expression(expr)
-    return doc if isinstance(doc, str) else doc.flat
-
-
-def _dotted(name: DottedName) -> Doc:
-    """A name; one too long for some lines may break before its end."""
-    text = name.text
-    if len(text) <= LONG_REFERENCE or len(name.parts) == 1:
-        return text
-    return group(name.parent.text, nest(CUT, f".{name.last}", by=2))
-
-
-def _element(prefix: Expr, index: Expr, end: str = "") -> Doc:
-    """An element of an array, or what ``end`` selects of it; it may break before its index."""
-    head, place = flat(prefix), f"({flat(index)}){end}"
-    long = len(head) + 1 + len(place) > LONG_REFERENCE
-    is_word = isinstance(index, IntegerLiteral) or (
-        isinstance(index, DottedName) and len(index.parts) == 1
-    )
-    if long and is_word and isinstance(prefix, DottedName):
-        return group(head, nest(SOFT, place, by=2))
-    return f"{head} {place}"
-
-
-def _integer(literal: IntegerLiteral) -> str:
-    if literal.base == 16:
-        return f"16#{literal.value:_X}#" if literal.grouped else f"16#{literal.value:X}#"
-    return f"{literal.value:_}" if literal.grouped else str(literal.value)
-
-
-def _word(expr: Expr) -> Doc:
-    """An expression that has no place for a break, or a name."""
-    match expr:
-        case DottedName():
-            return _dotted(expr)
-        case Selected(Indexed(prefix, index), selector):
-            return _element(prefix, index, f".{selector}")
-        case Selected(prefix, selector):
-            return f"{flat(prefix)}.{selector}"
-        case Indexed(prefix, index):
-            return _element(prefix, index)
-        case Attribute(prefix, designator):
-            return f"{flat(prefix)}'{designator}"
-        case Qualified(mark, operand):
-            return f"{mark.text}'({flat(operand)})"
-        case IntegerLiteral():
-            return _integer(expr)
-        case Power(base, exponent):
-            return f"{base}**{exponent}"
-        case StringLiteral(words):
-            doubled = words.replace('"', '""')
-            return f'"{doubled}"'
-        case NullLiteral():
-            return "null"
-        case BoxMark():
-            return "<>"
-    raise TypeError(expr)
-
-
-@lru_cache(maxsize=8192)
-def expression(expr: Expr) -> Doc:
-    """The layout of one expression; a program has few that it does not repeat."""
-    match expr:
-        case OperatorChain(operator, operands):
-            #  GNAT wants to see what a sign before a product is of
-            begin = _signed if operator in ("*", "/") else _operand
-            head = begin(operands[0], operator, first=True)
-            rest = [_signed(o, operator) for o in operands[1:]]
-            place = group if operator in _ARITHMETIC else cat
-            return group(head, *(place(SOFT, f"{operator} ", nest(r, by=2)) for r in rest))
-        case Prefix(operator, operand):
-            return cat(operator if operator == "-" else f"{operator} ", _signed(operand))
-        case Parenthesized(operand):
-            return cat("(", nest(expression(operand), by=1), ")")
-        case Membership(item, among):
-            head = _operand(item, "in", first=True)
-            return group(head, SOFT, "in ", nest(_among(among), by=2))
-        case Call(name, args):
-            return _given(flat(name), args)
-        case Aggregate(args, of_type, base):
-            docs = [_arg(a) for a in args]
-            if base is not None:
-                return _bare(f"{flat(base)} with delta", nest(SOFT, *_join(docs, ","), by=2))
-            return group(f"{of_type.text}'" if of_type else "", _listed(docs))
-        case IfExpr(branches, otherwise):
-            parts: list[Doc] = [
-                group(
-                    "if " if i == 0 else "elsif ",
-                    nest(expression(c)),
-                    nest(SOFT, "then ", nest(expression(v))),
-                )
-                for i, (c, v) in enumerate(branches)
-            ]
-            if otherwise is not None:
-                parts.append(cat("else ", nest(expression(otherwise))))
-            return _bare(*_join(parts))
-        case CaseExpr(selector, branches):
-            rows = [
-                group("when ", nest(_choices(choices, " =>")), nest(SOFT, expression(value)))
-                for choices, value in branches
-            ]
-            body = nest(SOFT, *_join(rows, ","), by=2)
-            return upright("(", nest("case ", expression(selector), " is", body, by=1), ")")
-        case ForAll(variable, domain, condition) | ForSome(variable, domain, condition):
-            word = "all" if isinstance(expr, ForAll) else "some"
-            head = f"for {word} {variable} in {_choice(domain)} =>"
-            return _bare(head, nest(SOFT, expression(condition)))
-    return _word(expr)
 
 
 @lru_cache(maxsize=8192)
@@ -332,11 +108,11 @@ def _comment(text: str) -> Doc:
             else:
                 line = f"{line} {word}".strip()
         lines.append(line)
-    return upright(*_join([f"--  {line}".rstrip() for line in lines]))
+    return upright(*joined([f"--  {line}".rstrip() for line in lines]))
 
 
 def _block(statements: Sequence[Stmt]) -> Doc:
-    return _lines([statement(s) for s in statements or (NULL,)])
+    return stacked([statement(s) for s in statements or (NULL,)])
 
 
 def statement(stmt: Stmt) -> Doc:
@@ -345,7 +121,7 @@ def statement(stmt: Stmt) -> Doc:
         case Assign(target, value):
             return group(f"{flat(target)} :=", nest(SOFT, expression(value), by=2), ";")
         case Do(name, args):
-            return _given(name.text, args, ";") if args else f"{name.text};"
+            return given(name.text, args, ";") if args else f"{name.text};"
         case IfStatement(branches, otherwise):
             parts: list[Doc] = []
             for index, (condition, body) in enumerate(branches):
@@ -358,10 +134,10 @@ def statement(stmt: Stmt) -> Doc:
             return upright(*parts, "end if;")
         case Case(selector, branches):
             rows = [
-                upright(group("when ", nest(_choices(choices, " =>"))), _block(body))
+                upright(group("when ", nest(choices_text(choices, " =>"))), _block(body))
                 for choices, body in branches
             ]
-            return upright("case ", expression(selector), " is", _lines(rows), SOFT, "end case;")
+            return upright("case ", expression(selector), " is", stacked(rows), SOFT, "end case;")
         case Loop(head, body):
             return upright(f"{_head(head)}loop", _block(body), SOFT, "end loop;")
         case Return(value):
@@ -374,7 +150,7 @@ def statement(stmt: Stmt) -> Doc:
 
 
 def _head(head: ForLoop | None) -> str:
-    return "" if head is None else f"for {head.variable} in {_choice(head.domain)} "
+    return "" if head is None else f"for {head.variable} in {choice_text(head.domain)} "
 
 
 def _simple(stmt: NullStatement | ExitStatement | DelayUntil | RaiseStatement) -> str:
@@ -394,9 +170,10 @@ def _pragma(name: str, args: Sequence[Expr | Arg]) -> Doc:
     if not args:
         return f"pragma {name};"
     docs = [
-        f"{_selector(a)} => {flat(a.value)}" if isinstance(a, Arg) else expression(a) for a in args
+        f"{selector_of(a)} => {flat(a.value)}" if isinstance(a, Arg) else expression(a)
+        for a in args
     ]
-    return _behind(f"pragma {name}", docs, ";")
+    return behind_name(f"pragma {name}", docs, ";")
 
 
 @lru_cache(maxsize=8192)
@@ -405,7 +182,7 @@ def _aspects(aspects: Sequence[Aspect]) -> Doc:
         a.name if a.value is None else group(f"{a.name} =>", nest(SOFT, _given_to(a.value), by=2))
         for a in aspects
     ]
-    return cat(SOFT, group("with", nest(SOFT, *_join(docs, ","), by=2)))
+    return cat(SOFT, group("with", nest(SOFT, *joined(docs, ","), by=2)))
 
 
 def _given_to(value: Expr | AbstractState) -> Doc:
@@ -421,7 +198,7 @@ def _params(params: Sequence[Param]) -> Doc:
     #  names are padded only where each stands on a line of its own
     width = max(len(p.name) for p in params) if plain > ONE_LINE else 0
     docs = [f"{p.name:<{width}} : {t}" for p, t in zip(params, texts, strict=True)]
-    return nest(SOFT, group("(", nest(*_join(docs, ";"), by=1), ")"), by=2)
+    return nest(SOFT, group("(", nest(*joined(docs, ";"), by=1), ")"), by=2)
 
 
 def _formal(param: Param) -> str:
@@ -442,13 +219,13 @@ def _subprogram(sub: Subprogram) -> Doc:
     if sub.expression is not None:
         inner = expression(sub.expression)
         if not isinstance(sub.expression, (IfExpr, CaseExpr, ForAll, ForSome)):
-            inner = _bare(inner)
+            inner = parenthesized(inner)
         if not any(aspect.value for aspect in sub.aspects):
             aspects = group(aspects)
         return upright(group(head, " is", nest(SOFT, inner, by=2)), aspects, ";")
     if sub.body is None:
         return upright(head, aspects, ";")
-    declarations = _lines(_items(sub.declarations))
+    declarations = stacked(_items(sub.declarations))
     start = [SOFT, "is"] if sub.aspects else [" is"]
     return upright(
         head,
@@ -491,14 +268,14 @@ def _declaration(decl: Decl) -> Doc:
                 _component(f"{c.name:<{width}} : {' '.join(_subtype(c.type))}", c.initial)
                 for c in components
             ]
-            return upright(f"type {name} is record", _lines(rows), SOFT, "end record;")
+            return upright(f"type {name} is record", stacked(rows), SOFT, "end record;")
         case Object():
             return _object(decl)
         case Subprogram():
             return _subprogram(decl)
         case GenericInstance(name, generic, args, kind):
             head = f"{kind} {name} is new {generic.text}"
-            return group(head, nest(SOFT, _listed([_arg(a) for a in args]), by=2), ";")
+            return group(head, nest(SOFT, listed([argument(a) for a in args]), by=2), ";")
         case Package():
             return _package(decl)
         case Protected():
@@ -513,10 +290,10 @@ def _declaration(decl: Decl) -> Doc:
 
 def _enumeration(decl: EnumType) -> Doc:
     if not decl.notes:
-        items = nest(_filled(decl.literals), by=1)
+        items = nest(filled(decl.literals), by=1)
         return group(f"type {decl.name} is", nest(SOFT, group("(", items, ");"), by=2))
     noted = _annotated(decl.literals, decl.notes)
-    rows = nest(*_join(list(noted)), by=1)
+    rows = nest(*joined(list(noted)), by=1)
     end = cat(SOFT, ");") if decl.notes[-1].text else ");"
     return upright(f"type {decl.name} is", nest(SOFT, "(", rows, end, by=2))
 
@@ -546,7 +323,7 @@ def _subtype(decl: Subtype | Definition) -> list[str]:
         case RangeConstrained(mark, bounds):
             return [mark.text, f"range {flat(bounds.low)}", f".. {flat(bounds.high)}"]
         case IndexConstrained(mark, bounds):
-            return [f"{mark.text} ({_choice(bounds)})"]
+            return [f"{mark.text} ({choice_text(bounds)})"]
         case RangeDefinition(bounds):
             return [f"range {flat(bounds.low)}", f".. {flat(bounds.high)}"]
         case DerivedDefinition(parent):
@@ -554,7 +331,7 @@ def _subtype(decl: Subtype | Definition) -> list[str]:
         case ModularDefinition(modulus):
             return [f"mod {flat(modulus)}"]
         case ArrayDefinition(index, component):
-            return [f"array ({_choice(index)}) of {component.text}"]
+            return [f"array ({choice_text(index)}) of {component.text}"]
     return [flat(decl)]
 
 
@@ -604,15 +381,15 @@ def _package(package: Package) -> Doc:
     keyword = "package body" if package.is_body else "package"
     head = f"{keyword} {package.name.text}"
     aspects = cat(_aspects(package.aspects), SOFT, "is") if package.aspects else " is"
-    return upright(head, aspects, _lines(_items(package.items)), SOFT, f"end {package.name.text};")
+    return upright(head, aspects, stacked(_items(package.items)), SOFT, f"end {package.name.text};")
 
 
 def _protected(decl: Protected) -> Doc:
-    operations = _lines(_items(decl.items))
+    operations = stacked(_items(decl.items))
     if not decl.kept:
         return upright(f"protected body {decl.name} is", operations, SOFT, f"end {decl.name};")
     head = cat(_aspects(decl.aspects), SOFT, "is")
-    kept = _lines(_items(decl.kept))
+    kept = stacked(_items(decl.kept))
     parts = (f"protected {decl.name}", head, operations, SOFT, "private", kept)
     return upright(*parts, SOFT, f"end {decl.name};")
 
@@ -652,7 +429,7 @@ def print_unit(unit: Unit, item: PrintedItem | None = None) -> str:
     if printed.pragmas:
         parts += [*map(_declaration, printed.pragmas), ""]
     parts += [f"with {name.text};" for name in unit.withs]
-    head = _laid_out(upright(*_join(parts)))
+    head = _laid_out(upright(*joined(parts)))
     gap = "\n" if unit.withs else ""
     return head + gap + printed.text
 

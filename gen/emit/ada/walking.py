@@ -6,10 +6,15 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar, cast
 
 from .declarations import Unit
-from .expressions import COMPARISONS, Membership, OperatorChain
+from .expressions import COMPARISONS, IntegerLiteral, Membership, OperatorChain
 from .named import DottedName
+from .statements import Comment
 
 T = TypeVar("T")
+_PLAIN = (str, int, type(None))
+"""What is no node."""
+_WHOLE = (DottedName, IntegerLiteral, Comment)
+"""Nodes without others in them."""
 
 
 def parts_of(construct: object) -> Sequence[object]:
@@ -21,10 +26,12 @@ def parts_of(construct: object) -> Sequence[object]:
 
 def nodes_in(construct: object) -> Iterator[object]:
     """A node, and every one in it, in the order of the text; names are not divided."""
-    yield construct
-    if not isinstance(construct, DottedName | str):
-        for part in parts_of(construct):
-            yield from nodes_in(part)
+    waiting = [construct]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        if not isinstance(node, _WHOLE):
+            waiting += [part for part in parts_of(node)[::-1] if not isinstance(part, _PLAIN)]
 
 
 def names_in(construct: object) -> Iterator[DottedName]:

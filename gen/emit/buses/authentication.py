@@ -25,7 +25,6 @@ from ravenchart.gen.emit.ada.expressions import (
     OperatorChain,
     Prefix,
     all_else,
-    arguments,
     both,
     call,
     equal,
@@ -36,11 +35,11 @@ from ravenchart.gen.emit.ada.naming import ada_case, root_package
 from ravenchart.gen.emit.ada.statements import (
     Assign,
     Comment,
-    Do,
     IfStatement,
     Pragma,
     Return,
     Stmt,
+    do,
 )
 from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.buses import Message
@@ -206,7 +205,7 @@ def variables(*, taken: bool) -> tuple[Decl, ...]:
 def _begun(state: Named, message: Message) -> Stmt:
     """Begin with the user's freshness value, the first time."""
     last = call(ref(UNIT, "Last_Freshness"), ref(UNIT, _literal(message)))
-    begin = Do(ref(AUTHENTICATION, "Begin_After"), arguments(ref(state), last))
+    begin = do(ref(AUTHENTICATION, "Begin_After"), ref(state), last)
     return IfStatement(((Prefix("not", ref(state, "Is_Started")), (begin,)),))
 
 
@@ -229,17 +228,14 @@ def sealed(
     state, setting = _sender(message), _setting(message)
     return (
         _begun(state, message),
-        Do(ref(AUTHENTICATION, "Take"), arguments(ref(state), VALUE, ref("Taken"))),
+        do(ref(AUTHENTICATION, "Take"), ref(state), VALUE, ref("Taken")),
         IfStatement(((ref("Taken"), (Assign("Answer", _mac(message, own)),)),)),
         IfStatement(
             (
                 (
                     ref("Answer.Is_Known"),
                     (
-                        Do(
-                            ref(AUTHENTICATION, "Seal"),
-                            arguments(FRAME, setting, VALUE, ref("Answer")),
-                        ),
+                        do(ref(AUTHENTICATION, "Seal"), FRAME, setting, VALUE, ref("Answer")),
                         *sent,
                     ),
                 ),
@@ -267,16 +263,21 @@ def verified(
     return (
         _begun(state, message),
         Assign(before, state),
-        Do(ref(AUTHENTICATION, "Reconstruct"), arguments(state, setting, FRAME, VALUE, VERDICT)),
+        do(ref(AUTHENTICATION, "Reconstruct"), state, setting, FRAME, VALUE, VERDICT),
         IfStatement(
             (
                 (
                     equal(VERDICT, ref(AUTHENTICATION, "Unverified")),
                     (
                         Assign("Answer", _mac(message, own)),
-                        Do(
+                        do(
                             ref(AUTHENTICATION, "Verify"),
-                            arguments(state, setting, FRAME, VALUE, ref("Answer"), VERDICT),
+                            state,
+                            setting,
+                            FRAME,
+                            VALUE,
+                            ref("Answer"),
+                            VERDICT,
                         ),
                     ),
                 ),

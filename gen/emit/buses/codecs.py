@@ -34,7 +34,6 @@ from ravenchart.gen.emit.ada.expressions import (
     OperatorChain,
     Power,
     Prefix,
-    arguments,
     bits,
     both,
     call,
@@ -43,6 +42,7 @@ from ravenchart.gen.emit.ada.expressions import (
     member,
     number,
     plain,
+    record,
     result,
     signed,
 )
@@ -52,11 +52,11 @@ from ravenchart.gen.emit.ada.statements import (
     NULL,
     Assign,
     Comment,
-    Do,
     IfStatement,
     Pragma,
     Return,
     Stmt,
+    do,
 )
 from ravenchart.gen.language.terms import RecordType, default
 from ravenchart.gen.model.buses import Message
@@ -376,8 +376,8 @@ class _Codec:
         """What tells provers that the table says the same of a frame."""
         name = ada_case(signal.name)
         return [
-            Do(f"Lemma_Bits_{name}", arguments(ref(frame))),
-            Do(f"Lemma_Value_{name}", arguments(ref(self._local(signal)))),
+            do(f"Lemma_Bits_{name}", ref(frame)),
+            do(f"Lemma_Value_{name}", ref(self._local(signal))),
         ]
 
     # --- The body ----------------------------------------------------------------
@@ -458,7 +458,7 @@ class _Codec:
             values[ada_case(s.name)] = self._decoded(s, local, selected)
         is_valid = all_of(*good)
         if isinstance(self.type, RecordType):
-            built: Expr = Aggregate(tuple(Arg(name, value) for name, value in values.items()))
+            built: Expr = record(values)
         else:
             (built,) = values.values()
         item: Stmt = Assign("Item", built)
@@ -495,10 +495,7 @@ class _Codec:
                 Object("Valid", "Boolean"),
             ),
             body=(
-                Do(
-                    "Unpack",
-                    arguments(call("Pack", ref("Item")), ref("Copy"), ref("Valid")),
-                ),
+                do("Unpack", call("Pack", ref("Item")), ref("Copy"), ref("Valid")),
                 Pragma("Assert", (all_of(ref("Valid"), *same),)),
             ),
         )

@@ -15,11 +15,12 @@ from ravenchart.gen.emit.ada.expressions import (
     TRUE,
     Attribute,
     CaseExpr,
-    Choice,
     Expr,
     IfExpr,
+    IntegerLiteral,
     OperatorChain,
     Power,
+    Prefix,
     Range,
     between,
     bits,
@@ -225,7 +226,9 @@ def _more(term: Expr, addend: int) -> Expr:
     return OperatorChain("+" if addend > 0 else "-", (term, number(abs(addend))))
 
 
-def choice_of_value(system: System, signal: Signal, value: int | str) -> Choice:
+def choice_of_value(
+    system: System, signal: Signal, value: int | str
+) -> DottedName | IntegerLiteral | Prefix:
     """A value of a signal's type, as a choice."""
     if isinstance(signal.type, EnumerationType):
         return literal(system, signal.type, str(value))

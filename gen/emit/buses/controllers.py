@@ -3,16 +3,7 @@
 from __future__ import annotations
 
 from ravenchart.gen.emit.ada.declarations import Decl, UseType
-from ravenchart.gen.emit.ada.expressions import (
-    FALSE,
-    TRUE,
-    Aggregate,
-    Arg,
-    Expr,
-    both,
-    equal,
-    number,
-)
+from ravenchart.gen.emit.ada.expressions import FALSE, TRUE, Expr, both, equal, number, record
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.statements import Pragma
 from ravenchart.gen.emit.certificate.certified import agrees, driver_element, fact
@@ -47,4 +38,4 @@ def controller_setting(bus: Bus) -> Expr:
         "Takes_Fd": TRUE if bus.takes_fd else FALSE,
         "Recovery": ref("Ravenchart.Can", "On_Request" if bus.recovers_by_request else "Automatic"),
     }
-    return Aggregate(tuple(Arg(name, value) for name, value in settings.items()))
+    return record(settings)

@@ -12,8 +12,6 @@ from collections.abc import Sequence
 from ravenchart.gen.emit.ada.declarations import Decl, Object, Param, Subprogram, SubtypeDeclaration
 from ravenchart.gen.emit.ada.expressions import (
     TRUE,
-    Aggregate,
-    Arg,
     Attribute,
     CaseExpr,
     Choice,
@@ -32,11 +30,12 @@ from ravenchart.gen.emit.ada.expressions import (
     member,
     number,
     plain,
+    record,
     signed,
 )
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import NUMBER, ada_case, literal, type_name
-from ravenchart.gen.emit.ada.statements import Do
+from ravenchart.gen.emit.ada.statements import Do, do
 from ravenchart.gen.language.terms import EnumerationType, IntegerType
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import ByteOrder, Signal
@@ -71,7 +70,7 @@ def frame_row(message: Message) -> Object:
         "Format": ref("Ravenchart.Can", "Extended" if message.extended else "Standard"),
         "Length": number(message.length),
     }
-    made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+    made = record(columns)
     return Object(_frame_name(message), FRAME_ROW.name, made, constant=True)
 
 
@@ -103,7 +102,7 @@ class LayoutTable:
             "Signed": ref(str(signal.signed)),
             "Offset": number(signal.offset),
         }
-        made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+        made = record(columns)
         rows: list[Decl] = [Object(_row(signal), ref(LAYOUTS, "Signal"), made, constant=True)]
         if signal.codes:
             rows.append(self._codes(signal))
@@ -175,7 +174,7 @@ class LayoutTable:
             for way, one, places in zip(ways, words, by, strict=False)
         ]
         taken = OperatorChain("and", (chain("or", parts, number(0)), ones))
-        mask = Do(ref(LEMMAS, "Lemma_Mask"), arguments(row, ones))
+        mask = do(ref(LEMMAS, "Lemma_Mask"), row, ones)
         return taken, (mask, Do(ref(LEMMAS, f"Lemma_{name}"), given))
 
     def number_in(self, signal: Signal, frame: Holder) -> Expr:

@@ -37,7 +37,7 @@ from ravenchart.gen.emit.ada.expressions import (
 )
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case, priority, root_package, type_name
-from ravenchart.gen.emit.ada.statements import Comment, Do, IfStatement, Pragma, Return, Stmt
+from ravenchart.gen.emit.ada.statements import Comment, IfStatement, Pragma, Return, Stmt, do
 from ravenchart.gen.emit.certificate.certified import CERTIFICATE, driver_element, fact
 from ravenchart.gen.emit.commands.remote_calls import received_as
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
@@ -111,7 +111,8 @@ def _format(message: Message) -> DottedName:
 
 def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     """The controller of a bus, sending on it, and the distribution of what it receives."""
-    root, name = root_package(system), f"{root_package(system)}.{ada_case(bus.name)}"
+    root = root_package(system)
+    name = ref(root, ada_case(bus.name))
     sent, received = _sent(system, bus), _received(system, bus)
     transmit = system.object(f"{bus.name}.transmit").ceiling
     receive = system.object(f"{bus.name}.receive").ceiling
@@ -317,7 +318,7 @@ def _counted(system: System, message: Message, fault: str) -> tuple[Stmt, ...]:
     """Count a fault of a message, and note it."""
     kind = ref("Ravenchart.Health", fault)
     return (
-        Do("Health_Counts.Counters.Record_Fault", arguments(kind)),
+        do("Health_Counts.Counters.Record_Fault", kind),
         *note(system, "Fault", message.name, "message", fault_number(fault)),
     )
 
@@ -327,7 +328,7 @@ def _handed(system: System, message: Message) -> tuple[tuple[Stmt, ...], tuple[S
     return (
         #  and not the frame of another message of the same type
         Pragma("Assert", (is_framed(message, ref("Frame")),)),
-        Do("Controller.Send", arguments(ref("Frame"), ref("Status"))),
+        do("Controller.Send", ref("Frame"), ref("Status")),
         *note(system, "Sent", message.name, "message"),
     ), _counted(system, message, "Queue_Overflow")
 
@@ -391,12 +392,10 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         declarations.append(Object(item, type_name(system, message.type)))
         matches = _matches(message)
         puts = tuple(
-            Do(ref(ada_case(t.instance), _taker(message, t)), arguments(ref(item)))
-            for t in message.targets
+            do(ref(ada_case(t.instance), _taker(message, t)), ref(item)) for t in message.targets
         )
-        unpack = Do(
-            ref("Codecs", codec_name(message), "Unpack"),
-            arguments(_data(message), ref(item), ref("Valid")),
+        unpack = do(
+            ref("Codecs", codec_name(message), "Unpack"), _data(message), ref(item), ref("Valid")
         )
         if message.transport is not None:
             whole = (*note(system, "Arrived", message.name, "message"), *puts)
@@ -431,7 +430,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         Subprogram(
             "Wait",
             declarations=() if stamp == STAMP else (kept_stamp,),
-            body=(Do("Controller.Wait_Frame", arguments(ref("Frame"), ref(stamp))),),
+            body=(do("Controller.Wait_Frame", ref("Frame"), ref(stamp)),),
         ),
         Subprogram(
             "Run_Receive",

@@ -10,15 +10,15 @@ from ravenchart.gen.emit.ada.expressions import (
     Arg,
     Expr,
     all_else,
-    arguments,
     both,
     call,
     member,
     number,
+    record,
 )
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.statements import Assign, Comment, Do, IfStatement, Pragma, Stmt
+from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.model.buses import Message
 
 PROTECTION = ref("Ravenchart.Can.Protection")
@@ -57,7 +57,7 @@ def setting_of(message: Message) -> list[Decl]:
         "Max_Delta": number(protection.max_delta),
         "Sync": number(protection.sync),
     }
-    made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+    made = record(columns)
     return [
         Object(_setting(message), ref(PROTECTION, "Setting"), made, constant=True),
         Comment(f"[{message.name}] its protection from end to end"),
@@ -75,7 +75,7 @@ def protecting(message: Message) -> tuple[Stmt, ...]:
         return ()
     given = (ref(_sender(message)), _setting(message), ref("Frame"))
     return (
-        Do(ref(PROTECTION, "Protect"), arguments(*given)),
+        do(ref(PROTECTION, "Protect"), *given),
         Pragma("Assert", (call(ref(PROTECTION, "Is_Intact"), ref("Frame"), _setting(message)),)),
     )
 
@@ -105,6 +105,6 @@ def checked(
     faulty = member(ref("Status"), ref(PROTECTION, "Fault"))
     return (
         Assign(before, state),
-        Do(ref(PROTECTION, "Check"), arguments(state, setting, frame, ref("Status"))),
+        do(ref(PROTECTION, "Check"), state, setting, frame, ref("Status")),
         IfStatement(((usable, (Pragma("Assert", (proved,)), *taken)), (faulty, refused))),
     )

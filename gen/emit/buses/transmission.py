@@ -3,18 +3,10 @@
 from __future__ import annotations
 
 from ravenchart.gen.emit.ada.declarations import Decl, Object, Subprogram
-from ravenchart.gen.emit.ada.expressions import (
-    Aggregate,
-    Arg,
-    Attribute,
-    Expr,
-    arguments,
-    call,
-    number,
-)
+from ravenchart.gen.emit.ada.expressions import Attribute, Expr, call, number, record
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case, default_value, type_name
-from ravenchart.gen.emit.ada.statements import Assign, Comment, Do, IfStatement, Pragma, Stmt
+from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.system import System
 from ravenchart.gen.model.transmission import Mode
@@ -53,7 +45,7 @@ def mode_of(message: Message) -> list[Decl]:
     }
     if transmission.renewal:
         columns["Period"] = number(transmission.renewal)
-    made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+    made = record(columns)
     return [
         Object(_setting(message), ref(TRANSMISSIONS, "Setting"), made, constant=True),
         Comment(f"[{message.name}] its transmission mode, in executions of the row that sends it"),
@@ -85,7 +77,7 @@ def given(message: Message) -> tuple[Stmt, ...]:
     """Keep a value until the end of the execution."""
     return (
         Assign(_value(message), ref("Item")),
-        Do(ref(TRANSMISSIONS, "Give"), arguments(_state(message))),
+        do(ref(TRANSMISSIONS, "Give"), _state(message)),
     )
 
 
@@ -105,7 +97,7 @@ def transmit_body(
             Object("Status", "Ravenchart.Can.Send_Status"),
         ),
         body=(
-            Do(ref(TRANSMISSIONS, "Count"), arguments(state)),
+            do(ref(TRANSMISSIONS, "Count"), state),
             IfStatement(((due, (Pragma("Assert", (kept,)), *handed)),)),
         ),
     )  # fmt: skip
@@ -113,4 +105,4 @@ def transmit_body(
 
 def recorded(message: Message) -> Stmt:
     """The controller has taken the frame."""
-    return Do(ref(TRANSMISSIONS, "Record_Sent"), arguments(_state(message), ref("Frame")))
+    return do(ref(TRANSMISSIONS, "Record_Sent"), _state(message), ref("Frame"))

@@ -20,8 +20,6 @@ from ravenchart.gen.emit.ada.declarations import (
 )
 from ravenchart.gen.emit.ada.expressions import (
     BOX,
-    Aggregate,
-    Arg,
     Expr,
     OperatorChain,
     all_else,
@@ -30,10 +28,11 @@ from ravenchart.gen.emit.ada.expressions import (
     equal,
     member,
     number,
+    record,
 )
 from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name
-from ravenchart.gen.emit.ada.statements import Assign, Comment, Do, IfStatement, Stmt
+from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Stmt, do
 from ravenchart.gen.emit.certificate.certified import fact
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.system import System
@@ -128,7 +127,7 @@ def sender_spec(system: System, message: Message, transport: Transport) -> list[
         "Waits": number(transport.waits),
         "Row": number(transport.row // MICROSECOND),
     }
-    made = Aggregate(tuple(Arg(key, value) for key, value in columns.items()))
+    made = record(columns)
     return [
         Comment(f"[{message.name}] its segments; times in executions of the row that sends it"),
         Object(_own("Segmentation", name), ref(SENDERS, "Setting"), made, constant=True),
@@ -171,11 +170,11 @@ def sender_bodies(
     send = Subprogram(
         f"Send_{name}",
         (Param("Item", "in", type_name(system, message.type)),),
-        body=(Do(ref(SENDERS, "Give"), arguments(state, bytes_)),),
+        body=(do(ref(SENDERS, "Give"), state, bytes_),),
     )
     segment = call(ref(SENDERS, "Next_Segment"), state, setting)
     full = OperatorChain("/=", (ref("Status"), ref("Ravenchart.Can.Queued")))
-    recorded = Do(ref(SENDERS, "Record_Sent"), arguments(state, setting))
+    recorded = do(ref(SENDERS, "Record_Sent"), state, setting)
     ended = OperatorChain("/=", (ref("Fault"), ref(SENDERS, "None")))
     transmit = Subprogram(
         f"Transmit_{name}",
@@ -188,8 +187,8 @@ def sender_bodies(
             Object("Status", "Ravenchart.Can.Send_Status"),
         ),
         body=(
-            Do(ref(board, "Read"), arguments(ref("Flow"))),
-            Do(ref(SENDERS, "Count"), arguments(state, setting, ref("Flow"), ref("Fault"))),
+            do(ref(board, "Read"), ref("Flow")),
+            do(ref(SENDERS, "Count"), state, setting, ref("Flow"), ref("Fault")),
             IfStatement(((ended, failed),)),
             IfStatement(
                 (
@@ -215,8 +214,8 @@ def sender_bodies(
         f"Note_Flow_{name}",
         (Param("Found", "in", ref(ISO_TP, "Segment")),),
         body=(
-            Assign(flow, Aggregate(tuple(Arg(key, value) for key, value in fields.items()))),
-            Do(ref(board, "Write"), arguments(ref(flow))),
+            Assign(flow, record(fields)),
+            do(ref(board, "Write"), ref(flow)),
         ),
     )
     return send, transmit, noted
@@ -245,7 +244,7 @@ def receiver_spec(system: System, message: Message, transport: Transport) -> lis
         "Timeout": number(transport.timeout),
         "Patience": number(_patience(system, message, transport)),
     }
-    made = Aggregate(tuple(Arg(key, value) for key, value in columns.items()))
+    made = record(columns)
     ceiling = system.object(f"{message.bus}.{message.name}.flow").ceiling
     return [
         GenericInstance(
@@ -299,8 +298,8 @@ def receiver_bodies(
             Object("Status", "Ravenchart.Can.Send_Status"),
         ),
         body=(
-            Do(ref(EPOCHS, "Since_Start"), arguments(ref("Now"))),
-            Do(ref(store, "Look"), arguments(ref("Now"), ref("Wanted"), ref("Expired"))),
+            do(ref(EPOCHS, "Since_Start"), ref("Now")),
+            do(ref(store, "Look"), ref("Now"), ref("Wanted"), ref("Expired")),
             IfStatement(((ref("Expired"), failed),)),
             IfStatement(
                 (
@@ -334,14 +333,14 @@ def taken(
             equal(ref("Frame.Plain.Kind"), ref("Ravenchart.Can.Data")),
         ),
     )
-    whole = (Do(ref(store, "Read"), arguments(ref("Value"))), *unpacked)
+    whole = (do(ref(store, "Read"), ref("Value")), *unpacked)
     return (
         IfStatement(
             (
                 (
                     plain,
                     (
-                        Do(ref(store, "Take"), arguments(*frame, ref(STAMP), ref("Outcome"))),
+                        do(ref(store, "Take"), *frame, ref(STAMP), ref("Outcome")),
                         IfStatement(((complete, whole), (faulty, refused))),
                     ),
                 ),
@@ -363,7 +362,7 @@ def noticed(flow: Message) -> tuple[Stmt, ...]:
     )
     is_flow = equal(ref("Found.Kind"), ref(ISO_TP, "Flow_Control"))
     classic = equal(ref("Frame.Family"), ref(ANY, "Classic"))
-    note = Do(f"Note_Flow_{name}", arguments(ref("Found")))
+    note = do(f"Note_Flow_{name}", ref("Found"))
     return (
         IfStatement(((classic, (Assign("Found", found), IfStatement(((is_flow, (note,)),)))),)),
     )

@@ -11,17 +11,10 @@ from ravenchart.gen.emit.ada.declarations import (
     Unit,
     UseType,
 )
-from ravenchart.gen.emit.ada.expressions import (
-    Attribute,
-    Expr,
-    OperatorChain,
-    arguments,
-    call,
-    number,
-)
+from ravenchart.gen.emit.ada.expressions import Attribute, Expr, OperatorChain, call, number
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case, root_package
-from ravenchart.gen.emit.ada.statements import Assign, Comment, Do, IfStatement, Stmt
+from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Stmt, do
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
 from ravenchart.gen.emit.tables.trace_calls import fault_number, note, traced
@@ -73,7 +66,7 @@ def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
         Object("Found", ref(NOTICES, "Notices")),
     ]
     steps: list[Stmt] = [
-        Do("Controller.Read_Faults", arguments(ref("Now"))),
+        do("Controller.Read_Faults", ref("Now")),
         Assign("Found", call(ref(NOTICES, "Between"), ref("Seen"), ref("Now"))),
     ]
     element = f"{system.nodes[0].name}.{bus.name}"
@@ -103,8 +96,8 @@ def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
         counted: list[Expr] = [
             ref("Left"), ref("Found"), ref("Now.State"), number(looks), ref("Is_Due")
         ]  # fmt: skip
-        steps.append(Do(ref(NOTICES, "Count_Off"), arguments(*counted)))
-        steps.append(IfStatement(((ref("Is_Due"), (Do("Controller.Request_Recovery"),)),)))
+        steps.append(do(ref(NOTICES, "Count_Off"), *counted))
+        steps.append(IfStatement(((ref("Is_Due"), (do("Controller.Request_Recovery"),)),)))
     steps.append(executed(slot))
     items.append(
         Subprogram("Run_Watch", (EXECUTED,), declarations=tuple(locals_), body=tuple(steps))
@@ -116,4 +109,4 @@ def offer(system: System, instance: str, event: str) -> Stmt:
     """Raise an event of an instance."""
     root = root_package(system)
     value = event_value(system.instance(instance).component, event, root=root)
-    return Do(ref(root, ada_case(instance), "Offer"), arguments(value))
+    return do(ref(root, ada_case(instance), "Offer"), value)

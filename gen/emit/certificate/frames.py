@@ -11,14 +11,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from ravenchart.gen.emit.ada.declarations import Aspect, Decl, Param, Subprogram
-from ravenchart.gen.emit.ada.expressions import (
-    Expr,
-    OperatorChain,
-    Power,
-    call,
-    number,
-    plain,
-)
+from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, Power, call, number, plain
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.model.buses import Bus, Message

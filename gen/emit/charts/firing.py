@@ -31,7 +31,6 @@ from ravenchart.gen.emit.ada.expressions import (
     Prefix,
     Range,
     all_else,
-    arguments,
     both,
     call,
     equal,
@@ -43,7 +42,6 @@ from ravenchart.gen.emit.ada.statements import (
     NULL,
     Assign,
     Comment,
-    Do,
     IfStatement,
     Pragma,
     Stmt,
@@ -281,7 +279,7 @@ class Moves:
         """The region stops: nothing is active any more, and nothing more is left."""
         goal = self.shape.leads_to(firing)
         stops = [
-            Assign(self.shape.at(self.held, lane), ref(self.shape.literal(leaf)))
+            Assign(self.shape.at(self.held, lane), self.shape.literal(leaf))
             for lane, leaf in goal.items()
         ]
         if self.shape.timers:
@@ -305,7 +303,7 @@ class Moves:
         return (
             IfStatement(
                 ((full, (Assign("Self.Lost", TRUE),)),),
-                (Do("Deferrals.Append", arguments(ref("Self.Deferred"), item)),),
+                (do("Deferrals.Append", ref("Self.Deferred"), item),),
             ),
         )
 

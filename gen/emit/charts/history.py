@@ -58,7 +58,7 @@ def restored_functions(shape: RegionShape) -> list[Decl]:
     items: list[Decl] = []
     for memory, deep in _wanted(shape):
         rows = tuple(
-            (shape.literal(leaf), ref(shape.literal(_again(shape, memory.place, leaf, deep))))
+            (shape.literal(leaf), shape.literal(_again(shape, memory.place, leaf, deep)))
             for leaf in shape.literals_in(memory.place)
         )
         result = shape.memory_type(memory)
@@ -69,7 +69,7 @@ def restored_functions(shape: RegionShape) -> list[Decl]:
                 result,
                 expression=IfExpr(
                     ((ref("Past", memory.known), choice_of(ref("Past", memory.last), rows)),),
-                    ref(shape.literal(_default(shape, memory.place))),
+                    shape.literal(_default(shape, memory.place)),
                 ),
             ),
             Comment(
@@ -127,10 +127,10 @@ def restored_place(shape: RegionShape, history: str) -> Expr:
 def _lane_again(shape: RegionShape, memory: HistoryMemory, lane: Lane, deep: bool) -> Expr:
     """The leaf of a lane below: remembered, by default, or as it was when not entered."""
     assert lane.owner is not None
-    default = ref(shape.literal(shape.default_leaf(lane)))
-    kept = ref(shape.at(shape.place, lane))
+    default = shape.literal(shape.default_leaf(lane))
+    kept = shape.at(shape.place, lane)
     outer = shape.region.lane(lane.owner)
-    owner = ref(shape.literal(lane.owner))
+    owner = shape.literal(lane.owner)
     if outer == shape.lane_of(memory.place):
         entered = equal(call(_function(memory, deep), ref("Past")), owner)
         remembered: Expr = _all_remembered(shape, memory, lane)
@@ -149,7 +149,7 @@ def _lane_again(shape: RegionShape, memory: HistoryMemory, lane: Lane, deep: boo
 def _all_remembered(shape: RegionShape, memory: HistoryMemory, lane: Lane) -> Expr:
     assert lane.owner is not None
     outer = shape.region.lane(lane.owner)
-    owner = ref(shape.literal(lane.owner))
+    owner = shape.literal(lane.owner)
     if outer == shape.lane_of(memory.place):
         return both(ref("Past", memory.known), equal(ref("Past", memory.last), owner))
     above = shape.memory(Place(outer.owner, outer.name))

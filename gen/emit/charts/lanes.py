@@ -24,7 +24,6 @@ from ravenchart.gen.emit.ada.expressions import (
     Prefix,
     Range,
     all_else,
-    arguments,
     both,
     call,
     chain,
@@ -62,7 +61,7 @@ from .shape import START, RegionShape
 
 def fire(moves: Moves, chosen: str) -> Do:
     names = (p.name for p in moves.fire_params())
-    return Do("Fire", arguments(*(ref(chosen if n == "Chosen" else n) for n in names)))
+    return do("Fire", *(ref(chosen if n == "Chosen" else n) for n in names))
 
 
 def _nothing() -> Aggregate:

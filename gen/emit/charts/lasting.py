@@ -206,12 +206,10 @@ def _timer_after(shape: RegionShape, ends: bool) -> list[Decl]:
 def _remembered(shape: RegionShape) -> list[Decl]:
     rows: list[Arg] = []
     for memory in shape.memories:
-        leaf = ref(shape.at(shape.place, shape.lane_of(memory.place)))
+        leaf = shape.at(shape.place, shape.lane_of(memory.place))
         left = flat([_left(shape, memory), _active(shape, memory)])
         children = shape.region.children(memory.place.owner, memory.place.region)
-        goes_on = [
-            OperatorChain("/=", (leaf, ref(shape.literal(s.name)))) for s in children if s.final
-        ]
+        goes_on = [OperatorChain("/=", (leaf, shape.literal(s.name))) for s in children if s.final]
         last = IfExpr(((both(*left, *goes_on), leaf),), ref("Past", memory.last))
         known = IfExpr(((both(*left), both(*goes_on)),), ref("Past", memory.known))
         rows += [Arg(memory.last, last), Arg(memory.known, known)]
@@ -253,7 +251,7 @@ def _active(shape: RegionShape, memory: HistoryMemory) -> Expr:
     passed = {p.name for p in shape.region.pseudostates}
     leaf = shape.at(shape.place, shape.lane_of(memory.place))
     not_left = [
-        OperatorChain("/=", (ref(leaf), ref(shape.literal(v))))
+        OperatorChain("/=", (ref(leaf), shape.literal(v)))
         for v in shape.literals_in(memory.place)
         if v in passed
     ]

@@ -15,7 +15,6 @@ from ravenchart.gen.emit.ada.expressions import (
     Expr,
     Indexed,
     Qualified,
-    arguments,
     both,
     call,
     chain,
@@ -25,7 +24,7 @@ from ravenchart.gen.emit.ada.expressions import (
 )
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.statements import Assign, Do, IfStatement, Stmt, case_of
+from ravenchart.gen.emit.ada.statements import Assign, IfStatement, Stmt, case_of, do
 from ravenchart.gen.emit.language.compound import Enter
 from ravenchart.gen.emit.language.terms import emit_flow
 from ravenchart.gen.language.terms import Flow
@@ -62,7 +61,7 @@ class Moving:
             return (self.nodes.exit(state),)
         if state in self._exited or self._work_of_exit(state):
             self._exited.add(state)
-            return (Do(f"Exit_{ada_case(state)}"),)
+            return (do(f"Exit_{ada_case(state)}"),)
         return (*self._noted(state, "exit"), self.nodes.exit(state))
 
     def enter(self, vertex: str) -> tuple[Stmt, ...]:
@@ -71,7 +70,7 @@ class Moving:
             return (self.nodes.enter(vertex), *self._place(vertex))
         if vertex in self._entered or any(self._work_of_entry(vertex)):
             self._entered.add(vertex)
-            return (Do(f"Enter_{ada_case(vertex)}"),)
+            return (do(f"Enter_{ada_case(vertex)}"),)
         return (self.nodes.enter(vertex), *self._place(vertex), *self._noted(vertex, "entry"))
 
     def leave(self, place: Place) -> Stmt:
@@ -84,7 +83,7 @@ class Moving:
                 self.exit(child.name)
                 for nested in child.regions:
                     self.leave(Place(child.name, nested.name))
-        return Do(_leave_name(place))
+        return do(_leave_name(place))
 
     def _is_silent(self, place: Place) -> bool:
         """Whether nothing is done there however it is left, and no lane ends there."""
@@ -132,7 +131,7 @@ class Moving:
     def _work_of_exit(self, state: str) -> tuple[Stmt, ...]:
         """What the exit of a state does: actions, time-outs, what it frees, what is remembered."""
         stops = tuple(
-            Do("Ravenchart.Timers.Disarm", arguments(Indexed("Self.Timers", plain(i))))
+            do("Ravenchart.Timers.Disarm", Indexed("Self.Timers", plain(i)))
             for i in self.lasting.timed(state)
         )
         completed = Assign(ref("Self", self.shape.completed(state)), FALSE)
@@ -145,7 +144,7 @@ class Moving:
         found: list[Stmt] = []
         for memory, goes_on in self.lasting.remembered(leaf):
             if goes_on:
-                found.append(Assign(ref("Self.Past", memory.last), ref(self.shape.literal(leaf))))
+                found.append(Assign(ref("Self.Past", memory.last), self.shape.literal(leaf)))
             found.append(Assign(ref("Self.Past", memory.known), TRUE if goes_on else FALSE))
         return tuple(found)
 
@@ -160,7 +159,7 @@ class Moving:
     def _place(self, vertex: str) -> tuple[Stmt, ...]:
         """The leaves that an entry sets."""
         return tuple(
-            Assign(self.shape.at(self.held, lane), ref(self.shape.literal(leaf)))
+            Assign(self.shape.at(self.held, lane), self.shape.literal(leaf))
             for lane, leaf in self.shape.after((Enter(vertex),)).items()
         )
 
@@ -180,7 +179,7 @@ class Moving:
             args: list[Expr] = [Indexed("Self.Timers", plain(i)), number(trigger.executions)]
             if isinstance(trigger, Every):
                 args.append(number(trigger.executions))
-            found.append(Do("Ravenchart.Timers.Arm", arguments(*args)))
+            found.append(do("Ravenchart.Timers.Arm", *args))
         return tuple(found)
 
     def _begin_work(self, state: str) -> tuple[Stmt, ...]:
@@ -206,9 +205,9 @@ class Moving:
         others = [r for r in self.region.state(owner).regions if r.name != state.region]
         parts: list[Expr] = [ref("Self", shape.done(owner))] if owner in shape.working else []
         for nested in others:
-            leaf = ref(shape.at(self.held, shape.lane_of(Place(owner, nested.name))))
+            leaf = shape.at(self.held, shape.lane_of(Place(owner, nested.name)))
             finals = [
-                equal(leaf, ref(shape.literal(s.name)))
+                equal(leaf, shape.literal(s.name))
                 for s in self.region.children(owner, nested.name)
                 if s.final
             ]

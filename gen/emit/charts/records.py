@@ -164,9 +164,7 @@ def _records(shape: RegionShape) -> list[Decl]:
         past: list[RecordComponent] = []
         for one in shape.memories:
             first = next(iter(shape.literals_in(one.place)))
-            past.append(
-                RecordComponent(one.last, shape.memory_type(one), ref(shape.literal(first)))
-            )
+            past.append(RecordComponent(one.last, shape.memory_type(one), shape.literal(first)))
             past.append(RecordComponent(one.known, "Boolean", FALSE))
         items += [
             Comment("What histories ask for: the last leaf left in a region, if any."),

@@ -12,7 +12,6 @@ from ravenchart.gen.emit.ada.expressions import (
     Arg,
     Expr,
     StringLiteral,
-    arguments,
     both,
     call,
     chain,
@@ -21,7 +20,7 @@ from ravenchart.gen.emit.ada.expressions import (
 )
 from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import ada_case, component_name, region_package
-from ravenchart.gen.emit.ada.statements import Do, Stmt
+from ravenchart.gen.emit.ada.statements import Stmt, do
 from ravenchart.gen.emit.language.compound import PASSED, TOP, EntryStep, Firing, FiringKind
 from ravenchart.gen.emit.language.events import carries, event_value
 from ravenchart.gen.emit.language.own_names import event_literal, lane_name
@@ -285,7 +284,7 @@ class RegionShape(Places):
         """In a program for simulation: say that a behaviour is executed."""
         if not self.noted:
             return ()
-        return (Do("Ravenchart.Steps.Note", arguments(StringLiteral(text))),)
+        return (do("Ravenchart.Steps.Note", StringLiteral(text)),)
 
     # --- packages and types
 

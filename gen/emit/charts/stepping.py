@@ -10,7 +10,6 @@ from ravenchart.gen.emit.ada.expressions import (
     ForAll,
     OperatorChain,
     Prefix,
-    arguments,
     both,
     call,
     equal,
@@ -23,13 +22,13 @@ from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import (
     Assign,
     Case,
-    Do,
     ExitStatement,
     ForLoop,
     IfStatement,
     Loop,
     Pragma,
     Stmt,
+    do,
 )
 from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.terms import expressions_in, flow_operators
@@ -73,7 +72,7 @@ def _polling(shape: RegionShape) -> list[Decl]:
     self_out = Param("Self", "in out", "Region")
     items: list[Decl] = []
     if shape.timers:
-        tick = Do("Ravenchart.Timers.Tick", arguments(ref("Self.Timers")))
+        tick = do("Ravenchart.Timers.Tick", ref("Self.Timers"))
         items.append(Subprogram("Tick", (self_out,), body=(tick,)))
     branches: list[tuple[Expr, tuple[Stmt, ...]]] = [
         (Prefix("not", ref("Self.Started")), (Assign("Now", ref("Start_Of_Region")),))
@@ -95,7 +94,7 @@ def _polling(shape: RegionShape) -> list[Decl]:
             for i, t in enumerate(shape.timers, 1)
         ]
         rest = (
-            Do("Ravenchart.Timers.Take_Due", arguments(ref("Self.Timers"), ref("Due"))),
+            do("Ravenchart.Timers.Take_Due", ref("Self.Timers"), ref("Due")),
             Case(ref("Due"), (*rows, (OTHERS, rest))),
         )
     items.append(
@@ -129,7 +128,7 @@ def _deferred(shape: RegionShape) -> tuple[Stmt, ...]:
         Pragma("Assert", (call("Is_Released", *found),)),
         Assign("Now", call("To_Occurrence", item)),
         *taken,
-        Do("Deferrals.Remove", arguments(ref("Self.Deferred"), ref("Released"))),
+        do("Deferrals.Remove", ref("Self.Deferred"), ref("Released")),
         Assign(FREED, call("Freed_Without", ref("Released"), FREED)),
     )
     return (

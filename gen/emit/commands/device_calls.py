@@ -44,7 +44,15 @@ from ravenchart.gen.emit.ada.naming import (
     priority,
     type_name,
 )
-from ravenchart.gen.emit.ada.statements import Comment, Do, ExitStatement, IfStatement, Pragma, Stmt
+from ravenchart.gen.emit.ada.statements import (
+    Comment,
+    Do,
+    ExitStatement,
+    IfStatement,
+    Pragma,
+    Stmt,
+    do,
+)
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.language.terms import Type, named
 from ravenchart.gen.model.commands import Binding, Device, Need, Provided, Remote, Server
@@ -108,7 +116,7 @@ def call_body(system: System, instance: Instance, port: Port, lost: tuple[Stmt, 
         full: tuple[Stmt, ...] = lost
         if binding.need.on_full is not None:
             event = event_value(instance.component, binding.need.on_full)
-            full = (*lost, Do("Offer", arguments(event)))
+            full = (*lost, do("Offer", event))
         declarations, body = sent_call(system, binding.provider, full)
     else:
         assert isinstance(binding.provider, Device)
@@ -128,7 +136,7 @@ def _direct(
     reply = "Reply" if taken else "Unused_Reply"
     given.append(Arg(None, ref(reply)))
     call = Do(ref(ada_case(device.name), ada_case(need.name)), tuple(given))
-    after = (Do(ref(f"Take_{ada_case(need.name)}"), arguments(ref(reply))),) if taken else ()
+    after = (do(ref(f"Take_{ada_case(need.name)}"), ref(reply)),) if taken else ()
     return [Object(reply, type_name(system, need.reply))], [call, *after]
 
 
@@ -143,13 +151,13 @@ def _queued(
     put = ref(f"Put_{ada_case(server.interface.name)}")
     if server.instance != instance.name:
         put = ref(ada_case(server.instance), put)
-    body: list[Stmt] = [Do(put, arguments(request, ref(status)))]
+    body: list[Stmt] = [do(put, request, ref(status))]
     declarations: list[Decl] = [Object(status, STATUS)]
     if need.on_full is not None:
         declarations.append(UseType(STATUS))
         full = OperatorChain("/=", (ref(status), ref("Ravenchart.Queueing.Queued")))
         event = event_value(instance.component, need.on_full)
-        body.append(IfStatement(((full, (Do("Offer", arguments(event)),)),)))
+        body.append(IfStatement(((full, (do("Offer", event),)),)))
     return declarations, body
 
 
@@ -211,13 +219,11 @@ def take_body(system: System, instance: Instance, need: Need) -> Subprogram:
     is_looked_at = False
     if need.reply_item in replies_read(instance.component):
         is_looked_at = True
-        body.append(
-            Do(ref(f"{ada_case(str(need.reply_item))}_Board", "Write"), arguments(ref("Reply")))
-        )
+        body.append(do(ref(f"{ada_case(str(need.reply_item))}_Board", "Write"), ref("Reply")))
     if need.on_reply is not None:
         is_looked_at |= named(instance.component.events, need.on_reply).type is not None
         event = event_value(instance.component, need.on_reply, ref("Reply"))
-        body.append(Do("Offer", arguments(event)))
+        body.append(do("Offer", event))
     unused = () if is_looked_at else (Pragma("Unreferenced", (ref("Reply"),)),)
     return Subprogram(spec.name, spec.params, declarations=unused, body=tuple(body))
 
@@ -229,7 +235,7 @@ def reply_boards(system: System, instance: Instance) -> Iterator[Decl]:
         if need.reply_item in read and need.reply is not None:
             ceiling = priority(system.object(f"{instance.name}.{need.reply_item}").ceiling)
             args = arguments(
-                Element_Type=ref(type_name(system, need.reply)),
+                Element_Type=type_name(system, need.reply),
                 Initial=default_value(system, need.reply),
                 Ceiling=ceiling,
             )
@@ -312,7 +318,7 @@ def put_body(instance: Instance, provided: Provided, lost: tuple[Stmt, ...]) -> 
     queue = f"{ada_case(provided.name)}_Queue"
     full = OperatorChain("/=", (ref("Status"), ref("Ravenchart.Queueing.Queued")))
     body = (
-        Do(ref(queue, "Put"), arguments(ref("Item"), ref("Status"))),
+        do(ref(queue, "Put"), ref("Item"), ref("Status")),
         IfStatement(((full, lost),)),
     )
     return Subprogram(spec.name, spec.params, declarations=(UseType(STATUS),), body=body)
@@ -366,10 +372,10 @@ def served(
             take = take if is_own else ref(ada_case(binding.instance), take)
             asks = OperatorChain("=", (ref("Asked.Caller"), number(index)))
             reply = ref(reply_param(binding.need.name))
-            replied.append(IfStatement(((asks, (Do(take, arguments(reply)),)),)))
+            replied.append(IfStatement(((asks, (do(take, reply),)),)))
     replied += replies(system, instance, provided, len(asking), reply_param)
     return (
-        Do(ref(f"{ada_case(provided.name)}_Queue", "Take"), arguments(ref("Asked"), ref("Taken"))),
+        do(ref(f"{ada_case(provided.name)}_Queue", "Take"), ref("Asked"), ref("Taken")),
         ExitStatement(equal(ref("Taken"), ref("Ravenchart.Queueing.Empty"))),
         *work,
         *replied,

@@ -41,7 +41,7 @@ from ravenchart.gen.emit.ada.naming import (
     root_package,
     type_name,
 )
-from ravenchart.gen.emit.ada.statements import Assign, Comment, Do, IfStatement, Pragma, Stmt
+from ravenchart.gen.emit.ada.statements import Assign, Comment, Do, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.language.terms import RecordType, Type
 from ravenchart.gen.model.commands import CommandKind, Device, DeviceType, DriverCommand
 from ravenchart.gen.model.system import System
@@ -195,11 +195,9 @@ def _first_access(kind: DeviceType) -> tuple[tuple[Decl, ...], tuple[Stmt, ...]]
     name = ada_case(one.name)
     if not one.access.reads:
         write = ref(registers_package(kind), f"Write_{name}")
-        return (), (Do(write, arguments(ref("Unit"), number(0))),)
+        return (), (do(write, ref("Unit"), number(0)),)
     seen = Object("Unused_Word", ref("Interfaces", f"Unsigned_{one.width}"))
-    return (seen,), (
-        Do(ref(registers_package(kind), f"Read_{name}"), arguments(ref("Unit"), ref(seen.name))),
-    )
+    return (seen,), (do(ref(registers_package(kind), f"Read_{name}"), ref("Unit"), ref(seen.name)),)
 
 
 # --- Pieces of equipment -----------------------------------------------------------

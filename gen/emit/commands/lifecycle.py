@@ -25,12 +25,11 @@ from ravenchart.gen.emit.ada.expressions import (
     OperatorChain,
     Prefix,
     StringLiteral,
-    arguments,
     number,
 )
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case, root_package
-from ravenchart.gen.emit.ada.statements import Assign, Comment, Do, IfStatement, Stmt
+from ravenchart.gen.emit.ada.statements import Assign, Comment, Do, IfStatement, Stmt, do
 from ravenchart.gen.model.commands import Device
 from ravenchart.gen.model.system import System
 
@@ -80,20 +79,20 @@ def emit_lifecycle(system: System, header: str) -> list[Unit]:
     steps: list[Stmt] = [Assign("Passed", TRUE)]
     for device in devices:
         failed = (
-            Do(ref(FAILURES, "Note"), arguments(StringLiteral(device.name))),
+            do(ref(FAILURES, "Note"), StringLiteral(device.name)),
             Assign("Passed", FALSE),
         )
-        steps.append(Do(ref(ada_case(device.name), "Start"), arguments(ref("Started"))))
+        steps.append(do(ref(ada_case(device.name), "Start"), ref("Started")))
         steps.append(IfStatement(((Prefix("not", ref("Started")), failed),)))
-    late = (Do(ref(FAILURES, "Note_Late")), Assign("Passed", FALSE))
-    steps.append(Do("Ravenchart.Epochs.Since_Start", arguments(ref("Elapsed"))))
+    late = (do(ref(FAILURES, "Note_Late")), Assign("Passed", FALSE))
+    steps.append(do("Ravenchart.Epochs.Since_Start", ref("Elapsed")))
     steps.append(IfStatement(((OperatorChain(">", (ref("Elapsed"), number(0))), late),)))
     if ended:
         spec += [
             Subprogram("Make_All_Safe", aspects=LAST_CHANCE),
             Comment("Make each device safe."),
         ]
-        steps.append(IfStatement(((Prefix("not", ref("Passed")), (Do("Make_All_Safe"),)),)))
+        steps.append(IfStatement(((Prefix("not", ref("Passed")), (do("Make_All_Safe"),)),)))
     bodies: list[Decl] = [
         Subprogram(
             "Start_All",
@@ -107,7 +106,7 @@ def emit_lifecycle(system: System, header: str) -> list[Unit]:
         )
     ]
     if ended:
-        safe = tuple(Do(ref(ada_case(device.name), "Make_Safe")) for device in ended)
+        safe = tuple(do(ref(ada_case(device.name), "Make_Safe")) for device in ended)
         bodies.append(Subprogram("Make_All_Safe", body=safe))
     withs = {ref(root, ada_case(device.name)) for device in devices}
     withs |= {ref("Ravenchart.Epochs"), FAILURES}

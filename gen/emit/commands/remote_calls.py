@@ -22,18 +22,18 @@ from ravenchart.gen.emit.ada.expressions import (
     Aggregate,
     Arg,
     Attribute,
-    Call,
     Expr,
     OperatorChain,
     arguments,
     between,
+    call,
     equal,
     member,
     number,
 )
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name
-from ravenchart.gen.emit.ada.statements import Assign, Comment, Do, IfStatement, Stmt
+from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Stmt, do
 from ravenchart.gen.language.terms import RecordType, Type
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, Provided, Remote, RemoteRead
@@ -112,8 +112,8 @@ def sent_call(
     send = ref(ada_case(message.bus), f"Send_{ada_case(message.name)}")
     if remote.reply is None:
         kept = ref(f"{name}_Number")
-        following = Do(send, arguments(_framed(message, kept, ref("Item"), need.argument)))
-        count = Assign(kept, Call(ref(CALLS, "Following"), arguments(kept)))
+        following = do(send, _framed(message, kept, ref("Item"), need.argument))
+        count = Assign(kept, call(ref(CALLS, "Following"), kept))
         return [], [count, following]
     declarations: list[Decl] = [
         Object("Number", ref(CALLS, "Call_Number")),
@@ -123,8 +123,8 @@ def sent_call(
     frame = _framed(message, ref("Number"), ref("Item"), need.argument)
     queued = equal(ref("Status"), ref("Ravenchart.Queueing.Queued"))
     body: list[Stmt] = [
-        Do(ref(f"{name}_Call", "Start"), arguments(ref("Number"), ref("Status"))),
-        IfStatement(((queued, (Do(send, arguments(frame)),)),), full),
+        do(ref(f"{name}_Call", "Start"), ref("Number"), ref("Status")),
+        IfStatement(((queued, (do(send, frame),)),), full),
     ]
     return declarations, body
 
@@ -142,7 +142,7 @@ def watch_body(need: Need, kept: str, passed: tuple[Stmt, ...]) -> Subprogram:
         watch_name(need.name),
         declarations=(Object("Status", status), UseType(status)),
         body=(
-            Do(ref(kept, "Tick"), arguments(ref("Status"))),
+            do(ref(kept, "Tick"), ref("Status")),
             IfStatement(((late, passed),)),
         ),
     )
@@ -155,7 +155,7 @@ def watched(system: System, instance: Instance, row: Region | Activity) -> Itera
         calls = isinstance(made, Remote) and made.reply is not None and name in row.sends
         looks = isinstance(made, RemoteRead) and made.watcher == row.name
         if binding.instance == instance.name and (calls or looks):
-            yield Do(watch_name(name))
+            yield do(watch_name(name))
 
 
 def answers(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subprogram]]:
@@ -170,14 +170,12 @@ def answers(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Su
         status = "Status" if taken else "Unused_Status"
         of_type = ref(CALLS, "Reply_Status")
         declarations: list[Decl] = [Object(status, of_type)]
-        body: list[Stmt] = [
-            Do(ref(f"{name}_Call", "Finish"), arguments(_number(message), ref(status)))
-        ]
+        body: list[Stmt] = [do(ref(f"{name}_Call", "Finish"), _number(message), ref(status))]
         if taken:
             declarations.append(UseType(of_type))
             awaited = equal(ref(status), ref(CALLS, "Awaited"))
             reply = value_of(system, message, remote.need.reply)
-            body.append(IfStatement(((awaited, (Do(f"Take_{name}", arguments(reply)),)),)))
+            body.append(IfStatement(((awaited, (do(f"Take_{name}", reply),)),)))
         yield (
             spec,
             Subprogram(spec.name, spec.params, declarations=tuple(declarations), body=tuple(body)),
@@ -201,8 +199,8 @@ def asked_from_afar(
     kept = ref(f"{ada_case(message.name)}_Heard")
     first = equal(ref("Hearing"), ref(CALLS, "Heard_First"))
     body = (
-        Do(ref(CALLS, "Hear"), arguments(kept, _number(message), ref("Hearing"))),
-        IfStatement(((first, (Do(put, arguments(request, ref("Unused_Status"))),)),)),
+        do(ref(CALLS, "Hear"), kept, _number(message), ref("Hearing")),
+        IfStatement(((first, (do(put, request, ref("Unused_Status")),)),)),
     )
     declarations = (
         Object("Hearing", ref(CALLS, "Hearing")),
@@ -214,7 +212,7 @@ def asked_from_afar(
 
 def caller_number(local: int, place: int, message: Message) -> Expr:
     """Who asks, in a request: the numbers of the calls heard, behind the ``local`` callers."""
-    called = Call("Natural", arguments(_number(message)))
+    called = call("Natural", _number(message))
     first = _first(local, place)
     return called if first == 0 else OperatorChain("+", (number(first), called))
 
@@ -233,10 +231,10 @@ def replies(
         if first > 0:
             asks = member(caller, between(first, first + NUMBER.last))
             caller = OperatorChain("-", (caller, number(first)))
-        called = Call("Ravenchart.Number", arguments(caller))
+        called = call("Ravenchart.Number", caller)
         frame = _framed(back, called, ref(reply(need.name)), need.reply)
         send = ref(ada_case(back.bus), f"Send_{ada_case(back.name)}")
-        yield IfStatement(((asks, (Do(send, arguments(frame)),)),))
+        yield IfStatement(((asks, (do(send, frame),)),))
 
 
 def reply_to(system: System, message: Message) -> Message | None:

@@ -9,7 +9,7 @@ from ravenchart.gen.emit.ada.declarations import Decl, GenericInstance, Object, 
 from ravenchart.gen.emit.ada.expressions import arguments, number
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name, value
-from ravenchart.gen.emit.ada.statements import Comment, Do, IfStatement, Stmt
+from ravenchart.gen.emit.ada.statements import Comment, Do, IfStatement, Stmt, do
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, RemoteRead
 from ravenchart.gen.model.component import Activity
@@ -56,7 +56,7 @@ def copy_objects(system: System, instance: Instance) -> Iterator[Decl]:
         element = f"{instance.name}.{read.need.name}"
         yield Comment(f"[{element}] of another node")
         args = arguments(
-            Element_Type=ref(type_name(system, read.need.reply)),
+            Element_Type=type_name(system, read.need.reply),
             Initial=value(system, read.need.reply, read.initial),
             Limit=number(read.executions),
             Ceiling=priority(system.object(f"{element}.read").ceiling),
@@ -78,7 +78,7 @@ def kept(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subpr
         assert read.need.reply is not None
         params = (Param("Item", "in", type_name(system, read.need.reply)),)
         name = f"Put_{ada_case(read.need.name)}"
-        put = Do(ref(copy_name(read.need), "Put"), arguments(ref("Item")))
+        put = do(ref(copy_name(read.need), "Put"), ref("Item"))
         yield Subprogram(name, params), Subprogram(name, params, body=(put,))
 
 
@@ -92,7 +92,7 @@ def publishes(
         held = ref(f"{item}_Own")
         if isinstance(row, Region):
             held = ref(f"{ada_case(row.name)}_Region", "Data", item)
-        sent = Do(ref(ada_case(message.bus), f"Send_{ada_case(message.name)}"), arguments(held))
+        sent = do(ref(ada_case(message.bus), f"Send_{ada_case(message.name)}"), held)
         if message.every == 1:
             yield sent
             continue

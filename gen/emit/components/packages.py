@@ -102,7 +102,7 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
                 f"{name}_Port",
                 "Ravenchart.Port_Regions",
                 arguments(
-                    Value_Type=ref(type_name(system, port.type)),
+                    Value_Type=type_name(system, port.type),
                     Default=default_value(system, port.type),
                 ),
                 behind_package=True,

@@ -38,7 +38,7 @@ from ravenchart.gen.emit.ada.naming import (
     type_name,
     value,
 )
-from ravenchart.gen.emit.ada.statements import Assign, Case, Comment, Do, IfStatement, Pragma, Stmt
+from ravenchart.gen.emit.ada.statements import Assign, Case, Comment, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.emit.charts.shape import RegionShape
 from ravenchart.gen.emit.commands.device_calls import (
     call_body,
@@ -207,7 +207,7 @@ class Glue(Site):
         for provided in self._served():
             yield put_body(instance, provided, self._lost(provided.name))
         for spec, item in published(system, instance):
-            read: Stmt = Do(ref(f"{ada_case(item)}_Board", "Read"), arguments(ref("Reply")))
+            read: Stmt = do(ref(f"{ada_case(item)}_Board", "Read"), ref("Reply"))
             if not self._has_object(item):
                 read = Assign("Reply", ref(f"{ada_case(item)}_Own"))
             yield Subprogram(spec.name, spec.params, body=(read,))
@@ -376,7 +376,7 @@ class Glue(Site):
     def _put_body(self, port: Port) -> Subprogram:
         name = ada_case(port.name)
         body: list[Stmt] = [
-            Do(ref(f"{name}_Mailbox", "Put"), arguments(ref("Item"), ref("Status"))),
+            do(ref(f"{name}_Mailbox", "Put"), ref("Item"), ref("Status")),
             *self._note("Arrived", port.name, "port"),
         ]
         if releases(self, port):  # what it releases may run before Put returns
@@ -424,7 +424,7 @@ class Glue(Site):
                 if event.name in region.events():
                     steps += self._enqueue(region, event, ref("Item"), tells=True)
             for bus in self._asked(event.name):
-                steps.append(Do(ref(ada_case(bus), "Controller.Request_Recovery")))
+                steps.append(do(ref(ada_case(bus), "Controller.Request_Recovery")))
             steps += self._note("Raised", event.name, "event") if steps else ()
             rows.append((ref(self.component, event_literal(event.name)), tuple(steps)))
         declarations: tuple[Decl, ...] = ()
@@ -456,7 +456,7 @@ class Glue(Site):
         args = [item, ref("Status")]
         if event.overflow is not None and event.overflow is not region.overflow:
             args.append(ref("Ravenchart.Queueing", ada_case(event.overflow.value)))
-        return [Do(ref(queue, "Put"), arguments(*args)), IfStatement(((condition, tuple(full)),))]
+        return [do(ref(queue, "Put"), *args), IfStatement(((condition, tuple(full)),))]
 
     def overflowed(self, name: str) -> list[Stmt]:
         """Raise the event that tells of a loss; what is lost by that is only counted."""
@@ -480,14 +480,11 @@ class Glue(Site):
             target = (
                 name if end.instance == self.instance.name else ref(ada_case(end.instance), name)
             )
-            body.append(Do(target, arguments(ref("Item"))))
+            body.append(do(target, ref("Item")))
         for message in self.system.messages:
             if message.name in messages:
                 body.append(
-                    Do(
-                        ref(ada_case(message.bus), f"Send_{ada_case(message.name)}"),
-                        arguments(ref("Item")),
-                    )
+                    do(ref(ada_case(message.bus), f"Send_{ada_case(message.name)}"), ref("Item"))
                 )
         taken = ends or messages or recorded
         unused = () if taken else (Pragma("Unreferenced", (ref("Item"),)),)

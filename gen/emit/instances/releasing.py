@@ -8,7 +8,7 @@ from ravenchart.gen.emit.ada.declarations import Decl, Param, Subprogram
 from ravenchart.gen.emit.ada.expressions import Prefix
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.statements import Assign, Comment, Do
+from ravenchart.gen.emit.ada.statements import Assign, Comment, do
 from ravenchart.gen.model.component import Port
 
 from .site import Site
@@ -33,7 +33,7 @@ def wait_body(site: Site, port: Port) -> Iterator[Decl]:
     """Their bodies."""
     if releases(site, port):
         name = ada_case(port.name)
-        yield Subprogram(f"Await_{name}", body=(Do(ref(f"{name}_Mailbox", "Wait")),))
+        yield Subprogram(f"Await_{name}", body=(do(ref(f"{name}_Mailbox", "Wait")),))
         if site.noted:
             empty = Assign("Waiting", Prefix("not", ref(f"{name}_Mailbox", "Is_Empty")))
             yield Subprogram(f"Ask_{name}", _ASKED, body=(empty,))

@@ -91,23 +91,19 @@ class Rows(Site):
             limit: Expr = ref(self.component, f"{name}_Port", "Never_Stale")
             if port.max_age is not None:
                 limit = number(port.max_age // period)
+            body.append(do(ref(f"{name}_Mailbox", "Take"), ref(f"{name}_Item"), ref("Status")))
             body.append(
-                Do(ref(f"{name}_Mailbox", "Take"), arguments(ref(f"{name}_Item"), ref("Status")))
-            )
-            body.append(
-                Do(
+                do(
                     ref(self.component, f"{name}_Port", "Handle"),
-                    arguments(
-                        ref(f"{name}_Port"),
-                        Arrived=equal(ref("Status"), ref("Ravenchart.Queueing.Taken")),
-                        Item=ref(f"{name}_Item"),
-                        Limit=limit,
-                        Outcome=ref(f"{name}_Change"),
-                    ),
+                    ref(f"{name}_Port"),
+                    Arrived=equal(ref("Status"), ref("Ravenchart.Queueing.Taken")),
+                    Item=ref(f"{name}_Item"),
+                    Limit=limit,
+                    Outcome=ref(f"{name}_Change"),
                 )
             )
             if self._has_object(port.name):
-                body.append(Do(ref(f"{name}_Board", "Write"), arguments(ref(f"{name}_Port"))))
+                body.append(do(ref(f"{name}_Board", "Write"), ref(f"{name}_Port")))
             if port.on_overflow:
                 declarations.append(Object(f"{name}_Losses", "Ravenchart.Event_Count"))
                 body += self._watch_losses(port, port.on_overflow)
@@ -118,9 +114,9 @@ class Rows(Site):
     def _asked_for(self, poll: Poll, told: str) -> list[Stmt]:
         """Ask a device for an event, and take it like a value that has arrived."""
         asked = ref(ada_case(poll.device.name), ada_case(poll.event))
-        arrived = Do(ref(f"Put_{ada_case(poll.port)}"), arguments(ref(told)))
+        arrived = do(ref(f"Put_{ada_case(poll.port)}"), ref(told))
         return [
-            Do(asked, arguments(ref(f"{told}_Now"), ref(told))),
+            do(asked, ref(f"{told}_Now"), ref(told)),
             IfStatement(((ref(f"{told}_Now"), (arrived,)),)),
         ]
 
@@ -164,7 +160,7 @@ class Rows(Site):
         step_args: tuple[Arg, ...] = ()
         if shape.inputs:
             declarations.append(Object("Ins", ref(package, "Inputs")))
-            body += [self._copy_in(n, f"Ins.{ada_case(n)}") for n in shape.inputs]
+            body += [self._copy_in(n, ref("Ins", ada_case(n))) for n in shape.inputs]
             step_args = arguments(ref("Ins"))
         completing = self.instance.component.completing(region.name)
         if completing:
@@ -174,7 +170,7 @@ class Rows(Site):
             body.append(do(ref(f"{ada_case(activity.name)}_Done_Board", "Read"), ref("Visit")))
             body.append(do(notice, ref(f"{name}_Region"), ref("Visit")))
         if shape.timers:
-            body.append(Do(ref(package, "Tick"), arguments(ref(f"{name}_Region"))))
+            body.append(do(ref(package, "Tick"), ref(f"{name}_Region")))
         one: Stmt = Do(f"Step_{name}", step_args)
         if region.steps_per_execution > 1:
             one = Loop(_times(region.steps_per_execution), (one,))
@@ -183,15 +179,13 @@ class Rows(Site):
         for activity, state in completing:
             visits = ref(f"{name}_Region", shape.visits(state))
             body.append(do(ref(f"{ada_case(activity.name)}_Visit_Board", "Write"), visits))
-        body.append(
-            Do(ref(f"{name}_Board", "Write"), arguments(ref(f"{name}_Region", shape.place)))
-        )
+        body.append(do(ref(f"{name}_Board", "Write"), ref(f"{name}_Region", shape.place)))
         for data in self.instance.component.data:
             if data.name not in region.writes:
                 continue
             field = ref(f"{name}_Region", "Data", ada_case(data.name))
             if self._has_object(data.name):
-                body.append(Do(ref(f"{ada_case(data.name)}_Board", "Write"), arguments(field)))
+                body.append(do(ref(f"{ada_case(data.name)}_Board", "Write"), field))
             body += self._record(data.name, field)
         body += publishes(self.system, self.instance, region, declarations)
         body += transmits(self.system, self.instance, region)
@@ -217,7 +211,7 @@ class Rows(Site):
             return self._read_command(binding, target)
         if any(d.name == name for d in component.data) and not self._has_object(name):
             return Assign(ref(target), ref(f"{ada_case(name)}_Own"))
-        return Do(ref(f"{ada_case(name)}_Board", "Read"), arguments(ref(target)))
+        return do(ref(f"{ada_case(name)}_Board", "Read"), ref(target))
 
     def _read_command(self, binding: Binding, target: Named) -> Stmt:
         """Read what a required command gives: of a device or task, or what stands in."""
@@ -225,10 +219,10 @@ class Rows(Site):
         if need.stand_in is not None and provider is None:
             return self._copy_in(need.stand_in.item, target)
         if isinstance(provider, RemoteRead):
-            return Do(ref(copy_name(need), "Read"), arguments(ref(target)))
+            return do(ref(copy_name(need), "Read"), ref(target))
         assert isinstance(provider, Device | Server)
         owner = provider.instance if isinstance(provider, Server) else provider.name
-        return Do(ref(ada_case(owner), ada_case(need.name)), arguments(ref(target)))
+        return do(ref(ada_case(owner), ada_case(need.name)), ref(target))
 
     def _step_region(self, shape: RegionShape, package: Named) -> Subprogram:
         region = shape.region
@@ -247,7 +241,7 @@ class Rows(Site):
         polled = [ref(f"{name}_Region"), ref("Now")]
         polls_event = len(shape.poll_params()) > len(polled)
         polled += [ref("Event")] if polls_event else []
-        body: list[Stmt] = [Do(ref(package, "Poll"), arguments(*polled))]
+        body: list[Stmt] = [do(ref(package, "Poll"), *polled)]
         if region.events():
             begins = shape.takes_item and not polls_event
             start = null_event(self.instance.component) if begins else None
@@ -260,7 +254,7 @@ class Rows(Site):
             taken = equal(ref("Status"), ref("Ravenchart.Queueing.Taken"))
             convert = Assign("Now", call(ref(package, "To_Occurrence"), ref("Event")))
             idle = equal(ref("Now"), ref(package, "Conditions"))
-            take = Do(ref(f"{name}_Queue", "Take"), arguments(ref("Event"), ref("Status")))
+            take = do(ref(f"{name}_Queue", "Take"), ref("Event"), ref("Status"))
             body.append(IfStatement(((idle, (take, IfStatement(((taken, (convert,)),)))),)))
         args = [ref(f"{name}_Region"), ref("Now")]
         args += [ref("Ins")] if shape.inputs else []
@@ -268,7 +262,7 @@ class Rows(Site):
         if shape.has_box:
             declarations.append(Object("Box", ref(package, "Outbox")))
             args.append(ref("Box"))
-        body.append(Do(ref(package, "Step"), arguments(*args, ref("Fired"))))
+        body.append(do(ref(package, "Step"), *args, ref("Fired")))
         if self.noted:
             body.append(do("Ravenchart.Steps.Finish", StringLiteral(self._element(region.name))))
         body += after
@@ -297,7 +291,7 @@ class Rows(Site):
         if region.raises:
             lists = ref(self.component, "Event_Lists")
             each = up_to(call(ref(lists, "Count"), ref("Box.Raised")))
-            offer = Do("Offer", arguments(call(ref(lists, "Element"), ref("Box.Raised"), ref("I"))))
+            offer = do("Offer", call(ref(lists, "Element"), ref("Box.Raised"), ref("I")))
             moved.append(Loop(ForLoop("I", each), (offer,)))
         if not moved:
             return [Pragma("Unreferenced", (ref("Fired"),))]
@@ -356,7 +350,7 @@ class Rows(Site):
             own = f"{ada_case(name)}_Own"
             args.append(Arg(ada_case(name), ref(own)))
             if self._has_object(name):
-                after.append(Do(ref(f"{ada_case(name)}_Board", "Write"), arguments(ref(own))))
+                after.append(do(ref(f"{ada_case(name)}_Board", "Write"), ref(own)))
             after += self._record(name, own)
         for port in component.outputs():
             if port.name in activity.sends:
@@ -385,7 +379,7 @@ class Rows(Site):
             body = (Loop(_times(provided.depth), loop),)
         if guard is not None:
             region_name = ada_case(activity.while_in.region)  # type: ignore[union-attr]
-            read = Do(ref(f"{region_name}_Board", "Read"), arguments(ref(f"{region_name}_Now")))
+            read = do(ref(f"{region_name}_Board", "Read"), ref(f"{region_name}_Now"))
             body = (read, IfStatement(((guard, body),)))
         sent = publishes(self.system, self.instance, activity, declarations)
         body = (*watched(self.system, self.instance, activity), *body, *sent)
@@ -424,12 +418,12 @@ class Rows(Site):
     ) -> list[Stmt]:
         """Take a value to send from an activity, and send it; nothing where nobody takes it."""
         name, idle = ada_case(port.name), "Unused_" if self._is_idle(port) else ""
-        send: Stmt = Do(send_flag(port))
+        send: Stmt = do(send_flag(port))
         if not port.is_void:
             local = f"{idle}{name}_Value"
             declarations.append(Object(local, type_name(self.system, port.type)))
             args.append(Arg(name, ref(local)))
-            send = Do(send_flag(port), arguments(ref(local)))
+            send = do(send_flag(port), ref(local))
         if has_flag(activity, port):
             flag, asked = send_flag(port), f"{idle}{send_flag(port)}_Asked"
             declarations.append(Object(asked, "Boolean"))

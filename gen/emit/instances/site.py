@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ravenchart.gen.emit.ada.expressions import Expr, arguments
+from ravenchart.gen.emit.ada.expressions import Expr
 from ravenchart.gen.emit.ada.named import Named, ref
 from ravenchart.gen.emit.ada.naming import component_name, priority
-from ravenchart.gen.emit.ada.statements import Do, Stmt
+from ravenchart.gen.emit.ada.statements import Stmt, do
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.trace_calls import note
 from ravenchart.gen.emit.tables.value_calls import record
@@ -79,7 +79,7 @@ class Site:
         return record(self.system, self.instance.name, name, holder, simulated=self.noted)
 
     def _fault(self, kind: str) -> Stmt:
-        return Do("Health_Counts.Counters.Record_Fault", arguments(ref("Ravenchart.Health", kind)))
+        return do("Health_Counts.Counters.Record_Fault", ref("Ravenchart.Health", kind))
 
     def _raise(self, event: str, value: Expr | None = None) -> Stmt:
-        return Do("Offer", arguments(event_value(self.instance.component, event, value)))
+        return do("Offer", event_value(self.instance.component, event, value))

@@ -28,6 +28,7 @@ from ravenchart.gen.emit.ada.expressions import (
     arguments,
     equal,
     number,
+    record,
 )
 from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import (
@@ -38,7 +39,7 @@ from ravenchart.gen.emit.ada.naming import (
     root_package,
     row_name,
 )
-from ravenchart.gen.emit.ada.statements import Case, Comment, Do, IfStatement, Pragma, Stmt, do
+from ravenchart.gen.emit.ada.statements import Case, Comment, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.emit.buses.packages import emit_bus
 from ravenchart.gen.emit.certificate.certified import (
     CERTIFICATE,
@@ -276,7 +277,7 @@ def _slot(processor: Processor, slot: Slot) -> Expr:
         what: fact(timed_by(processor.name, processor.slots, slot), what)
         for what in ("Divisor", "Phase")
     }
-    return Aggregate(tuple(Arg(what, value) for what, value in facts.items()))
+    return record(facts)
 
 
 def _owner_unit(system: System, slot: Slot) -> DottedName:
@@ -299,13 +300,11 @@ def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
     execute: list[Stmt] = []
     if traced(system):
         execute.append(
-            Do(
+            do(
                 "Trace.Buffer.Note",
-                arguments(
-                    ref("Ravenchart.Traces.Activity"),
-                    row_number(processor, "Row", "Item"),
-                    number(0),
-                ),
+                ref("Ravenchart.Traces.Activity"),
+                row_number(processor, "Row", "Item"),
+                number(0),
             )
         )
     execute.append(Case(ref("Item"), tuple(rows)))
@@ -351,7 +350,7 @@ def _fault(
     """Count and note a fault of a processor, and raise its events."""
     fault = ref("Ravenchart.Health", kind)
     return (
-        Do("Health_Counts.Counters.Record_Fault", arguments(fault)),
+        do("Health_Counts.Counters.Record_Fault", fault),
         *note(system, "Fault", processor.name, "processor", fault_number(kind)),
         *(offer(system, instance, event) for instance, event in events),
     )

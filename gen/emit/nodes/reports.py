@@ -18,7 +18,6 @@ from ravenchart.gen.emit.ada.expressions import (
     OperatorChain,
     Prefix,
     StringLiteral,
-    arguments,
     call,
     equal,
     number,
@@ -31,7 +30,6 @@ from ravenchart.gen.emit.ada.statements import (
     Assign,
     Comment,
     DelayUntil,
-    Do,
     ExitStatement,
     ForLoop,
     IfStatement,
@@ -64,24 +62,19 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         bodies.append(_drain(system))
     spec += [Subprogram("Put_All"), Comment("Hand the statistics of all processors to the host.")]
     bodies += [_report(system, p) for p in system.processors]
-    steps: list[Stmt] = [Do("Ravenchart.Hosts.Put_Now")]
-    steps += [Do(ref(f"Report_{ada_case(p.name)}")) for p in system.processors]
-    steps.append(Do("Health_Counts.Counters.Read", arguments(ref("Faults"))))
+    steps: list[Stmt] = [do("Ravenchart.Hosts.Put_Now")]
+    steps += [do(ref(f"Report_{ada_case(p.name)}")) for p in system.processors]
+    steps.append(do("Health_Counts.Counters.Read", ref("Faults")))
     for bus in system.buses:
         log = f"{ada_case(bus.name)}_Faults"
-        steps.append(Do(ref(ada_case(bus.name), "Controller.Read_Faults"), arguments(ref(log))))
+        steps.append(do(ref(ada_case(bus.name), "Controller.Read_Faults"), ref(log)))
         for kind, count in (("Error_Passive", "Passive_Entries"), ("Bus_Off", "Off_Entries")):
             fault = Indexed("Faults", ref("Ravenchart.Health", f"Can_{kind}"))
             steps.append(Assign(fault, ref(log, count)))
     steps.append(
         Loop(
             ForLoop("Kind", "Ravenchart.Health.Fault_Kind"),
-            (
-                Do(
-                    "Ravenchart.Hosts.Put_Fault_Count",
-                    arguments(ref("Kind"), Indexed("Faults", ref("Kind"))),
-                ),
-            ),
+            (do("Ravenchart.Hosts.Put_Fault_Count", ref("Kind"), Indexed("Faults", ref("Kind"))),),
         )
     )
     declarations: list[Decl] = [Object("Faults", "Ravenchart.Health.Fault_Counts")]
@@ -90,26 +83,24 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         for buffer, label in _buffers(system):
             steps.append(Assign("Lost", ref(buffer, "Lost")))
             word = StringLiteral(label)
-            steps.append(Do("Ravenchart.Hosts.Put_Lost", arguments(word, ref("Lost"))))
+            steps.append(do("Ravenchart.Hosts.Put_Lost", word, ref("Lost")))
     for bus in system.buses:
         counters = f"{ada_case(bus.name)}_Counters"
         declarations.append(Object(counters, "Ravenchart.Can.Counters"))
         log = f"{ada_case(bus.name)}_Faults"
         declarations.append(Object(log, "Ravenchart.Can.Fault_Notices.Fault_Log"))
-        steps.append(
-            Do(ref(ada_case(bus.name), "Controller.Read_Counters"), arguments(ref(counters)))
-        )
+        steps.append(do(ref(ada_case(bus.name), "Controller.Read_Counters"), ref(counters)))
         for field in ("Lost_Out", "Lost_In", "Rejected_Lines"):
-            label = StringLiteral(f"{bus.name}.{field.lower()}")
-            steps.append(Do("Ravenchart.Hosts.Put_Lost", arguments(label, ref(counters, field))))
+            word = StringLiteral(f"{bus.name}.{field.lower()}")
+            steps.append(do("Ravenchart.Hosts.Put_Lost", word, ref(counters, field)))
     if any(n.probe for n in system.nodes):
         declarations.append(Object("Late", "Ravenchart.Nanoseconds"))
-        steps.append(Do("Host_Probe.Probe.Read", arguments(ref("Late"))))
-        steps.append(Do("Ravenchart.Hosts.Put_Host_Latency", arguments(ref("Late"))))
+        steps.append(do("Host_Probe.Probe.Read", ref("Late")))
+        steps.append(do("Ravenchart.Hosts.Put_Host_Latency", ref("Late")))
     if supervised(system):
         declarations.append(Object("Fed", "Ravenchart.Event_Count"))
-        steps.append(Do("Liveness_Supervision.Supervisor.Read", arguments(ref("Fed"))))
-        steps.append(Do("Ravenchart.Hosts.Put_Feeds", arguments(ref("Fed"))))
+        steps.append(do("Liveness_Supervision.Supervisor.Read", ref("Fed")))
+        steps.append(do("Ravenchart.Hosts.Put_Feeds", ref("Fed")))
     bodies.append(Subprogram("Put_All", declarations=tuple(declarations), body=tuple(steps)))
     context = {
         ref("Ravenchart.Hosts"),
@@ -166,9 +157,9 @@ def _drained(buffer: DottedName, item: str, put: str) -> Loop:
     return Loop(
         None,
         (
-            Do(ref(buffer, "Take"), arguments(ref(item), ref("Status"))),
+            do(ref(buffer, "Take"), ref(item), ref("Status")),
             IfStatement(((empty, (ExitStatement(),)),)),
-            Do(put, arguments(ref(item))),
+            do(put, ref(item)),
         ),
     )
 
@@ -184,19 +175,21 @@ def _report(system: System, processor: Processor) -> Subprogram:
             Object("Found", ref(package, "Processor.Statistics")),
         ),
         body=(
-            Do(ref(package, "Processor.Observe"), arguments(ref("Found"))),
-            Do(
+            do(ref(package, "Processor.Observe"), ref("Found")),
+            do(
                 "Ravenchart.Hosts.Put_Processor",
-                arguments(
-                    own, ref("Found.Releases"), ref("Found.Misses"), ref("Found.Worst_Response")
-                ),
+                own,
+                ref("Found.Releases"),
+                ref("Found.Misses"),
+                ref("Found.Worst_Response"),
             ),
             Loop(
                 ForLoop("Row", ref(package, "Row")),
                 (
-                    Do(
+                    do(
                         "Ravenchart.Hosts.Put_Activity",
-                        arguments(row, Indexed("Found.Worst_Execution", ref("Row"))),
+                        row,
+                        Indexed("Found.Worst_Execution", ref("Row")),
                     ),
                 ),
             ),
@@ -207,16 +200,13 @@ def _report(system: System, processor: Processor) -> Subprogram:
 def emit_main(system: System, header: str) -> Unit:
     """The main program: it empties the trace, and leads the shutdown."""
     root = root_package(system)
-    drain: tuple[Stmt, ...] = (Do(ref(root, "Reports.Drain_Trace")),) if traced(system) else ()
+    drain: tuple[Stmt, ...] = (do(ref(root, "Reports.Drain_Trace")),) if traced(system) else ()
     wait: tuple[Stmt, ...] = (
         Assign("Next", OperatorChain("+", (ref("Next"), ref("Step")))),
         DelayUntil(ref("Next")),
     )
     shutdown = [
-        Do(
-            ref(root, ada_case(i), "Offer"),
-            arguments(event_value(system.instance(i).component, e, root=root)),
-        )
+        do(ref(root, ada_case(i), "Offer"), event_value(system.instance(i).component, e, root=root))
         for i, e in system.shutdown.raises
     ]
     steps = -(-system.shutdown.grace // POLL_NS)
@@ -224,7 +214,7 @@ def emit_main(system: System, header: str) -> Unit:
     started = (do(ref(root, LIFECYCLE, "Start_All"), ref("Started")),) if begins else ()
     ended = OperatorChain("or else", (ref("Stop"), Prefix("not", ref("Started"))))
     body: list[Stmt] = [
-        Do("Ravenchart.Hosts.Start"),
+        do("Ravenchart.Hosts.Start"),
         do("Ravenchart.Hosts.Put_Model", ref(root, CERTIFICATE, "Model_Digest")),
         *started,
         Loop(
@@ -243,8 +233,8 @@ def emit_main(system: System, header: str) -> Unit:
     body += [
         *safe_state(system),
         *drain,
-        Do(ref(root, "Reports.Put_All")),
-        Do("Ravenchart.Hosts.Finish", arguments(Success=ref("Started") if begins else TRUE)),
+        do(ref(root, "Reports.Put_All")),
+        do("Ravenchart.Hosts.Finish", Success=ref("Started") if begins else TRUE),
     ]
     withs = {ref("Ada.Real_Time"), ref("Ravenchart.Hosts"), ref("System"), ref(root, "Reports")}
     withs.add(ref(root, CERTIFICATE))

@@ -44,15 +44,7 @@ from ravenchart.gen.emit.ada.expressions import (
 )
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case, component_name, root_package, type_name
-from ravenchart.gen.emit.ada.statements import (
-    Assign,
-    Case,
-    Do,
-    IfStatement,
-    RaiseStatement,
-    Stmt,
-    do,
-)
+from ravenchart.gen.emit.ada.statements import Assign, Case, IfStatement, RaiseStatement, Stmt, do
 from ravenchart.gen.emit.commands.lifecycle import UNIT as LIFECYCLE
 from ravenchart.gen.emit.commands.lifecycle import has_lifecycle
 from ravenchart.gen.emit.language.events import event_value
@@ -128,7 +120,7 @@ def emit_simulation(system: System, header: str) -> Unit:
             run = _run(root, slot)
             above = sum(one.priority > processor.priority for one in woken)
             if above:
-                rows.append(Do("Release_Waiting", arguments(number(above))))
+                rows.append(do("Release_Waiting", number(above)))
             turn = OperatorChain("mod", (ref("Count"), number(slot.divisor)))
             due = equal(turn, number(slot.phase))
             rows += run if slot.divisor == 1 else (IfStatement(((due, run),)),)
@@ -179,7 +171,7 @@ def emit_simulation(system: System, header: str) -> Unit:
                 ),
                 *((Object("Started", "Boolean"),) if has_lifecycle(system) else ()),
             ),
-            body=(*_start(system), Do("Run")),
+            body=(*_start(system), do("Run")),
         ),
     )
 

@@ -31,7 +31,7 @@ from ravenchart.gen.emit.ada.naming import (
     processor_package,
     root_package,
 )
-from ravenchart.gen.emit.ada.statements import Assign, Case, Comment, Do, Stmt
+from ravenchart.gen.emit.ada.statements import Assign, Case, Comment, Stmt, do
 from ravenchart.gen.emit.certificate.certified import agrees, fact
 from ravenchart.gen.emit.commands.lifecycle import UNIT, ends_devices
 from ravenchart.gen.emit.language.own_names import event_literal
@@ -59,7 +59,7 @@ def safe_state(system: System) -> tuple[Stmt, ...]:
     """
     if not ends_devices(system):
         return ()
-    return (Do(ref(root_package(system), UNIT, "Make_All_Safe")),)
+    return (do(ref(root_package(system), UNIT, "Make_All_Safe")),)
 
 
 def emit_supervision(system: System, header: str) -> list[Unit]:
@@ -120,16 +120,13 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
             "On_Silence",
             (Param("Item", "in", "Watched"),),
             body=(
-                Do(
-                    "Health_Counts.Counters.Record_Fault",
-                    arguments(ref("Ravenchart.Health.Silence")),
-                ),
+                do("Health_Counts.Counters.Record_Fault", ref("Ravenchart.Health.Silence")),
                 Case(ref("Item"), events),
             ),
         ),
     )
     if ends_devices(system):
-        ends = (*safe_state(system), Do("Ravenchart.Failures.Give_Up"))
+        ends = (*safe_state(system), do("Ravenchart.Failures.Give_Up"))
         body += (Subprogram("Give_Up", body=ends),)
     devices = {ref(root, UNIT)} if ends_devices(system) else set()
     raised = [i for p in watched for i, _ in p.on_silence]
@@ -181,7 +178,7 @@ def _look(system: System, processor: Processor) -> tuple[Stmt, ...]:
         )
         judged = call("Ravenchart.Liveness.Is_Silent", rhythm, seen, elapsed)
     return (
-        Do(ref(name, "Processor.Observe_Progress"), arguments(seen)),
+        do(ref(name, "Processor.Observe_Progress"), seen),
         Assign("Is_Silent", judged),
     )
 
@@ -191,11 +188,11 @@ def _silence(system: System, processor: Processor) -> tuple[Stmt, ...]:
     return (
         *note(system, "Fault", processor.name, "processor", fault_number("Silence")),
         *(offer(system, instance, event) for instance, event in processor.on_silence),
-        Do("Ravenchart.Failures.Note_Silence", arguments(StringLiteral(processor.name))),
+        do("Ravenchart.Failures.Note_Silence", StringLiteral(processor.name)),
     )
 
 
 def offer(system: System, instance: str, event: str) -> Stmt:
     """Raise an event of an instance from outside it."""
     component = component_name(system.instance(instance).component)
-    return Do(ref(ada_case(instance), "Offer"), arguments(ref(component, event_literal(event))))
+    return do(ref(ada_case(instance), "Offer"), ref(component, event_literal(event)))
