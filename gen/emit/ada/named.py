@@ -73,7 +73,7 @@ def identifier(text: str) -> str:
 
 def word(text: str) -> str:
     """The text, which must have the form of an identifier: `Range` is an attribute as well."""
-    has_form = text.isidentifier() and text.isascii() and not text.startswith("_")
+    has_form = text.isascii() and text.isidentifier() and "__" not in f"_{text}_"
     assert has_form, f"no identifier of Ada: {text!r}"
     return text
 
