@@ -12,10 +12,12 @@ from typing import TypeVar
 
 from ravenchart.gen.derive.calls import device_types
 from ravenchart.gen.derive.completion import programs
-from ravenchart.gen.emit.ada.naming import ada_case, root_package
+from ravenchart.gen.emit.ada.declarations import Package, Unit
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import RUNTIME, ada_case, root_package
 from ravenchart.gen.emit.ada.readings import UnitReading, readings
-from ravenchart.gen.emit.ada.syntax import Package, Unit, units_named_in
-from ravenchart.gen.emit.ada.text import print_item, print_unit
+from ravenchart.gen.emit.ada.text import PrintedItem, print_item, print_unit
+from ravenchart.gen.emit.ada.walking import named_units
 from ravenchart.gen.emit.buses.authentication import (
     authenticated,
     emit_authentication,
@@ -35,6 +37,7 @@ from ravenchart.gen.emit.commands.registers import (
 )
 from ravenchart.gen.emit.components.first_bodies import first_bodies
 from ravenchart.gen.emit.components.packages import (
+    ACTIVITIES,
     emit_activities,
     emit_component,
 )
@@ -77,13 +80,13 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class MadeUnit:
-    """A unit of the program: its context, the text of its item, and what was read in it.
+    """A unit of the program: its context, its item as printed, and what was read in it.
 
     The declarations themselves are dropped: there are millions in a large program.
     """
 
     unit: Unit
-    text: str
+    item: PrintedItem
     reading: UnitReading
 
 
@@ -203,28 +206,34 @@ def _context(unit: Unit) -> Unit:
     return unit
 
 
+def _of_runtime(name: DottedName) -> bool:
+    return name.first == RUNTIME.first
+
+
 def _seeing_runtime(unit: Unit) -> Unit:
-    sees = any(name.startswith("Ravenchart") for name in unit.withs)
-    return unit if sees else replace(unit, withs=("Ravenchart", *unit.withs))
+    sees = any(map(_of_runtime, unit.withs))
+    return unit if sees else replace(unit, withs=(RUNTIME, *unit.withs))
 
 
 def _pruned(unit: Unit, root: str) -> Unit:
-    """The unit without the context that nothing in it names."""
-    named = units_named_in(unit.item)
-    kept = (n for n in unit.withs if n in named or n.removeprefix(f"{root}.") in named)
-    return replace(unit, withs=tuple(kept))
+    """The unit without the context that nothing in it names, below the root without that."""
+    if not unit.withs:
+        return unit
+    named = named_units(unit)
+    named |= {ref(root, name) for name in named}
+    return replace(unit, withs=tuple(name for name in unit.withs if name in named))
 
 
 def _without_repeats(found: list[Unit]) -> list[Unit]:
     """The units; no body names the runtime when its spec does."""
-    seeing: set[str] = set()
+    seeing: set[DottedName] = set()
     out: list[Unit] = []
     for unit in found:
         withs = unit.withs
-        if unit.item.name in seeing:
-            withs = tuple(name for name in withs if name != "Ravenchart")
-        if any(name.startswith("Ravenchart") for name in withs):
-            seeing.add(unit.item.name)
+        if unit.name in seeing:
+            withs = tuple(name for name in withs if name != RUNTIME)
+        if any(map(_of_runtime, withs)):
+            seeing.add(unit.name)
         out.append(replace(unit, withs=withs))
     return out
 
@@ -232,7 +241,7 @@ def _without_repeats(found: list[Unit]) -> list[Unit]:
 def _printed(found: Sequence[MadeUnit]) -> dict[str, str]:
     pruned = _without_repeats([made.unit for made in found])
     pairs = zip(pruned, found, strict=True)
-    return {unit.file_name: print_unit(unit, made.text) for unit, made in pairs}
+    return {unit.file_name: print_unit(unit, made.item) for unit, made in pairs}
 
 
 def generate(system: System, claims: Claims) -> dict[str, str]:
@@ -289,8 +298,8 @@ def _users(system: System) -> Iterator[tuple[str, Unit]]:
     header = FIRST.format(system=system.name)
     for c in system.components:
         for unit in first_bodies(system, c, header) if c.name in used else ():
-            home = unit.item.name.rpartition(".")[2]
-            folder = "user" if home == "Activities" else f"user/{c.name}-{home}".lower()
+            home = unit.name.last
+            folder = "user" if home == ACTIVITIES else f"user/{c.name}-{home}".lower()
             yield f"{folder}/{unit.file_name}", unit
     for unit in first_authentication(system, header):
         yield f"user/{unit.file_name}", unit

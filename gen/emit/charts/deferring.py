@@ -11,42 +11,45 @@ says which are *freed* by an exit: those among the first so many.
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import (
+    Aspect,
+    Decl,
+    Param,
+    RecordComponent,
+    RecordDeclaration,
+    Subprogram,
+)
+from ravenchart.gen.emit.ada.expressions import (
     FALSE,
+    OTHERS,
     Aggregate,
     Arg,
-    Aspect,
-    Assign,
     CaseExpr,
-    Comment,
-    Decl,
+    Choice,
     Expr,
     ForAll,
     IfExpr,
-    Old,
     OperatorChain,
-    Param,
     Prefix,
-    RecordComponent,
-    RecordDeclaration,
-    Ref,
-    Stmt,
-    Subprogram,
     both,
     call,
     chain,
     equal,
     number,
+    old,
     one_of,
+    up_to,
 )
+from ravenchart.gen.emit.ada.named import Named, ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Assign, Comment, Stmt
 from ravenchart.gen.emit.language.compound import FiringKind
 from ravenchart.gen.emit.language.events import name_of
 
 from .shape import RegionShape
 
-FREED = "Self.Freed"
-COUNT = call("Deferrals.Count", Ref("Self.Deferred"))
+FREED = ref("Self.Freed")
+COUNT = call("Deferrals.Count", ref("Self.Deferred"))
 _TYPE = "Freed_Events"
 
 
@@ -72,46 +75,46 @@ def freed_field() -> RecordComponent:
 def freed_by(shape: RegionShape, state: str) -> tuple[Stmt, ...]:
     """The exit of a state frees what it defers."""
     events = shape.region.state(state).defers
-    return tuple(Assign(f"{FREED}.{ada_case(e)}", COUNT) for e in events)
+    return tuple(Assign(ref(FREED, ada_case(e)), COUNT) for e in events)
 
 
 def freed_after(shape: RegionShape, domain: Expr, count: Expr) -> Expr:
     """The claim that all was freed that states in a domain defer."""
-    held = Old(f"Self.{shape.place}")
-    return equal(Ref(FREED), call("Freed_After", domain, held, count, Old(FREED)))
+    held = old(shape.held)
+    return equal(FREED, call("Freed_After", domain, held, count, old(FREED)))
 
 
 def declared_deferrals(shape: RegionShape) -> list[Decl]:
     """What is deferred, what is due, and what is due next."""
-    rows: list[tuple[str, Expr]] = []
-    limits: list[tuple[str, Expr]] = []
+    rows: list[tuple[Choice, Expr]] = []
+    limits: list[tuple[Choice, Expr]] = []
     for event in kept_events(shape):
         states = [s.name for s in shape.region.states if event in s.defers]
         inside = [shape.in_state(shape.place, s) for s in states]
         rows.append((shape.event(event), chain("or else", inside)))
-        limits.append((shape.event(event), Ref(f"Freed.{ada_case(event)}")))
+        limits.append((shape.event(event), ref("Freed", ada_case(event))))
     if len(rows) < len(shape.component.events):
-        rows.append(("others", FALSE))
-        limits.append(("others", number(0)))
+        rows.append((OTHERS, FALSE))
+        limits.append((OTHERS, number(0)))
     item, place = Param("Item", "in", "Event"), Param(shape.place, "in", shape.place_type)
     freed, index = Param("Freed", "in", _TYPE), Param("I", "in", "Positive")
     kept = (Param("Kept", "in", "Deferrals.List"), place, freed, index)
-    name = Ref(name_of(shape.component, "Item"))
-    element = call("Deferrals.Element", Ref("Kept"), Ref("I"))
-    limit = call("Freed_Up_To", element, Ref("Freed"))
-    waits = call("Is_Deferred", element, Ref(place.name))
-    due = chain("or else", [Prefix("not", waits), OperatorChain("<=", (Ref("I"), limit))])
-    there = OperatorChain("<=", (Ref("I"), call("Deferrals.Count", Ref("Kept"))))
+    name = name_of(shape.component, "Item")
+    element = call("Deferrals.Element", ref("Kept"), ref("I"))
+    limit = call("Freed_Up_To", element, ref("Freed"))
+    waits = call("Is_Deferred", element, ref(place.name))
+    due = chain("or else", [Prefix("not", waits), OperatorChain("<=", (ref("I"), limit))])
+    there = OperatorChain("<=", (ref("I"), call("Deferrals.Count", ref("Kept"))))
     without = tuple(
         Arg(
             ada_case(e),
             IfExpr(
-                ((OperatorChain("<=", (Ref("I"), of)), OperatorChain("-", (of, number(1)))),),
+                ((OperatorChain("<=", (ref("I"), of)), OperatorChain("-", (of, number(1)))),),
                 of,
             ),
         )
         for e in kept_events(shape)
-        for of in (Ref(f"Freed.{ada_case(e)}"),)
+        for of in (ref("Freed", ada_case(e)),)
     )
     deferrals = [f.literal for f in shape.firings if f.kind is FiringKind.DEFERRAL]
     return [
@@ -130,7 +133,7 @@ def declared_deferrals(shape: RegionShape) -> list[Decl]:
             aspects=(Aspect("Ghost"),),
             expression=both(
                 is_due("Kept", place.name, "Freed", "I"),
-                ForAll("J", "1 .. I - 1", Prefix("not", is_due("Kept", place.name, "Freed", "J"))),
+                ForAll("J", BEFORE_I, Prefix("not", is_due("Kept", place.name, "Freed", "J"))),
             ),
         ),
         Comment("Is it the oldest that is due?"),
@@ -140,11 +143,15 @@ def declared_deferrals(shape: RegionShape) -> list[Decl]:
             "Is_Deferral",
             (Param("T", "in", "Selection"),),
             "Boolean",
-            expression=one_of(Ref("T"), deferrals),
+            expression=one_of(ref("T"), deferrals),
         ),
     ]
 
 
-def is_due(kept: str, place: str, freed: str, index: str) -> Expr:
+BEFORE_I = up_to(OperatorChain("-", (ref("I"), number(1))))
+"""The places before the one that I is."""
+
+
+def is_due(kept: Named, place: Named, freed: Named, index: Named) -> Expr:
     """A call of that function."""
-    return call("Is_Due", Ref(kept), Ref(place), Ref(freed), Ref(index))
+    return call("Is_Due", ref(kept), ref(place), ref(freed), ref(index))

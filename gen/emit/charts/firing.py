@@ -12,38 +12,44 @@ else. The order then follows from the preconditions.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 
-from ravenchart.gen.emit.ada.syntax import (
-    NULL,
-    TRUE,
-    Aggregate,
-    Arg,
+from ravenchart.gen.emit.ada.declarations import (
     Aspect,
-    Assign,
-    Comment,
     Decl,
-    Do,
-    Expr,
-    IfExpr,
-    IfStatement,
     Object,
-    Old,
     Package,
     Param,
-    PlainType,
-    Pragma,
-    Prefix,
-    Ref,
-    Stmt,
+    RangeConstrained,
     Subprogram,
+    SubtypeDeclaration,
     UseType,
-    arguments,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    TRUE,
+    Choice,
+    Expr,
+    IfExpr,
+    Prefix,
+    Range,
+    all_else,
     both,
     call,
-    case_of,
     equal,
     number,
+    old,
+)
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.statements import (
+    NULL,
+    Assign,
+    Comment,
+    IfStatement,
+    Pragma,
+    Stmt,
+    case_of,
+    do,
 )
 from ravenchart.gen.emit.language.compound import Effect, EntryStep, Firing, FiringKind
 from ravenchart.gen.emit.language.places import flat
@@ -69,6 +75,7 @@ _AGREED = "Is_Agreed"
 _BEFORE, _CHOSEN = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
 
 _Row = tuple[str, tuple[Stmt, ...]]
+"""A transition by its literal, and what it does."""
 
 
 def _between(claim: Expr, effect: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
@@ -77,20 +84,20 @@ def _between(claim: Expr, effect: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
     return (said, *effect, said) if effect else ()
 
 
-def _range(rows: Sequence[_Row]) -> str:
-    return f"{rows[0][0]} .. {rows[-1][0]}"
+def _range(rows: Sequence[_Row]) -> Range:
+    return Range(ref(rows[0][0]), ref(rows[-1][0]))
 
 
 def _procedure(rows: Sequence[_Row], claims: tuple[Aspect, ...]) -> tuple[Decl, Decl]:
     """A procedure for some transitions, and their type."""
-    own = PlainType(f"From_{rows[0][0]}", f"Selection range {_range(rows)}", subtype=True)
-    body = (case_of(Ref("Chosen"), rows),)
+    own = SubtypeDeclaration(f"From_{rows[0][0]}", RangeConstrained("Selection", _range(rows)))
+    body = (case_of(ref("Chosen"), rows),)
     chosen = Param("Chosen", "in", own.name)
     return own, Subprogram(f"Fire_{own.name}", (chosen,), aspects=claims, body=body)
 
 
-def _call(rows: Sequence[_Row]) -> _Row:
-    return _range(rows), (Do(f"Fire_From_{rows[0][0]}", arguments(Ref("Chosen"))),)
+def _call(rows: Sequence[_Row]) -> tuple[Range, tuple[Stmt, ...]]:
+    return _range(rows), (do(f"Fire_From_{rows[0][0]}", ref("Chosen")),)
 
 
 class Moves:
@@ -100,7 +107,7 @@ class Moves:
         self.shape = shape
         self.region = shape.region
         self.scope = shape.scope("Self.Data")
-        self.held = f"Self.{shape.place}"
+        self.held = shape.held
         self.lasting = Lasting(shape)
         self.nodes = Nodes(shape)
         self.safety = Safety(shape)
@@ -116,16 +123,16 @@ class Moves:
     def fire(self) -> Subprogram:
         """Exits, effects and entries of one transition; `Target` says where it leads."""
         start = (Assign("Self.Started", TRUE), *joined(self._steps(self.shape.start)))
-        rows = [(f.literal, self._row(f)) for f in self.shape.firings]
-        rows = rows or [("None", (NULL,))]
+        each = [(f.literal, self._row(f)) for f in self.shape.firings] or [("None", (NULL,))]
+        rows: list[tuple[Choice | str, tuple[Stmt, ...]]] = [*each]
         agreed: Expr = self.nodes.agreed()
         batches: tuple[Decl, ...] = ()
-        if len(rows) * len(self.shape.lanes) > MANY:
+        if len(each) * len(self.shape.lanes) > MANY:
             agrees = Subprogram(_AGREED, (), "Boolean", (Aspect("Ghost"),), expression=agreed)
-            agreed = Ref(_AGREED)
-            past = [equal(Ref("Self.Past"), Ref("Past"))] if self.shape.memories else []
+            agreed = ref(_AGREED)
+            past = [equal(ref("Self.Past"), ref("Past"))] if self.shape.memories else []
             claims = self._claims(*past, agreed)
-            by_batch = [rows[at : at + BATCH] for at in range(0, len(rows), BATCH)]
+            by_batch = [each[at : at + BATCH] for at in range(0, len(each), BATCH)]
             batches = (agrees, *(d for batch in by_batch for d in _procedure(batch, claims)))
             rows = [_call(batch) for batch in by_batch]
         procedures = self.moving.procedures()
@@ -142,7 +149,7 @@ class Moves:
                 *batches,
             ),
             body=(
-                case_of(Ref("Chosen"), [(START, start), *rows]),
+                case_of(ref("Chosen"), [(START, start), *rows]),
                 Pragma("Assert", (agreed,)),
             ),
         )
@@ -150,7 +157,7 @@ class Moves:
     def _past(self) -> tuple[Object, ...]:
         if not self.shape.memories:
             return ()
-        return (Object("Past", "Memory", Ref("Self.Past"), constant=True),)
+        return (Object("Past", "Memory", ref("Self.Past"), constant=True),)
 
     def claims(self) -> list[Decl]:
         """What Fire asks for, and what it does, each in one word."""
@@ -169,7 +176,7 @@ class Moves:
 
         `Is_Safe` stands beside `Is_Fired`: gnatprove then names it where an invariant breaks.
         """
-        fired = asked(self._fired, Before=Old("Self"))
+        fired = asked(self._fired, Before=old("Self"))
         return (
             Aspect("Pre", both(self.ready("Chosen"), *inside)),
             Aspect("Post", both(fired, *self.safety.holds(), *inside[-1:])),
@@ -181,18 +188,18 @@ class Moves:
 
     def _ready(self, chosen: str) -> Subprogram:
         first, later = self.safety.ready(chosen)
-        sources = call("In_Source", Ref(chosen), Ref(self.held))
+        sources = call("In_Source", ref(chosen), self.held)
         ready = IfExpr(
-            ((equal(Ref(chosen), Ref(START)), both(Prefix("not", Ref("Self.Started")), *first)),),
-            both(Ref("Self.Started"), sources, *later),
+            ((equal(ref(chosen), ref(START)), both(Prefix("not", ref("Self.Started")), *first)),),
+            both(ref("Self.Started"), sources, *later),
         )
         return self._claim_of("Is_Ready", ready, Param(chosen, "in", "Firing"))
 
     @cached_property
     def _fired(self) -> Subprogram:
         done = both(
-            Ref("Self.Started"),
-            of_before(equal(Ref(self.held), self.shape.target("Chosen"))),
+            ref("Self.Started"),
+            of_before(equal(self.held, self.shape.target("Chosen"))),
             *([] if self._lasts is None else [asked(self._lasts)]),
         )
         return self._claim_of("Is_Fired", done, _CHOSEN, _BEFORE)
@@ -224,7 +231,7 @@ class Moves:
         idle -= self.safety.reads()
         params = [p for p in self.shape.step_params() if p.name not in idle]
         if self._fills_outbox():
-            params = [p._replace(mode="out") if p.name == "Box" else p for p in params]
+            params = [replace(p, mode="out") if p.name == "Box" else p for p in params]
         return (*params, Param("Chosen", "in", "Firing"))
 
     def _fills_outbox(self) -> bool:
@@ -275,11 +282,11 @@ class Moves:
         """The region stops: nothing is active any more, and nothing more is left."""
         goal = self.shape.leads_to(firing)
         stops = [
-            Assign(self.shape.at(self.held, lane), Ref(self.shape.literal(leaf)))
+            Assign(self.shape.at(self.held, lane), self.shape.literal(leaf))
             for lane, leaf in goal.items()
         ]
         if self.shape.timers:
-            stopped = Aggregate((Arg("others", Ref("Ravenchart.Timers.Stopped")),))
+            stopped = all_else(ref("Ravenchart.Timers.Stopped"))
             stops.append(Assign("Self.Timers", stopped))
         return (*stops, *self.nodes.stopped(goal[self.shape.lanes[-1]]))
 
@@ -294,12 +301,12 @@ class Moves:
     def _defer(self, firing: Firing) -> tuple[Stmt, ...]:
         item = self.shape.deferred_item(firing)
         full = equal(
-            call("Deferrals.Count", Ref("Self.Deferred")), number(self.region.deferral_depth)
+            call("Deferrals.Count", ref("Self.Deferred")), number(self.region.deferral_depth)
         )
         return (
             IfStatement(
                 ((full, (Assign("Self.Lost", TRUE),)),),
-                (Do("Deferrals.Append", arguments(Ref("Self.Deferred"), item)),),
+                (do("Deferrals.Append", ref("Self.Deferred"), item),),
             ),
         )
 

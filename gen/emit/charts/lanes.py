@@ -12,45 +12,51 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import Aspect, Decl, Object, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import (
     Aggregate,
     Arg,
-    Aspect,
-    Assign,
+    Attribute,
     Call,
-    Comment,
-    Decl,
-    Do,
     Expr,
     ForAll,
     ForSome,
     IfExpr,
-    IfStatement,
-    Loop,
-    Object,
-    Old,
+    Indexed,
     OperatorChain,
-    Param,
-    Pragma,
     Prefix,
-    Ref,
-    Say,
-    Stmt,
-    Subprogram,
-    arguments,
+    Range,
+    all_else,
     both,
     call,
     chain,
-    do,
     equal,
     member,
     number,
+    old,
     one_of,
+    plain,
+    result,
+    up_to,
+)
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import (
+    Assign,
+    Comment,
+    Do,
+    ExitStatement,
+    ForLoop,
+    IfStatement,
+    Loop,
+    Pragma,
+    Stmt,
+    do,
 )
 from ravenchart.gen.emit.language.compound import Firing, FiringKind
 from ravenchart.gen.model.statechart import Lane
 
+from .deferring import BEFORE_I
 from .firing import Moves
 from .selection import segment, whole
 from .shape import START, RegionShape
@@ -58,14 +64,12 @@ from .shape import START, RegionShape
 
 def fire(moves: Moves, chosen: str) -> Do:
     names = (p.name for p in moves.fire_params())
-    return Do("Fire", arguments(*(Ref(chosen if n == "Chosen" else n) for n in names)))
+    return do("Fire", *(ref(chosen if n == "Chosen" else n) for n in names))
 
 
 def _nothing() -> Aggregate:
     """An empty list of firings."""
-    return Aggregate(
-        (Arg("Count", number(0)), Arg("Items", Aggregate((Arg("others", Ref("None")),))))
-    )
+    return Aggregate((Arg("Count", number(0)), Arg("Items", all_else(ref("None")))))
 
 
 # --- The contract ------------------------------------------------------------
@@ -78,10 +82,10 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
     if shape.single:
         return items
     params = shape.situation
-    chosen = Call("Is_Choice", (Arg(None, Ref("Choose'Result")), *shape.situation_args()))
-    found = ForSome("I", _FIRED, equal(Ref(_ITEM), Ref("T")))
-    earlier = OperatorChain("<", (Ref("Fired.Items (J)"), Ref(_ITEM)))
-    pairs = ForAll("J", "1 .. I - 1", _unless_segment(shape, earlier, "J"))
+    chosen = Call("Is_Choice", (Arg(None, result("Choose")), *shape.situation_args()))
+    found = ForSome("I", _FIRED, equal(_ITEM, ref("T")))
+    earlier = OperatorChain("<", (_item("J"), _ITEM))
+    pairs = ForAll("J", BEFORE_I, _unless_segment(shape, earlier, "J"))
     choice = Param("C", "in", "Choice")
     ghost = (Aspect("Ghost"),)
     return [
@@ -120,22 +124,30 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
 
 def _of_choice(shape: RegionShape) -> Expr:
     """Each is chosen for a lane, or goes on from a choice or history."""
-    chosen = " | ".join(f"C.{shape.lane_name(n)}" for n in shape.busy_lanes)
-    due = both(OperatorChain("<=", (Ref(_ITEM), Ref("Last"))), member(Ref(_ITEM), chosen))
+    chosen = (ref("C", shape.lane_name(n)) for n in shape.busy_lanes)
+    due = both(OperatorChain("<=", (_ITEM, ref("Last"))), member(_ITEM, *chosen))
     return ForAll("I", _FIRED, _unless_segment(shape, due, "I"))
 
 
-def _is_of(lane: str) -> Expr:
-    return call(_IS_OF, Ref("Fired"), Ref("C"), Ref(f"{lane}_Transition'Last"))
+def _is_of(shape: RegionShape, lane: Lane) -> Expr:
+    last = Attribute(shape.transitions_of(lane), "Last")
+    return call(_IS_OF, ref("Fired"), ref("C"), last)
 
 
 BEFORE = "Place_Before"
 """The configuration before anything has fired."""
 
 _IS_OF = "Is_Of_Choice"
-_FIRED = "1 .. Fired.Count"
-_ITEM = "Fired.Items (I)"
-_ORDERED = call("Is_Ordered", Ref("Fired"))
+_COUNT = ref("Fired.Count")
+_FIRED = up_to(_COUNT)
+
+
+def _item(index: str) -> Indexed:
+    return Indexed("Fired.Items", ref(index))
+
+
+_ITEM = _item("I")
+_ORDERED = call("Is_Ordered", ref("Fired"))
 _FOLLOWS = (
     "A deferral is fired alone. Otherwise what is chosen is fired, lane by lane, and nothing else; "
 )
@@ -144,11 +156,11 @@ _DROPPED = "of two that conflict, as one leaves a state in which the other fires
 
 
 def _starts_with(shape: RegionShape, fired: Param) -> list[Decl]:
-    first = [
+    first: list[Expr] = [
         OperatorChain(
-            ">" if shape.passes else "=", (Ref("Fired.Count"), number(0 if shape.passes else 1))
+            ">" if shape.passes else "=", (ref("Fired.Count"), number(0 if shape.passes else 1))
         ),
-        equal(Ref("Fired.Items (1)"), Ref("T")),
+        equal(Indexed("Fired.Items", plain(1)), ref("T")),
     ]
     items: list[Decl] = []
     if shape.passes:
@@ -158,12 +170,12 @@ def _starts_with(shape: RegionShape, fired: Param) -> list[Decl]:
                 "Is_Segment",
                 (Param("T", "in", "Selection"),),
                 "Boolean",
-                expression=one_of(Ref("T"), names),
+                expression=one_of(ref("T"), names),
             ),
             Comment("Does it go on from a choice or history?"),
         ]
-        rest = call("Is_Segment", Ref(_ITEM))
-        first.append(ForAll("I", "2 .. Fired.Count", rest))
+        rest = call("Is_Segment", _ITEM)
+        first.append(ForAll("I", Range(plain(2), _COUNT), rest))
     return [
         *items,
         Subprogram(
@@ -185,18 +197,17 @@ def is_segment(shape: RegionShape, firing: Firing) -> bool:
 def _unless_segment(shape: RegionShape, fact: Expr, index: str) -> Expr:
     if not shape.passes:
         return fact
-    return OperatorChain("or else", (call("Is_Segment", Ref(f"Fired.Items ({index})")), fact))
+    return OperatorChain("or else", (call("Is_Segment", _item(index)), fact))
 
 
 def _choice(shape: RegionShape, lane: Lane) -> Expr:
-    return Ref(f"C.{shape.lane_name(lane)}")
+    return ref("C", shape.lane_name(lane))
 
 
 def _follows(shape: RegionShape) -> Expr:
-    last = shape.lane_name(shape.busy_lanes[-1])
-    facts = both(_is_of(last), _ORDERED, *_asked(shape, shape.busy_lanes))
+    facts = both(_is_of(shape, shape.busy_lanes[-1]), _ORDERED, *_asked(shape, shape.busy_lanes))
     deferrals = tuple(
-        (call("Is_Deferral", lane), call("Is_Only", Ref("Fired"), lane))
+        (call("Is_Deferral", lane), call("Is_Only", ref("Fired"), lane))
         for lane in _deferring(shape)
     )
     return IfExpr(deferrals, facts) if deferrals else facts
@@ -214,21 +225,21 @@ def _asked(shape: RegionShape, lanes: Sequence[Lane]) -> list[Expr]:
     if not shape.passes:
         return [fact for n in lanes for fact in (_has(shape, n), *_apart(shape, n))]
     rows = (
-        (OperatorChain("/=", (_choice(shape, n), Ref("None"))), _fired(shape, n)) for n in lanes
+        (OperatorChain("/=", (_choice(shape, n), ref("None"))), _fired(shape, n)) for n in lanes
     )
     return [IfExpr(tuple(rows), None)]
 
 
 def _has(shape: RegionShape, lane: Lane) -> Expr:
     """What is chosen for a lane is fired, unless what conflicts with it was."""
-    asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), Ref("None")))]
+    asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), ref("None")))]
     before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
     asked += [Prefix("not", clash) for clash in _clashes(shape, lane, before)]
     return IfExpr(((both(*asked), _fired(shape, lane)),), None)
 
 
 def _fired(shape: RegionShape, lane: Lane) -> Expr:
-    return call("Has", Ref("Fired"), _choice(shape, lane))
+    return call("Has", ref("Fired"), _choice(shape, lane))
 
 
 def _clashes(shape: RegionShape, lane: Lane, others: Sequence[Lane]) -> Iterator[Expr]:
@@ -257,10 +268,10 @@ def _unmoved(shape: RegionShape, done: Sequence[Lane]) -> Iterator[Expr]:
     for lane in () if shape.passes else shape.busy_lanes[len(done) :]:
         around = [ada_case(s) for s in shape.watched if lane in shape.lanes_in(s)]
         if around:
-            stays = [Prefix("not", call(f"Has_Left_{s}", Ref("Fired"))) for s in around]
-            asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), Ref("None"))), *stays]
+            stays = [Prefix("not", call(f"Has_Left_{s}", ref("Fired"))) for s in around]
+            asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), ref("None"))), *stays]
             same = [
-                equal(Ref(shape.at(f"Self.{shape.place}", n)), Ref(shape.at(BEFORE, n)))
+                equal(shape.at(shape.held, n), shape.at(BEFORE, n))
                 for n in shape.lanes_around(lane)
             ]
             yield IfExpr(((both(*asked), both(*same)),), None)
@@ -274,12 +285,12 @@ def _overtaken(shape: RegionShape, lane: Lane) -> bool:
 
 def followed(shape: RegionShape) -> Expr:
     """What Step says of all that it has fired."""
-    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
-    choice = Call("Choose", shape.situation_args(Self=Old("Self")))
-    only = call("Is_Only", Ref("Fired"), Ref(START))
-    follows = call("Follows", Ref("Fired"), choice)
+    begun = equal(ref("Now"), ref("Start_Of_Region"))
+    choice = Call("Choose", shape.situation_args(Self=old("Self")))
+    only = call("Is_Only", ref("Fired"), ref(START))
+    follows = call("Follows", ref("Fired"), choice)
     #  no `if`: 'Old behind a condition known on entry wants an exception handler
-    goes_on = OperatorChain("/=", (Ref("Now"), Ref("Start_Of_Region")))
+    goes_on = OperatorChain("/=", (ref("Now"), ref("Start_Of_Region")))
     return OperatorChain(
         "or", (OperatorChain("and", (begun, only)), OperatorChain("and", (goes_on, follows)))
     )
@@ -300,7 +311,7 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
     choose = Assign("C", Call("Choose", shape.situation_args()))
     declared: list[Decl] = [Object("C", "Choice")]
     if shape.watched and not shape.passes:
-        held, ghost = Ref(f"Self.{shape.place}"), (Aspect("Ghost"),)
+        held, ghost = shape.held, (Aspect("Ghost"),)
         declared.append(Object(BEFORE, shape.place_type, held, constant=True, aspects=ghost))
     return _step(shape, moves, profile, declared, (choose, *work))
 
@@ -308,8 +319,8 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
 def passing_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
     """One transition, then the segments that its way passes."""
     pick = Assign("Chosen", whole(shape, shape.lanes[0]))
-    some = OperatorChain("/=", (Ref("Chosen"), Ref("None")))
-    work = (pick, IfStatement(((some, (do("Fire_Whole", Ref("Chosen")),)),)))
+    some = OperatorChain("/=", (ref("Chosen"), ref("None")))
+    work = (pick, IfStatement(((some, (do("Fire_Whole", ref("Chosen")),)),)))
     return _step(shape, moves, profile, [Object("Chosen", "Selection")], work)
 
 
@@ -321,14 +332,14 @@ def _step(
     work: tuple[Stmt, ...],
 ) -> Subprogram:
     """At the start of the region its initial entry; later ``work``, with what it declares."""
-    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
+    begun = equal(ref("Now"), ref("Start_Of_Region"))
     return Subprogram(
         "Step",
         profile,
         declarations=(*declared, _fire_whole(shape, moves)),
         body=(
             Assign("Fired", _nothing()),
-            IfStatement(((begun, (do("Fire_Whole", Ref(START)),)),), work),
+            IfStatement(((begun, (do("Fire_Whole", ref(START)),)),), work),
         ),
     )
 
@@ -337,7 +348,7 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
     """Fire the transition of a lane, unless an earlier one left its state, or it would leave
     a state in which an earlier one fired: one that was dropped is no obstacle."""
     chosen = _choice(shape, lane)
-    free: list[Expr] = [OperatorChain("/=", (chosen, Ref("None")))]
+    free: list[Expr] = [OperatorChain("/=", (chosen, ref("None")))]
     around = [s for s in shape.watched if lane in shape.lanes_in(s)]
     for state in around:
         inside = shape.lanes_in(state)
@@ -345,12 +356,12 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
         if not earlier:
             continue
         name = ada_case(state)
-        still = [Prefix("not", call("Has", Ref("Fired"), _choice(shape, n))) for n in earlier]
+        still = [Prefix("not", call("Has", ref("Fired"), _choice(shape, n))) for n in earlier]
         stays = Prefix("not", call(f"Leaves_{name}", chosen))
-        free.append(Prefix("not", call(f"Has_Left_{name}", Ref("Fired"))))
+        free.append(Prefix("not", call(f"Has_Left_{name}", ref("Fired"))))
         free.append(OperatorChain("or else", (stays, chain("and then", still))))
     if lane != shape.busy_lanes[0] and _overtaken(shape, lane):
-        free.append(call("In_Source", chosen, Ref(f"Self.{shape.place}")))
+        free.append(call("In_Source", chosen, shape.held))
     return IfStatement(((chain("and then", free), (do("Fire_Whole", chosen),)),))
 
 
@@ -360,14 +371,14 @@ def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
     few: list[Expr] = []
     if lane != shape.busy_lanes[-1]:
         few = [OperatorChain("<=", (_COUNT, number(len(done) * (1 + shape.most_segments))))]
-    of_lanes = _is_of(shape.lane_name(lane))
+    of_lanes = _is_of(shape, lane)
     facts = (*few, of_lanes, _ORDERED, *_asked(shape, done), *_unmoved(shape, done))
     return Pragma("Assert", (both(*facts),))
 
 
 def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
     """A transition with the segments that its way passes, and note what fired."""
-    held = Ref(f"Self.{shape.place}")
+    held = shape.held
     safe = moves.safety.holds()
     most = shape.most_segments
     before = shape.most_firings - 1 - most
@@ -375,24 +386,25 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
     left = call("Segments_Left", held)
     body: list[Stmt] = [fire(moves, "T"), *_note("T")]
     declarations: tuple[Decl, ...] = ()
-    grown = equal(_COUNT, Ref("Fired.Count'Old + 1"))
+    count = old(_COUNT)
+    grown: Expr = equal(_COUNT, _more(count, 1))
     settled: list[Expr] = []
     if most:
         ghost = (Aspect("Ghost"),)
         declarations = (
-            Object("Before", "Firing_List", Ref("Fired"), constant=True, aspects=ghost),
+            Object("Before", "Firing_List", ref("Fired"), constant=True, aspects=ghost),
             Object("Segment", "Selection"),
         )
-        bound = OperatorChain("<=", (left, OperatorChain("-", (number(most + 1), Ref("I")))))
-        counted = equal(_COUNT, Ref("Before.Count + I"))
-        noted = _noted(shape, "Before.Count", "Before.Items")
+        bound = OperatorChain("<=", (left, OperatorChain("-", (number(most + 1), ref("I")))))
+        counted = equal(_COUNT, OperatorChain("+", (ref("Before.Count"), ref("I"))))
+        noted = _noted(shape, ref("Before.Count"), ref("Before.Items"))
         going_on = Pragma("Loop_Invariant", (both(counted, *noted, bound, *safe),))
         body.append(
             Loop(
-                f"for I in 1 .. {most}",
+                ForLoop("I", up_to(plain(most))),
                 (
                     going_on,
-                    IfStatement(((equal(left, number(0)), (Say("exit"),)),)),
+                    IfStatement(((equal(left, number(0)), (ExitStatement(),)),)),
                     Assign("Segment", segment(shape)),
                     fire(moves, "Segment"),
                     *_note("Segment"),
@@ -400,13 +412,13 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
             )
         )
         if before:
-            grown = member(_COUNT, f"Fired.Count'Old + 1 .. Fired.Count'Old + {most + 1}")
+            grown = member(_COUNT, Range(_more(count, 1), _more(count, most + 1)))
         else:
             grown = OperatorChain(">=", (_COUNT, number(1)))
         settled = [equal(left, number(0))]
     else:
         settled = [equal(held, shape.target("T"))]
-    facts = (grown, *_noted(shape, "Fired.Count'Old", "Fired.Items'Old"), *settled, *safe)
+    facts = (grown, *_noted(shape, count, old("Fired.Items")), *settled, *safe)
     return Subprogram(
         "Fire_Whole",
         (Param("T", "in", "Firing"),),
@@ -416,26 +428,27 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
     )
 
 
-_COUNT = Ref("Fired.Count")
+def _more(count: Expr, by: int) -> Expr:
+    return OperatorChain("+", (count, plain(by)))
 
 
-def _noted(shape: RegionShape, count: str, items: str) -> list[Expr]:
+def _noted(shape: RegionShape, count: Expr, items: DottedName | Attribute) -> list[Expr]:
     """The transition and its segments stand behind what was fired before."""
-    item = Ref("Fired.Items (J)")
+    item = _item("J")
     facts: list[Expr] = [
-        Ref("Self.Started"),
-        equal(Ref(f"Fired.Items ({count} + 1)"), Ref("T")),
-        ForAll("J", f"1 .. {count}", equal(item, Ref(f"{items} (J)"))),
+        ref("Self.Started"),
+        equal(Indexed("Fired.Items", _more(count, 1)), ref("T")),
+        ForAll("J", up_to(count), equal(item, Indexed(items, ref("J")))),
     ]
     if shape.passes:
-        segments = ForAll("J", f"{count} + 2 .. Fired.Count", call("Is_Segment", item))
-        facts.append(segments)
+        behind = Range(_more(count, 2), _COUNT)
+        facts.append(ForAll("J", behind, call("Is_Segment", item)))
     return facts
 
 
 def _note(fired: str) -> tuple[Stmt, ...]:
     """It is the last that has fired."""
     return (
-        Assign("Fired.Count", OperatorChain("+", (_COUNT, number(1)))),
-        Assign("Fired.Items (Fired.Count)", Ref(fired)),
+        Assign(_COUNT, OperatorChain("+", (_COUNT, number(1)))),
+        Assign(Indexed("Fired.Items", _COUNT), ref(fired)),
     )

@@ -13,32 +13,32 @@ and the contract of each firing claims it.
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import Decl, EnumType, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import (
+    OTHERS,
     Aggregate,
     Arg,
-    Call,
+    Attribute,
     CaseExpr,
-    Comment,
-    Decl,
-    EnumType,
+    Choices,
     Expr,
     IfExpr,
-    Old,
+    Indexed,
     OperatorChain,
-    Param,
-    Pragma,
-    Prefix,
-    Ref,
-    Subprogram,
     both,
     call,
     chain,
     choice_of,
     equal,
     number,
+    old,
     one_of,
+    plain,
 )
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Comment, Pragma
+from ravenchart.gen.emit.ada.walking import rewritten
 from ravenchart.gen.emit.language.compound import TOP, Firing, FiringKind
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.model.chart.tree import Place
@@ -47,35 +47,30 @@ from ravenchart.gen.model.statechart import After, Every
 from .deferring import freed_after, kept_events
 from .shape import START, HistoryMemory, RegionShape
 
-_STOPPED = "Ravenchart.Timers.Stopped"
+_STOPPED = ref("Ravenchart.Timers.Stopped")
 
 
 def in_one_word(fact: Subprogram, told: str) -> list[Decl]:
     """A function that provers see as what it stands for."""
-    inlined = Ref("GNATprove"), Ref("Inline_For_Proof"), Ref(fact.name)
+    inlined = ref("GNATprove"), ref("Inline_For_Proof"), ref(fact.name)
     return [fact, Comment(told), Pragma("Annotate", inlined)]
 
 
 def asked(fact: Subprogram, **given: Expr) -> Expr:
     """A call of it where its parameters' names are those of what is given."""
-    return call(fact.name, *(given.get(p.name, Ref(p.name)) for p in fact.params))
+    return call(fact.name, *(given.get(p.name, ref(p.name)) for p in fact.params))
 
 
 def of_before(fact: Expr) -> Expr:
     """A fact over ``Self.X'Old``, over ``Before.X`` instead."""
-    match fact:
-        case Old(name, part):
-            return Ref(f"Before.{name.removeprefix('Self.')}{part}")
-        case OperatorChain(operator, operands):
-            return OperatorChain(operator, tuple(map(of_before, operands)))
-        case Prefix(operator, operand):
-            return Prefix(operator, of_before(operand))
-        case Call(name, args):
-            return Call(name, tuple(Arg(a.name, of_before(a.value)) for a in args))
-        case IfExpr(branches, otherwise):
-            rows = tuple((of_before(c), of_before(v)) for c, v in branches)
-            return IfExpr(rows, otherwise and of_before(otherwise))
-    return fact
+
+    def before(node: object) -> DottedName | None:
+        match node:
+            case Attribute(DottedName(parts), "Old"):
+                return ref("Before", *parts[1:])
+        return None
+
+    return rewritten(fact, before)
 
 
 def has_domains(shape: RegionShape) -> bool:
@@ -105,7 +100,7 @@ def declared_domains(shape: RegionShape) -> list[Decl]:
     """Domain, Domain_Of, Timer_After and Remembered, as far as the chart needs them."""
     if not has_domains(shape):
         return []
-    rows = tuple((f.literal, Ref(_domain(shape, f))) for f in shape.firings)
+    rows = tuple((f.literal, ref(_domain(shape, f))) for f in shape.firings)
     regions = [Place(s.name, r.name) for s in shape.region.states for r in s.regions]
     found = {_domain(shape, f) for f in shape.firings}
     ends = ("Ending",) if "Ending" in found else ()
@@ -117,7 +112,7 @@ def declared_domains(shape: RegionShape) -> list[Decl]:
             "Domain_Of",
             (Param("T", "in", "Firing"),),
             "Domain",
-            expression=choice_of(Ref("T"), ((START, Ref("Beginning")), *rows)),
+            expression=choice_of(ref("T"), ((START, ref("Beginning")), *rows)),
         ),
         Comment("Everything active inside it is left, and what is active then is entered."),
     ]
@@ -140,8 +135,8 @@ def _freed(shape: RegionShape) -> list[Decl]:
             for s in shape.region.states
             if event in s.defers
         ]
-        before = Ref(f"Freed.{ada_case(event)}")
-        freed = IfExpr(((chain("or else", exits), Ref("Count")),), before)
+        before = ref("Freed", ada_case(event))
+        freed = IfExpr(((chain("or else", exits), ref("Count")),), before)
         rows.append(Arg(ada_case(event), freed))
     return [
         Subprogram(
@@ -161,7 +156,7 @@ def _freed(shape: RegionShape) -> list[Decl]:
 
 def _spans(places: list[Place], *more: str) -> Expr:
     names = [_inside(p) for p in places] + list(more)
-    return one_of(Ref("D"), names)
+    return one_of(ref("D"), names)
 
 
 def _fresh(shape: RegionShape, index: int) -> Expr:
@@ -174,13 +169,13 @@ def _fresh(shape: RegionShape, index: int) -> Expr:
 
 
 def _timer_after(shape: RegionShape, ends: bool) -> list[Decl]:
-    rows = []
+    rows: list[tuple[Choices, Expr]] = []
     for i, timed in enumerate(shape.timers, 1):
         places = shape.compounds.places(timed.source)
         active = both(
             *flat(
                 [
-                    OperatorChain("/=", (Ref("D"), Ref("Beginning"))),
+                    OperatorChain("/=", (ref("D"), ref("Beginning"))),
                     shape.in_state("Before", timed.source),
                 ]
             )
@@ -188,12 +183,12 @@ def _timer_after(shape: RegionShape, ends: bool) -> list[Decl]:
         after = shape.in_state("After", timed.source)
         spanned = _spans(places, "Beginning")
         moved = call(
-            "Ravenchart.Timers.Moved", Ref("Timer"), spanned, active, after, _fresh(shape, i)
+            "Ravenchart.Timers.Moved", ref("Timer"), spanned, active, after, _fresh(shape, i)
         )
-        rows.append((str(i), moved))
-    choice: Expr = CaseExpr(Ref("I"), (*rows, ("others", Ref("Timer"))))
+        rows.append((plain(i), moved))
+    choice: Expr = CaseExpr(ref("I"), (*rows, (OTHERS, ref("Timer"))))
     if ends:
-        choice = IfExpr(((equal(Ref("D"), Ref("Ending")), Ref(_STOPPED)),), choice)
+        choice = IfExpr(((equal(ref("D"), ref("Ending")), _STOPPED),), choice)
     return [
         Subprogram(
             "Timer_After",
@@ -214,14 +209,12 @@ def _timer_after(shape: RegionShape, ends: bool) -> list[Decl]:
 def _remembered(shape: RegionShape) -> list[Decl]:
     rows: list[Arg] = []
     for memory in shape.memories:
-        leaf = Ref(shape.at(shape.place, shape.lane_of(memory.place)))
+        leaf = shape.at(shape.place, shape.lane_of(memory.place))
         left = flat([_left(shape, memory), _active(shape, memory)])
         children = shape.region.children(memory.place.owner, memory.place.region)
-        goes_on = [
-            OperatorChain("/=", (leaf, Ref(shape.literal(s.name)))) for s in children if s.final
-        ]
-        last = IfExpr(((both(*left, *goes_on), leaf),), Ref(f"Past.{memory.last}"))
-        known = IfExpr(((both(*left), both(*goes_on)),), Ref(f"Past.{memory.known}"))
+        goes_on = [OperatorChain("/=", (leaf, shape.literal(s.name))) for s in children if s.final]
+        last = IfExpr(((both(*left, *goes_on), leaf),), ref("Past", memory.last))
+        known = IfExpr(((both(*left), both(*goes_on)),), ref("Past", memory.known))
         rows += [Arg(memory.last, last), Arg(memory.known, known)]
     return [
         Subprogram(
@@ -261,7 +254,7 @@ def _active(shape: RegionShape, memory: HistoryMemory) -> Expr:
     passed = {p.name for p in shape.region.pseudostates}
     leaf = shape.at(shape.place, shape.lane_of(memory.place))
     not_left = [
-        OperatorChain("/=", (Ref(leaf), Ref(shape.literal(v))))
+        OperatorChain("/=", (ref(leaf), shape.literal(v)))
         for v in shape.literals_in(memory.place)
         if v in passed
     ]
@@ -298,23 +291,23 @@ class Lasting:
     def fired(self, chosen: str) -> list[Expr]:
         """After a firing: what is declared; ``chosen`` names the transition."""
         facts: list[Expr] = []
-        held = f"Self.{self.shape.place}"
-        domain = call("Domain_Of", Ref(chosen))
+        held = self.shape.held
+        domain = call("Domain_Of", ref(chosen))
         for i in range(1, len(self.shape.timers) + 1):
-            before = Old("Self.Timers", f" ({i})")
-            after = call("Timer_After", number(i), domain, Old(held), Ref(held), before)
-            facts.append(equal(Ref(f"Self.Timers ({i})"), after))
+            before = Indexed(old("Self.Timers"), plain(i))
+            after = call("Timer_After", number(i), domain, old(held), held, before)
+            facts.append(equal(Indexed("Self.Timers", plain(i)), after))
         ends = any(terminates(self.shape, f) for f in self.shape.firings)
-        goes_on = OperatorChain("/=", (domain, Ref("Ending")))
+        goes_on = OperatorChain("/=", (domain, ref("Ending")))
         if self.shape.memories:
-            recalled = call("Remembered", domain, Old(held), Old("Self.Past"))
-            known = equal(Ref("Self.Past"), recalled)
-            kept = equal(Ref("Self.Past"), Old("Self.Past"))
+            recalled = call("Remembered", domain, old(held), old("Self.Past"))
+            known = equal(ref("Self.Past"), recalled)
+            kept = equal(ref("Self.Past"), old("Self.Past"))
             #  where the region ends, nothing will be remembered
             later: Expr = IfExpr(((goes_on, known),), None) if ends else known
-            facts.append(IfExpr(((Old("Self.Started"), later),), kept))
+            facts.append(IfExpr(((old("Self.Started"), later),), kept))
         if self.shape.deferring:
-            count = call("Deferrals.Count", Old("Self.Deferred"))
+            count = call("Deferrals.Count", old("Self.Deferred"))
             freed = freed_after(self.shape, domain, count)
             facts.append(IfExpr(((goes_on, freed),), None) if ends else freed)
         return [*facts, *self._deferred(chosen)]
@@ -325,19 +318,19 @@ class Lasting:
         deferrals = [f for f in shape.firings if f.kind is FiringKind.DEFERRAL]
         if not deferrals:
             return []
-        kept, before = Ref("Self.Deferred"), Old("Self.Deferred")
+        kept, before = ref("Self.Deferred"), old("Self.Deferred")
         full = equal(call("Deferrals.Count", before), number(self.region.deferral_depth))
-        lost = equal(Ref("Self.Lost"), OperatorChain("or", (Old("Self.Lost"), full)))
-        names: dict[Ref, list[str]] = {}
+        lost = equal(ref("Self.Lost"), OperatorChain("or", (old("Self.Lost"), full)))
+        names: dict[DottedName, list[str]] = {}
         for firing in deferrals:
             names.setdefault(shape.deferred_item(firing), []).append(firing.literal)
         one = len(names) == 1
         added = tuple(
             (
-                call("Is_Deferral", Ref(chosen)) if one else one_of(Ref(chosen), of),
+                call("Is_Deferral", ref(chosen)) if one else one_of(ref(chosen), of),
                 both(call("Deferrals.Is_Appended", before, item, kept), lost),
             )
             for item, of in names.items()
         )
-        same = both(equal(kept, before), equal(Ref("Self.Lost"), Old("Self.Lost")))
+        same = both(equal(kept, before), equal(ref("Self.Lost"), old("Self.Lost")))
         return [IfExpr(added, same)]

@@ -10,26 +10,24 @@ contracts: gnatprove inlines them where they are called, and proves the caller w
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import Decl, Subprogram
+from ravenchart.gen.emit.ada.expressions import (
     FALSE,
     TRUE,
-    Assign,
-    Decl,
-    Do,
+    Choice,
     Expr,
-    IfStatement,
-    Ref,
-    Stmt,
-    Subprogram,
-    arguments,
+    Indexed,
+    Qualified,
     both,
     call,
-    case_of,
     chain,
     equal,
     number,
+    plain,
 )
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Assign, IfStatement, Stmt, case_of, do
 from ravenchart.gen.emit.language.compound import Enter
 from ravenchart.gen.emit.language.terms import emit_flow
 from ravenchart.gen.language.terms import Flow
@@ -55,7 +53,7 @@ class Moving:
         self.nodes = nodes
         self.lasting = lasting
         self.scope = shape.scope("Self.Data")
-        self.held = f"Self.{shape.place}"
+        self.held = shape.held
         self._exited: set[str] = set()
         self._entered: set[str] = set()
         self._left: set[Place] = set()
@@ -66,7 +64,7 @@ class Moving:
             return (self.nodes.exit(state),)
         if state in self._exited or self._work_of_exit(state):
             self._exited.add(state)
-            return (Do(f"Exit_{ada_case(state)}"),)
+            return (do(f"Exit_{ada_case(state)}"),)
         return (*self._noted(state, "exit"), self.nodes.exit(state))
 
     def enter(self, vertex: str) -> tuple[Stmt, ...]:
@@ -75,7 +73,7 @@ class Moving:
             return (self.nodes.enter(vertex), *self._place(vertex))
         if vertex in self._entered or any(self._work_of_entry(vertex)):
             self._entered.add(vertex)
-            return (Do(f"Enter_{ada_case(vertex)}"),)
+            return (do(f"Enter_{ada_case(vertex)}"),)
         return (self.nodes.enter(vertex), *self._place(vertex), *self._noted(vertex, "entry"))
 
     def leave(self, place: Place) -> Stmt:
@@ -88,7 +86,7 @@ class Moving:
                 self.exit(child.name)
                 for nested in child.regions:
                     self.leave(Place(child.name, nested.name))
-        return Do(_leave_name(place))
+        return do(_leave_name(place))
 
     def _is_silent(self, place: Place) -> bool:
         """Whether nothing is done there however it is left, and no lane ends there."""
@@ -136,10 +134,10 @@ class Moving:
     def _work_of_exit(self, state: str) -> tuple[Stmt, ...]:
         """What the exit of a state does: actions, time-outs, what it frees, what is remembered."""
         stops = tuple(
-            Do("Ravenchart.Timers.Disarm", arguments(Ref(f"Self.Timers ({i})")))
+            do("Ravenchart.Timers.Disarm", Indexed("Self.Timers", plain(i)))
             for i in self.lasting.timed(state)
         )
-        completed = Assign(f"Self.{self.shape.completed(state)}", FALSE)
+        completed = Assign(ref("Self", self.shape.completed(state)), FALSE)
         undone = (completed,) if state in self.shape.completing else ()
         action = emit_flow(self.scope, self.region.state(state).exit)
         freed = freed_by(self.shape, state)
@@ -149,8 +147,8 @@ class Moving:
         found: list[Stmt] = []
         for memory, goes_on in self.lasting.remembered(leaf):
             if goes_on:
-                found.append(Assign(f"Self.Past.{memory.last}", Ref(self.shape.literal(leaf))))
-            found.append(Assign(f"Self.Past.{memory.known}", TRUE if goes_on else FALSE))
+                found.append(Assign(ref("Self.Past", memory.last), self.shape.literal(leaf)))
+            found.append(Assign(ref("Self.Past", memory.known), TRUE if goes_on else FALSE))
         return tuple(found)
 
     def _entry(self, vertex: str) -> Subprogram:
@@ -164,7 +162,7 @@ class Moving:
     def _place(self, vertex: str) -> tuple[Stmt, ...]:
         """The leaves that an entry sets."""
         return tuple(
-            Assign(self.shape.at(self.held, lane), Ref(self.shape.literal(leaf)))
+            Assign(self.shape.at(self.held, lane), self.shape.literal(leaf))
             for lane, leaf in self.shape.after((Enter(vertex),)).items()
         )
 
@@ -181,20 +179,20 @@ class Moving:
         for i in self.lasting.timed(state):
             trigger = self.shape.timers[i - 1].trigger
             assert isinstance(trigger, After | Every)
-            args = [Ref(f"Self.Timers ({i})"), number(trigger.executions)]
+            args: list[Expr] = [Indexed("Self.Timers", plain(i)), number(trigger.executions)]
             if isinstance(trigger, Every):
                 args.append(number(trigger.executions))
-            found.append(Do("Ravenchart.Timers.Arm", arguments(*args)))
+            found.append(do("Ravenchart.Timers.Arm", *args))
         return tuple(found)
 
     def _begin_work(self, state: str) -> tuple[Stmt, ...]:
         """Another visit, in which the do activity is not done yet."""
         if state not in self.shape.working:
             return ()
-        visits = f"Self.{self.shape.visits(state)}"
+        visits = ref("Self", self.shape.visits(state))
         return (
-            Assign(visits, call("Ravenchart.Next", Ref(visits))),
-            Assign(f"Self.{self.shape.done(state)}", FALSE),
+            Assign(visits, call("Ravenchart.Next", ref(visits))),
+            Assign(ref("Self", self.shape.done(state)), FALSE),
         )
 
     def _complete(self, vertex: str) -> tuple[Stmt, ...]:
@@ -202,17 +200,17 @@ class Moving:
         state = self.region.state(vertex)
         shape = self.shape
         if vertex in shape.completing and state.is_leaf and vertex not in shape.working:
-            return (Assign(f"Self.{shape.completed(vertex)}", TRUE),)
+            return (Assign(ref("Self", shape.completed(vertex)), TRUE),)
         owner = state.parent
         if not state.final or owner is None or owner not in shape.completing:
             return ()
-        done = Assign(f"Self.{shape.completed(owner)}", TRUE)
+        done = Assign(ref("Self", shape.completed(owner)), TRUE)
         others = [r for r in self.region.state(owner).regions if r.name != state.region]
-        parts: list[Expr] = [Ref(f"Self.{shape.done(owner)}")] if owner in shape.working else []
+        parts: list[Expr] = [ref("Self", shape.done(owner))] if owner in shape.working else []
         for nested in others:
-            leaf = Ref(shape.at(self.held, shape.lane_of(Place(owner, nested.name))))
+            leaf = shape.at(self.held, shape.lane_of(Place(owner, nested.name)))
             finals = [
-                equal(leaf, Ref(shape.literal(s.name)))
+                equal(leaf, shape.literal(s.name))
                 for s in self.region.children(owner, nested.name)
                 if s.final
             ]
@@ -222,13 +220,13 @@ class Moving:
     def _leaving(self, place: Place) -> Subprogram:
         assert place.owner is not None
         shape = self.shape
-        rows: list[tuple[str, tuple[Stmt, ...]]] = []
+        rows: list[tuple[Choice, tuple[Stmt, ...]]] = []
         for child in self.region.children(place.owner, place.region):
             inner = [self.leave(Place(child.name, r.name)) for r in child.regions]
             rows.append((shape.literal(child.name), joined((*inner, *self.exit(child.name)))))
         rows += [(shape.literal(p), self.exit(p)) for p in shape.compounds.passed(place)]
         lane = shape.lane_of(place)
-        leaf = shape.at(self.held, lane)
+        leaf: Expr = shape.at(self.held, lane)
         if not self.region.state(place.owner).is_orthogonal:
-            leaf = f"{shape.literal(place.owner)}'({leaf})"
-        return Subprogram(_leave_name(place), body=(case_of(Ref(leaf), rows),))
+            leaf = Qualified(shape.literal(place.owner), leaf)
+        return Subprogram(_leave_name(place), body=(case_of(leaf, rows),))

@@ -16,27 +16,30 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import (
     Aspect,
-    Assign,
-    Call,
     Decl,
     EnumType,
-    Expr,
-    IfExpr,
     Object,
-    OperatorChain,
     Package,
     Param,
-    Ref,
-    Stmt,
     Subprogram,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    TRUE,
+    Attribute,
+    Call,
+    Expr,
+    IfExpr,
+    OperatorChain,
     both,
     call,
     equal,
-    names_in,
     number,
 )
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.statements import Assign, Stmt
+from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.emit.language.own_names import node_literal
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.model.chart.tree import Place
@@ -44,12 +47,12 @@ from ravenchart.gen.model.statechart import Lane
 
 from .shape import RegionShape
 
-NODES = "Chart.Node"
+NODES = ref("Chart.Node")
 _GHOST = Aspect("Ghost")
 _NOWHERE = "Nowhere"
 _DISORDER = "Disorder"
-_NONE_ACTIVE = Ref(f"Chart.{_NOWHERE}")
-_NO_ORDER = Ref(f"Chart.{_DISORDER}")
+_NONE_ACTIVE = ref("Chart", _NOWHERE)
+_NO_ORDER = ref("Chart", _DISORDER)
 
 _MOVED = "Moved"
 _IN_ORDER = "In_Order"
@@ -61,18 +64,18 @@ def joined(statements: Sequence[Stmt]) -> tuple[Stmt, ...]:
     for statement in statements:
         match (found[-1:], statement):
             case (
-                [Assign(one, Call("Moved", (active, start, via)))],
-                Assign(other, Call("Moved", (_, then, goal))),
+                [Assign(one, Call(DottedName(("Moved",)), (active, start, via)))],
+                Assign(other, Call(DottedName(("Moved",)), (_, then, goal))),
             ) if one == other and via == then:
-                found[-1] = Assign(one, Call("Moved", (active, start, goal)))
+                found[-1] = Assign(one, Call(_MOVED, (active, start, goal)))
             case _:
                 found.append(statement)
     return tuple(found)
 
 
-def node(state: str) -> Ref:
+def node(state: str) -> DottedName:
     """A state or pseudostate of the ghost."""
-    return Ref(f"Chart.{node_literal(state)}")
+    return ref("Chart", node_literal(state))
 
 
 class Nodes:
@@ -93,7 +96,7 @@ class Nodes:
         literals = [leaf for lane in shape.lanes for leaf in shape.literals(lane)]
         composites = [s.name for s in self.region.states if not shape.is_literal(s.name)]
         named = set(names_in(fire)) if composites else set()
-        composites = [name for name in composites if node(name).text in named]
+        composites = [name for name in composites if node(name) in named]
         names = tuple(node_literal(v) for v in (*literals, *composites))
         functions: list[Decl] = []
         before = 1
@@ -111,30 +114,31 @@ class Nodes:
         """
         if not self._moves:
             return ()
-        ready: list[Expr] = [Ref("Self.Started"), equal(Ref("Active_Node"), Ref("From_Node"))]
+        ready: list[Expr] = [ref("Self.Started"), equal(ref("Active_Node"), ref("From_Node"))]
         params = [Param(name, "in", NODES) for name in ("Active_Node", "From_Node", "To_Node")]
         if self._asks:
-            ready.append(Ref(_IN_ORDER))
-            params.append(Param(_IN_ORDER, "in", "Boolean := True"))
-        goal = IfExpr(((both(*ready), Ref("To_Node")),), _NO_ORDER)
+            ready.append(ref(_IN_ORDER))
+            params.append(Param(_IN_ORDER, "in", "Boolean", default=TRUE))
+        goal = IfExpr(((both(*ready), ref("To_Node")),), _NO_ORDER)
         return (Subprogram(_MOVED, tuple(params), NODES, (_GHOST,), expression=goal),)
 
     def _innermost(self, lane: Lane, before: int) -> Subprogram:
         """A leaf, which stands among the nodes in the order of its type; a number for provers."""
         shape = self.shape
-        held = f"Self.{shape.place}"
-        leaf = call(f"{shape.states}.{shape.lane_type(lane)}'Pos", Ref(shape.at(held, lane)))
-        found: Expr = call("Node'Val", OperatorChain("+", (leaf, number(before))))
-        active: list[Expr] = [Ref("Self.Started")]
+        held = shape.held
+        of_lane = ref(shape.states, shape.lane_type(lane))
+        leaf = call(Attribute(of_lane, "Pos"), shape.at(held, lane))
+        found: Expr = call(Attribute("Node", "Val"), OperatorChain("+", (leaf, number(before))))
+        active: list[Expr] = [ref("Self.Started")]
         active += [] if lane.owner is None else flat([shape.in_state(held, lane.owner)])
-        found = IfExpr(((both(*active), found),), Ref(_NOWHERE))
+        found = IfExpr(((both(*active), found),), ref(_NOWHERE))
         params = (Param("Self", "in", "Region"),)
         return Subprogram(f"Innermost{self._suffix(lane)}", params, "Node", expression=found)
 
     def _suffix(self, lane: Lane) -> str:
         return "" if self.shape.single else f"_{self.shape.lane_name(lane)}"
 
-    def _around(self, vertex: str) -> Ref:
+    def _around(self, vertex: str) -> DottedName:
         """The state around a vertex in its lane, if there is one."""
         place = self.shape.compounds.place(vertex)
         if place.owner is None or self.region.state(place.owner).is_orthogonal:
@@ -143,15 +147,15 @@ class Nodes:
 
     # --- the variables
 
-    def active(self, lane: Lane) -> Ref:
+    def active(self, lane: Lane) -> DottedName:
         """The innermost active state of a lane."""
-        return Ref(f"Active{self._suffix(lane)}")
+        return ref(f"Active{self._suffix(lane)}")
 
     def variables(self) -> list[Decl]:
         """One for each lane, as the configuration says."""
         return [
             Object(
-                self.active(lane).text,
+                self.active(lane),
                 NODES,
                 self.innermost(lane),
                 aspects=(_GHOST,),
@@ -161,7 +165,7 @@ class Nodes:
 
     def innermost(self, lane: Lane) -> Expr:
         """The innermost active state of a lane by the region's configuration."""
-        return call(f"Chart.Innermost{self._suffix(lane)}", Ref("Self"))
+        return call(ref("Chart", f"Innermost{self._suffix(lane)}"), ref("Self"))
 
     def agreed(self, lanes: Sequence[Lane] | None = None) -> Expr:
         """What is active is as the configuration says, in these lanes or all."""
@@ -170,20 +174,20 @@ class Nodes:
 
     def exit(self, state: str) -> Assign:
         """The exit of a state."""
-        return Assign(self._of(state).text, self.exited(state))
+        return Assign(self._of(state), self.exited(state))
 
     def enter(self, vertex: str) -> Assign:
         """The entry of a state."""
-        return Assign(self._of(vertex).text, self.entered(vertex))
+        return Assign(self._of(vertex), self.entered(vertex))
 
     def leave(self, place: Place) -> Assign:
         """The exits of what is active in a region of one lane, all at once."""
         assert place.owner is not None
         self._moves = self._asks = True
         active = self.active(self.shape.lane_of(place))
-        within = self.shape.in_state(f"Self.{self.shape.place}", place.owner)
+        within = self.shape.in_state(self.shape.held, place.owner)
         start, goal = self.innermost(self.shape.lane_of(place)), self._inside(place)
-        return Assign(active.text, call(_MOVED, active, start, goal, within))
+        return Assign(active, call(_MOVED, active, start, goal, within))
 
     def stands(self, vertex: str) -> Expr:
         """A vertex is the innermost active one of its lane."""
@@ -202,13 +206,15 @@ class Nodes:
             others = [equal(self._of(place.owner), node(place.owner)), *others]
         return self._moved(vertex, (self._around(vertex), node(vertex)), others)
 
-    def _moved(self, vertex: str, way: tuple[Ref, Ref], others: Sequence[Expr]) -> Expr:
+    def _moved(
+        self, vertex: str, way: tuple[DottedName, DottedName], others: Sequence[Expr]
+    ) -> Expr:
         self._moves = True
         self._asks |= bool(others)
         asked = (both(*others),) if others else ()
         return call(_MOVED, self._of(vertex), *way, *asked)
 
-    def _of(self, vertex: str) -> Ref:
+    def _of(self, vertex: str) -> DottedName:
         """The variable of the lane that a vertex stands in."""
         return self.active(self.shape.lane_of(self.shape.compounds.place(vertex)))
 
@@ -218,7 +224,7 @@ class Nodes:
         for lane in self.shape.lanes:
             active = self.active(lane)
             end = node(end_of_all) if lane.owner is None else _NONE_ACTIVE
-            found.append(Assign(active.text, IfExpr(((equal(active, _NO_ORDER), _NO_ORDER),), end)))
+            found.append(Assign(active, IfExpr(((equal(active, _NO_ORDER), _NO_ORDER),), end)))
         return found
 
     def empty(self, place: Place) -> list[Expr]:
@@ -226,7 +232,7 @@ class Nodes:
         active = self.active(self.shape.lane_of(place))
         return [equal(active, self._inside(place)), *self._idle(self.lanes_inside(place))]
 
-    def _inside(self, place: Place) -> Ref:
+    def _inside(self, place: Place) -> DottedName:
         """The state around a region, in the lane whose leaves it holds."""
         owner = place.owner if self.shape.lane_of(place).owner != place.owner else None
         return _NONE_ACTIVE if owner is None else node(owner)

@@ -10,33 +10,30 @@ of the states around it by a function of the innermost of them, which asks on.
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import Aspect, Decl, Object, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import (
     Arg,
-    Aspect,
-    Assign,
+    Attribute,
     Call,
     CaseExpr,
-    Decl,
     Expr,
     ForAll,
     IfExpr,
-    IfStatement,
-    Object,
     OperatorChain,
-    Param,
     Prefix,
-    Ref,
-    Return,
-    Stmt,
-    Subprogram,
+    Qualified,
+    Range,
     both,
     call,
     chain,
     equal,
     member,
     number,
+    result,
 )
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Assign, IfStatement, Return, Stmt
 from ravenchart.gen.emit.language.compound import PASSED, TOP, Firing
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.model.chart.tree import Place
@@ -58,18 +55,19 @@ _BOUNDS = (Param("First", "in", "Transition"), Param("Last", "in", "Transition")
 # --- the declared form
 
 
-def enabled(shape: RegionShape, chosen: str, **replaced: Expr) -> Call:
+def enabled(shape: RegionShape, chosen: Expr, **replaced: Expr) -> Call:
     """A call of `Enabled`."""
-    return Call("Enabled", (Arg(None, Ref(chosen)), *shape.situation_args(**replaced)))
+    return Call("Enabled", (Arg(None, chosen), *shape.situation_args(**replaced)))
 
 
 def is_selection(shape: RegionShape) -> Subprogram:
     """What it means that a transition is the first one enabled."""
-    among = "Transition" if shape.single else "First .. Last"
-    none = equal(Ref("Chosen"), Ref("None"))
-    rule = chain("or else", [none, both(member(Ref("Chosen"), among), enabled(shape, "Chosen"))])
-    earlier = OperatorChain("<", (Ref("T"), Ref("Chosen")))
-    denied = IfExpr(((earlier, Prefix("not", enabled(shape, "T"))),), None)
+    among = ref("Transition") if shape.single else Range(ref("First"), ref("Last"))
+    one, chosen = ref("T"), ref("Chosen")
+    none = equal(chosen, ref("None"))
+    rule = chain("or else", [none, both(member(chosen, among), enabled(shape, chosen))])
+    earlier = OperatorChain("<", (one, chosen))
+    denied = IfExpr(((earlier, Prefix("not", enabled(shape, one))),), None)
     bounds = () if shape.single else _BOUNDS
     return Subprogram(
         "Is_Selection",
@@ -80,14 +78,12 @@ def is_selection(shape: RegionShape) -> Subprogram:
     )
 
 
-def is_selected(shape: RegionShape, chosen: str, lane: Lane, **replaced: Expr) -> Call:
+def is_selected(shape: RegionShape, chosen: Expr, lane: Lane, **replaced: Expr) -> Call:
     """A call of that function over the transitions of a lane."""
-    own = f"{shape.lane_name(lane)}_Transition"
+    own = shape.transitions_of(lane)
     ends = () if shape.single else ("First", "Last")
-    bounds = (Arg(None, Ref(f"{own}'{end}")) for end in ends)
-    return Call(
-        "Is_Selection", (Arg(None, Ref(chosen)), *bounds, *shape.situation_args(**replaced))
-    )
+    bounds = (Arg(None, Attribute(own, end)) for end in ends)
+    return Call("Is_Selection", (Arg(None, chosen), *bounds, *shape.situation_args(**replaced)))
 
 
 # --- the code
@@ -108,7 +104,7 @@ def whole(shape: RegionShape, lane: Lane) -> Call:
 
 def segment(shape: RegionShape) -> Expr:
     """The selection of a segment, over the state of the region."""
-    return call("Select_Segment", *(Ref(p.name) for p in shape.situation if p.name != "Now"))
+    return call("Select_Segment", *(ref(p.name) for p in shape.situation if p.name != "Now"))
 
 
 def _segments(shape: RegionShape) -> list[Decl]:
@@ -116,13 +112,13 @@ def _segments(shape: RegionShape) -> list[Decl]:
     passed = [p.name for p in shape.region.pseudostates if p.kind in PASSED]
     if not passed:
         return []
-    held = f"Self.{shape.place}"
-    args = shape.situation_args(Now=Ref(PASSING))
+    held = shape.held
+    args = shape.situation_args(Now=ref(PASSING))
     rows = [(shape.in_state(held, p), Call(f"In_{ada_case(p)}", args)) for p in passed]
     chosen: Expr = IfExpr(tuple(rows[:-1]), rows[-1][1]) if rows[1:] else rows[0][1]
-    waits = OperatorChain(">", (call("Segments_Left", Ref(held)), number(0)))
-    result = "Select_Segment'Result"
-    post = both(enabled(shape, result, Now=Ref(PASSING)), call("Is_Segment", Ref(result)))
+    waits = OperatorChain(">", (call("Segments_Left", held), number(0)))
+    found = result("Select_Segment")
+    post = both(enabled(shape, found, Now=ref(PASSING)), call("Is_Segment", found))
     return [
         Subprogram(
             "Select_Segment",
@@ -151,7 +147,7 @@ def _of_lane(shape: RegionShape, lane: Lane) -> list[Decl]:
 def _around(shape: RegionShape, lane: Lane, state: str) -> Expr:
     """A call of the function of a composite state."""
     params = used(shape.situation, _selected(shape, lane, state))
-    return call(f"Around_{ada_case(state)}", *(Ref(p.name) for p in params))
+    return call(f"Around_{ada_case(state)}", *(ref(p.name) for p in params))
 
 
 def _asked(shape: RegionShape, lane: Lane, state: str) -> list[Firing]:
@@ -171,7 +167,7 @@ def _has_own(shape: RegionShape, lane: Lane, state: str) -> bool:
 def _selected(shape: RegionShape, lane: Lane, state: str) -> Expr:
     """What is selected when a leaf is active, or for the leaves of a composite state."""
     asked = _asked(shape, lane, state)
-    otherwise: Expr = Ref("None")
+    otherwise: Expr = ref("None")
     for outer in shape.ancestors(state)[1:]:
         if shape.region.pseudostate(outer) is None and _has_own(shape, lane, outer):
             shared = _asked(shape, lane, outer)
@@ -179,14 +175,14 @@ def _selected(shape: RegionShape, lane: Lane, state: str) -> Expr:
                 otherwise = _around(shape, lane, outer)
                 asked = asked[: len(asked) - len(shared)]
                 break
-    branches = [(_condition(shape, f), Ref(f.literal)) for f in asked]
+    branches = [(_condition(shape, f), ref(f.literal)) for f in asked]
     return IfExpr(tuple(branches), otherwise) if branches else otherwise
 
 
 def _of_place(shape: RegionShape, lane: Lane, place: Place) -> list[Decl]:
     """The functions of what stands in a region of a lane, then that of the region."""
     items: list[Decl] = []
-    rows: list[tuple[str, Expr]] = []
+    rows: list[tuple[DottedName, Expr]] = []
     children = [s.name for s in shape.region.children(place.owner, place.region)]
     literals = tuple(shape.literals_in(place))
     at_once = len(literals) <= FEW
@@ -203,17 +199,17 @@ def _of_place(shape: RegionShape, lane: Lane, place: Place) -> list[Decl]:
             region = shape.region.state(child).regions[0].name
             items += _of_place(shape, lane, Place(child, region))
         rows.append((shape.literal(child), chosen))
-    leaf = shape.at(f"Self.{shape.place}", lane)
+    leaf = shape.at(shape.held, lane)
     if place != TOP and (place.owner != lane.owner or place.region != lane.name):
         owner = place.owner or ""
-        chosen = CaseExpr(Ref(f"{shape.literal(owner)}'({leaf})"), tuple(rows))
+        chosen = CaseExpr(Qualified(shape.literal(owner), leaf), rows)
         return [*items, _function(shape, lane, owner, chosen)]
-    chosen = CaseExpr(Ref(leaf), tuple(rows))
+    chosen = CaseExpr(leaf, rows)
     if lane.owner is not None:
-        active = shape.in_state(f"Self.{shape.place}", lane.owner)
-        chosen = IfExpr(((active, chosen),), Ref("None"))
+        active = shape.in_state(shape.held, lane.owner)
+        chosen = IfExpr(((active, chosen),), ref("None"))
     name = _whole_name(shape, lane)
-    right = Aspect("Post", is_selected(shape, f"{name}'Result", lane))
+    right = Aspect("Post", is_selected(shape, result(name), lane))
     params = shape.situation
     return [*items, Subprogram(name, params, "Selection", aspects=(right,), expression=chosen)]
 
@@ -221,8 +217,8 @@ def _of_place(shape: RegionShape, lane: Lane, place: Place) -> list[Decl]:
 def _function(shape: RegionShape, lane: Lane, state: str, chosen: Expr) -> Subprogram:
     """The selection where a state is active."""
     name = f"In_{ada_case(state)}"
-    active = Aspect("Pre", shape.in_state(f"Self.{shape.place}", state))
-    right = Aspect("Post", is_selected(shape, f"{name}'Result", lane))
+    active = Aspect("Pre", shape.in_state(shape.held, state))
+    right = Aspect("Post", is_selected(shape, result(name), lane))
     aspects = (active, right)
     return Subprogram(name, shape.situation, "Selection", aspects=aspects, expression=chosen)
 
@@ -233,7 +229,7 @@ def _whole_name(shape: RegionShape, lane: Lane) -> str:
 
 def _condition(shape: RegionShape, firing: Firing) -> Expr:
     """When a firing is enabled, given that its first source is active."""
-    held = f"Self.{shape.place}"
+    held = shape.held
     more = [shape.in_state(held, s) for s in firing.sources[1:]]
     return both(*flat([*more, shape.enabled_when[firing.literal]]))
 
@@ -242,13 +238,13 @@ def _choose(shape: RegionShape) -> Subprogram:
     """All lanes; one around another selects only when the inner one does not."""
     steps: list[Stmt] = []
     for lane in shape.busy_lanes:
-        take = Assign(f"C.{shape.lane_name(lane)}", whole(shape, lane))
-        idle = [equal(Ref(f"C.{shape.lane_name(n)}"), Ref("None")) for n in shape.inner_lanes(lane)]
+        take = Assign(ref("C", shape.lane_name(lane)), whole(shape, lane))
+        idle = [equal(ref("C", shape.lane_name(n)), ref("None")) for n in shape.inner_lanes(lane)]
         steps.append(IfStatement(((chain("and then", idle), (take,)),)) if idle else take)
     return Subprogram(
         "Choose",
         shape.situation,
         "Choice",
         declarations=(Object("C", "Choice"),),
-        body=(*steps, Return(Ref("C"))),
+        body=(*steps, Return(ref("C"))),
     )

@@ -11,36 +11,37 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.emit.ada.declarations import (
+    SPARK,
+    Decl,
+    GenericInstance,
+    Object,
+    Package,
+    Param,
+    Subprogram,
+    Unit,
+    UseType,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    BOX,
+    Arg,
+    Expr,
+    OperatorChain,
+    StringLiteral,
+    all_else,
+    arguments,
+    number,
+)
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import (
+    RUNTIME,
     ada_case,
     default_value,
     instance_package,
     type_name,
     value,
 )
-from ravenchart.gen.emit.ada.syntax import (
-    SPARK,
-    Assign,
-    Case,
-    Comment,
-    Decl,
-    Do,
-    Expr,
-    IfStatement,
-    Object,
-    OperatorChain,
-    Package,
-    Param,
-    Pragma,
-    Ref,
-    Stmt,
-    Subprogram,
-    Unit,
-    UseType,
-    arguments,
-    number,
-)
-from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
+from ravenchart.gen.emit.ada.statements import Assign, Case, Comment, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.emit.charts.shape import RegionShape
 from ravenchart.gen.emit.commands.device_calls import (
     call_body,
@@ -69,6 +70,7 @@ from ravenchart.gen.emit.language.events import event_value, name_of, null_event
 from ravenchart.gen.emit.language.own_names import event_literal
 from ravenchart.gen.emit.language.places import Places
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spec
+from ravenchart.gen.emit.tables.trace_calls import fault_number
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.commands import Need, Provided
@@ -95,51 +97,60 @@ class Glue(Site):
 
     # --- contexts
 
-    def _spec_withs(self) -> tuple[str, ...]:
+    def _spec_withs(self) -> tuple[DottedName, ...]:
         component = self.instance.component
-        own = (f"{ada_case(self.system.name)}.{self.component}",)
-        asked = ("Ravenchart.Queueing",) if self._served() else ()
-        rows = (f"{ada_case(self.system.name)}.Elements",) if self._slots() else ()
+        own = (ref(ada_case(self.system.name), self.component),)
+        asked = (ref("Ravenchart.Queueing"),) if self._served() else ()
+        rows = (ref(ada_case(self.system.name), "Elements"),) if self._slots() else ()
         return (*asked, *(own if component.events or asked else ()), *rows)
 
-    def _body_withs(self) -> tuple[str, ...]:
+    def _body_withs(self) -> tuple[DottedName, ...]:
         root = ada_case(self.system.name)
         component = self.instance.component
-        names = {"Ravenchart.Queueing", "Ravenchart.Health", "System", f"{root}.Health_Counts"}
+        names = {
+            ref("Ravenchart.Queueing"),
+            ref("Ravenchart.Health"),
+            ref("System"),
+            ref(root, "Health_Counts"),
+        }
         queued = bool(component.inputs()) or any(r.events() for r in component.regions)
         if not queued and not self._served():
-            names -= {"Ravenchart.Queueing", "Ravenchart.Health", f"{root}.Health_Counts"}
+            names -= {
+                ref("Ravenchart.Queueing"),
+                ref("Ravenchart.Health"),
+                ref(root, "Health_Counts"),
+            }
         if not component.events and not self._served():
-            names.add(f"{root}.{self.component}")
+            names.add(ref(root, self.component))
         if any(n.trace_depth for n in self.system.nodes):
-            names |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
+            names |= {ref(root, "Trace"), ref(root, "Elements"), ref("Ravenchart.Traces")}
         if recording(self.system):
-            names.add(f"{root}.{UNIT}")
+            names.add(ref(root, UNIT))
         if any(releases(self, port) for port in component.inputs()):
-            names.add("Ravenchart.Releasing_Queues")  # and no other queue: see `releases`
+            names.add(ref("Ravenchart.Releasing_Queues"))  # and no other queue: see `releases`
         elif queued or self._served():
-            names.add("Ravenchart.Queues")
+            names.add(ref("Ravenchart.Queues"))
         if any(b.instance == self.instance.name for b in self.system.bindings):
-            names.add("Ravenchart.Queueing")
+            names.add(ref("Ravenchart.Queueing"))
         names |= set(units_of(self.system, self.instance))
         names |= set(read_units(self.system, self.instance))
-        names.add("Ravenchart.Blackboards")
+        names.add(ref("Ravenchart.Blackboards"))
         if self.noted:
-            names.add("Ravenchart.Steps")
-        names |= {f"{root}.{self.component}.{ada_case(r.name)}" for r in component.regions}
+            names.add(ref("Ravenchart.Steps"))
+        names |= {ref(root, self.component, ada_case(r.name)) for r in component.regions}
         for activity in component.activities:
-            names.add(f"{root}.{self.component}.{activity_package(component, activity)}")
-        names |= {f"{root}.{unit}" for unit in providers(self.system, self.instance)}
+            names.add(ref(root, self.component, activity_package(component, activity)))
+        names |= {ref(root, unit) for unit in providers(self.system, self.instance)}
         for event in component.events:
-            names |= {f"{root}.{ada_case(bus)}" for bus in self._asked(event.name)}
+            names |= {ref(root, ada_case(bus)) for bus in self._asked(event.name)}
         for port in component.outputs():
             ends, messages = self._targets(port.name)
             names |= {
-                f"{root}.{ada_case(e.instance)}" for e in ends if e.instance != self.instance.name
+                ref(root, ada_case(e.instance)) for e in ends if e.instance != self.instance.name
             }
             for message in self.system.messages:
                 if message.name in messages:
-                    names.add(f"{root}.{ada_case(message.bus)}")
+                    names.add(ref(root, ada_case(message.bus)))
         names |= answering(self.system, self.instance)
         names -= {instance_package(self.system, self.instance), *self._spec_withs()}
         return tuple(sorted(names))
@@ -175,7 +186,7 @@ class Glue(Site):
         return Subprogram(f"Put_{ada_case(port.name)}", (param,))
 
     def _offer_spec(self) -> Subprogram:
-        return Subprogram("Offer", (Param("Item", "in", f"{self.component}.Event"),))
+        return Subprogram("Offer", (Param("Item", "in", ref(self.component, "Event")),))
 
     def _command_specs(self) -> Iterator[Decl]:
         for provided in self._served():
@@ -199,9 +210,9 @@ class Glue(Site):
         for provided in self._served():
             yield put_body(instance, provided, self._lost(provided.name))
         for spec, item in published(system, instance):
-            read: Stmt = Do(f"{ada_case(item)}_Board.Read", arguments(Ref("Reply")))
+            read: Stmt = do(ref(f"{ada_case(item)}_Board", "Read"), ref("Reply"))
             if not self._has_object(item):
-                read = Assign("Reply", Ref(f"{ada_case(item)}_Own"))
+                read = Assign("Reply", ref(f"{ada_case(item)}_Own"))
             yield Subprogram(spec.name, spec.params, body=(read,))
         for binding in taken_replies(system, instance):
             yield take_body(system, instance, binding.need)
@@ -215,12 +226,12 @@ class Glue(Site):
 
     def _lost(self, name: str) -> tuple[Stmt, ...]:
         """Count a call that found no place."""
-        number_ = self._fault_number("Queue_Overflow")
+        number_ = fault_number("Queue_Overflow")
         return (self._fault("Queue_Overflow"), *self._note("Fault", name, "port", number_))
 
     def _passed(self, need: Need) -> tuple[Stmt, ...]:
         """Count a reply that did not come in time, and tell of it."""
-        noted = self._note("Fault", need.name, "port", self._fault_number("Stale_Input"))
+        noted = self._note("Fault", need.name, "port", fault_number("Stale_Input"))
         told = () if need.on_timeout is None else (self._raise(need.on_timeout),)
         return (self._fault("Stale_Input"), *noted, *told)
 
@@ -259,32 +270,32 @@ class Glue(Site):
             items += [*run[:-1], executing(run[-1], slot)]
         return tuple(items)
 
-    def _board(self, name: str, of_type: str, initial: Expr, element: str) -> Instantiation:
-        return Instantiation(
+    def _board(self, name: str, of_type: Named, initial: Expr, element: str) -> GenericInstance:
+        return GenericInstance(
             f"{name}_Board",
             "Ravenchart.Blackboards",
-            arguments(Element_Type=Ref(of_type), Initial=initial, Ceiling=self._ceiling(element)),
+            arguments(Element_Type=ref(of_type), Initial=initial, Ceiling=self._ceiling(element)),
         )
 
     def _queue(
         self,
         name: str,
-        of_type: str,
+        of_type: Named,
         null: Expr,
         depth: int,
         policy: Overflow,
         element: str,
-        generic: str = "Ravenchart.Queues",
-    ) -> Instantiation:
-        return Instantiation(
+        generic: Named = "Ravenchart.Queues",
+    ) -> GenericInstance:
+        return GenericInstance(
             name,
             generic,
             arguments(
-                Element_Type=Ref(of_type),
+                Element_Type=ref(of_type),
                 Null_Element=null,
                 Capacity=number(depth),
                 Ceiling=self._ceiling(element),
-                Policy=Ref(f"Ravenchart.Queueing.{ada_case(policy.value)}"),
+                Policy=ref("Ravenchart.Queueing", ada_case(policy.value)),
             ),
         )
 
@@ -299,14 +310,14 @@ class Glue(Site):
             of_type = type_name(self.system, port.type)
             items.append(Comment(f"[{self._element(port.name)}]"))
             kind = "Releasing_Queues" if releases(self, port) else "Queues"
-            given = of_type, null, depth, policy, f"{port.name}.mailbox", f"Ravenchart.{kind}"
+            given = of_type, null, depth, policy, f"{port.name}.mailbox", ref(RUNTIME, kind)
             items.append(self._queue(f"{name}_Mailbox", *given))
-            view = f"{self.component}.{name}_View"
+            view = ref(self.component, f"{name}_View")
             items.append(Object(f"{name}_Port", view))
             if port.on_overflow:
                 items.append(Object(f"{name}_Lost_Before", "Ravenchart.Event_Count", number(0)))
             if self._has_object(port.name):
-                items.append(self._board(name, view, Ref("(others => <>)"), port.name))
+                items.append(self._board(name, view, all_else(BOX), port.name))
         return items
 
     def _data_objects(self) -> list[Decl]:
@@ -336,14 +347,14 @@ class Glue(Site):
             places = Places(region)
             items.append(Comment(f"[{self._element(region.name)}]"))
             kept = RegionShape(self.system, component, region).kept_as
-            items.append(Object(f"{name}_Region", f"{self.component}.{name}.{kept}"))
+            items.append(Object(f"{name}_Region", ref(self.component, name, kept)))
             items.append(
                 self._board(
                     name, leaf_type(component, region), places.initial(self.component), region.name
                 )
             )
             if region.events():
-                event = f"{self.component}.Event"
+                event = ref(self.component, "Event")
                 first = null_event(component)
                 items.append(
                     self._queue(
@@ -368,7 +379,7 @@ class Glue(Site):
     def _put_body(self, port: Port) -> Subprogram:
         name = ada_case(port.name)
         body: list[Stmt] = [
-            Do(f"{name}_Mailbox.Put", arguments(Ref("Item"), Ref("Status"))),
+            do(ref(f"{name}_Mailbox", "Put"), ref("Item"), ref("Status")),
             *self._note("Arrived", port.name, "port"),
         ]
         if releases(self, port):  # what it releases may run before Put returns
@@ -383,18 +394,18 @@ class Glue(Site):
                     Pragma(
                         "Warnings",
                         (
-                            Ref("GNATprove"),
-                            Ref("Off"),
-                            Ref('"""Status"" is set by ""Put"" but not used*"'),
-                            Ref('Reason => "a new sample replaces the old one"'),
+                            ref("GNATprove"),
+                            ref("Off"),
+                            StringLiteral('"Status" is set by "Put" but not used*'),
+                            Arg("Reason", StringLiteral("a new sample replaces the old one")),
                         ),
                     ),
                 ),
                 body=tuple(body),
             )
         lost: list[Stmt] = [self._fault("Queue_Overflow")]
-        lost += self._note("Fault", port.name, "port", self._fault_number("Queue_Overflow"))
-        condition = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
+        lost += self._note("Fault", port.name, "port", fault_number("Queue_Overflow"))
+        condition = OperatorChain("/=", (ref("Status"), ref("Ravenchart.Queueing.Queued")))
         body.append(IfStatement(((condition, tuple(lost)),)))
         return Subprogram(
             f"Put_{name}",
@@ -409,16 +420,16 @@ class Glue(Site):
     def _offer_body(self) -> Subprogram:
         component = self.instance.component
         regions = [r for r in component.regions if r.events()]
-        rows: list[tuple[str, tuple[Stmt, ...]]] = []
+        rows: list[tuple[DottedName, tuple[Stmt, ...]]] = []
         for event in component.events:
             steps: list[Stmt] = []
             for region in regions:
                 if event.name in region.events():
-                    steps += self._enqueue(region, event, Ref("Item"), tells=True)
+                    steps += self._enqueue(region, event, ref("Item"), tells=True)
             for bus in self._asked(event.name):
-                steps.append(Do(f"{ada_case(bus)}.Controller.Request_Recovery"))
+                steps.append(do(ref(ada_case(bus), "Controller.Request_Recovery")))
             steps += self._note("Raised", event.name, "event") if steps else ()
-            rows.append((f"{self.component}.{event_literal(event.name)}", tuple(steps)))
+            rows.append((ref(self.component, event_literal(event.name)), tuple(steps)))
         declarations: tuple[Decl, ...] = ()
         if regions:
             declarations = (
@@ -429,7 +440,7 @@ class Glue(Site):
             "Offer",
             self._offer_spec().params,
             declarations=declarations,
-            body=(Case(Ref(name_of(component, "Item")), tuple(rows)),),
+            body=(Case(name_of(component, "Item"), rows),),
         )
 
     def _asked(self, event: str) -> tuple[str, ...]:
@@ -441,14 +452,14 @@ class Glue(Site):
         """Put an event into a region's queue; with ``tells``, report what is lost by an event."""
         queue = f"{ada_case(region.name)}_Queue"
         full: list[Stmt] = [self._fault("Queue_Overflow")]
-        full += self._note("Fault", region.name, "region", self._fault_number("Queue_Overflow"))
+        full += self._note("Fault", region.name, "region", fault_number("Queue_Overflow"))
         if tells and region.on_overflow is not None:
             full += self.overflowed(region.on_overflow)
-        condition = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
-        args = [item, Ref("Status")]
+        condition = OperatorChain("/=", (ref("Status"), ref("Ravenchart.Queueing.Queued")))
+        args = [item, ref("Status")]
         if event.overflow is not None and event.overflow is not region.overflow:
-            args.append(Ref(f"Ravenchart.Queueing.{ada_case(event.overflow.value)}"))
-        return [Do(f"{queue}.Put", arguments(*args)), IfStatement(((condition, tuple(full)),))]
+            args.append(ref("Ravenchart.Queueing", ada_case(event.overflow.value)))
+        return [do(ref(queue, "Put"), *args), IfStatement(((condition, tuple(full)),))]
 
     def overflowed(self, name: str) -> list[Stmt]:
         """Raise the event that tells of a loss; what is lost by that is only counted."""
@@ -468,21 +479,18 @@ class Glue(Site):
         recorded = self._record(port.name, "Item")
         body: list[Stmt] = [*self._note("Sent", port.name, "port"), *recorded]
         for end in ends:
-            name = f"Put_{ada_case(end.port)}"
+            name = ref(f"Put_{ada_case(end.port)}")
             target = (
-                name if end.instance == self.instance.name else f"{ada_case(end.instance)}.{name}"
+                name if end.instance == self.instance.name else ref(ada_case(end.instance), name)
             )
-            body.append(Do(target, arguments(Ref("Item"))))
+            body.append(do(target, ref("Item")))
         for message in self.system.messages:
             if message.name in messages:
                 body.append(
-                    Do(
-                        f"{ada_case(message.bus)}.Send_{ada_case(message.name)}",
-                        arguments(Ref("Item")),
-                    )
+                    do(ref(ada_case(message.bus), f"Send_{ada_case(message.name)}"), ref("Item"))
                 )
         taken = ends or messages or recorded
-        unused = () if taken else (Pragma("Unreferenced", (Ref("Item"),)),)
+        unused = () if taken else (Pragma("Unreferenced", (ref("Item"),)),)
         param = Param("Item", "in", type_name(self.system, port.type))
         return Subprogram(
             f"Send_{ada_case(port.name)}", (param,), declarations=unused, body=tuple(body)

@@ -13,7 +13,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from ravenchart.gen.emit.ada.syntax import Package, Pragma, Ref, Unit, compares
+from ravenchart.gen.emit.ada.declarations import Package, Unit
+from ravenchart.gen.emit.ada.expressions import StringLiteral
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.statements import Pragma
+from ravenchart.gen.emit.ada.walking import compares
 from ravenchart.gen.language import terms as m
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.component import Component
@@ -34,7 +38,7 @@ def quiet(unit: Unit, words: Sequence[str]) -> Unit:
     """The unit, with the warnings of these words off where a comparison stands in it."""
     if not isinstance(unit.item, Package) or not words or not compares(unit.item):
         return unit
-    pragmas = (Pragma("Warnings", (Ref("Off"), Ref(f'"*{word} *"'))) for word in words)
+    pragmas = (Pragma("Warnings", (ref("Off"), StringLiteral(f"*{word} *"))) for word in words)
     return replace(unit, item=replace(unit.item, items=(*pragmas, *unit.item.items)))
 
 

@@ -5,17 +5,17 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import constant_name
-from ravenchart.gen.emit.ada.syntax import (
-    Do,
+from ravenchart.gen.emit.ada.expressions import (
+    Attribute,
     Expr,
     OperatorChain,
-    Ref,
-    Stmt,
     arguments,
     call,
     number,
 )
+from ravenchart.gen.emit.ada.named import Named, ref
+from ravenchart.gen.emit.ada.naming import constant_name
+from ravenchart.gen.emit.ada.statements import Do, Stmt
 from ravenchart.gen.model.system import Processor, System
 
 
@@ -31,11 +31,16 @@ def note(
     if not traced(system):
         return ()
     args = arguments(
-        Ref(f"Ravenchart.Traces.{kind}"),
-        Ref(f"Elements.{element_constant(element, element_kind)}"),
+        ref("Ravenchart.Traces", kind),
+        ref("Elements", element_constant(element, element_kind)),
         value or number(0),
     )
     return (Do("Trace.Buffer.Note", args),)
+
+
+def fault_number(kind: str) -> Expr:
+    """What a trace record about a fault says of its kind."""
+    return call(Attribute("Ravenchart.Health.Fault_Kind", "Pos"), ref("Ravenchart.Health", kind))
 
 
 def element_constant(element: str, kind: str) -> str:
@@ -44,8 +49,8 @@ def element_constant(element: str, kind: str) -> str:
     return constant_name(element) + kinds.get(kind, "")
 
 
-def row_number(processor: Processor, row_type: str, row: str) -> Expr:
+def row_number(processor: Processor, row_type: Named, row: str) -> Expr:
     """The element number of a row: those of a table follow their processor's."""
-    position = call("Ravenchart.Element_Id", call(f"{row_type}'Pos", Ref(row)))
-    first = Ref(f"Elements.{element_constant(processor.name, 'processor')}")
+    position = call("Ravenchart.Element_Id", call(Attribute(ref(row_type), "Pos"), ref(row)))
+    first = ref("Elements", element_constant(processor.name, "processor"))
     return OperatorChain("+", (first, number(1), position))
