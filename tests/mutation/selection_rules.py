@@ -53,6 +53,18 @@ def selectors(unit: Unit) -> Iterator[tuple[Body, Spot[IfExpr]]]:
             yield one, inner
 
 
+def selecting(unit: Unit, transition: DottedName) -> list[str]:
+    """The functions with a contract that select a transition by themselves."""
+    return [
+        one.name
+        for one in bodies(unit)
+        if one.is_expression
+        and one.spot.node.result == _SELECTION
+        and one.spot.node.aspects
+        and transition in names_of(one.inner.node)
+    ]
+
+
 def _asked(condition: Expr) -> Expr | None:
     """What a condition asks for first."""
     match condition:
