@@ -22,7 +22,7 @@ SOURCE = re.compile(
     r"`((?:gen|analysis|behaviour|hw_can|ravenchart|spark_runtime|tests|proofs|scripts)"
     r"/[\w./-]+\.(?:py|toml|ad[bs]|gpr|sh|md))`"
 )
-MODULE = re.compile(r"`((?:gen|analysis|behaviour|hw_can|ravenchart)(?:\.[a-z_]+)+)`")
+MODULE = re.compile(r"`((?:gen|analysis|behaviour|hw_can|ravenchart)(?:\.(?!gpr`)[a-z_]+)+)`")
 LINK = re.compile(r"\]\((?!https?:)([^)#]+)(?:#[^)]*)?\)")
 
 

@@ -270,6 +270,7 @@ def excuses(listing: Listing) -> list[tuple[str, str]]:
 def test_output_is_compared_or_has_a_reason() -> None:
     texts = [one for one in LISTINGS if one.language == "text"]
     compared = {
+        ("docs/crates.md", PROJECT),
         ("docs/evidence.md", "id,text"),
         ("docs/execution-times.md", "# an empty line ends a block"),
         ("docs/plain-files.md", "task,core,priority,period_ms,deadline_ms,wcet_us"),
@@ -286,6 +287,14 @@ def listing_of(page: str, first: str) -> str:
     """The text of one listing."""
     (found,) = [one.text for one in LISTINGS if one.key == (page, first)]
     return found
+
+
+PROJECT = 'with "config/can_by_hand_config.gpr";'
+
+
+def test_the_project_of_a_consumer_is_that_which_is_built() -> None:
+    built = (ROOT / "tests" / "can_crate" / "can_by_hand.gpr").read_text(encoding="utf-8")
+    assert built.endswith(listing_of("docs/crates.md", PROJECT))
 
 
 def test_the_plain_file_of_its_page_is_analysed() -> None:
