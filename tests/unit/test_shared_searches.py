@@ -31,7 +31,7 @@ def pump() -> Analysis:
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[LocalCluster]:
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as made:
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as made:
         yield made
 
 
@@ -58,7 +58,7 @@ def test_a_worker_of_another_version_is_refused(
 
 @pytest.mark.slow
 def test_a_scheduler_that_goes_is_named(pump: Analysis) -> None:
-    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as made:
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=":0") as made:
         address = made.scheduler_address
         refused = pytest.raises(Unusable, match=r"the Dask scheduler at .* was lost")
         with refused, helpers.scheduled(address) as there:
@@ -68,7 +68,7 @@ def test_a_scheduler_that_goes_is_named(pump: Analysis) -> None:
 @pytest.mark.slow
 def test_a_scheduler_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(helpers, "PATIENCE", 1)
-    with LocalCluster(n_workers=0, dashboard_address=None) as made:
+    with LocalCluster(n_workers=0, dashboard_address=":0") as made:
         refused = pytest.raises(Unusable, match="has no worker")
         with refused, helpers.scheduled(made.scheduler_address):
             pass
