@@ -66,9 +66,9 @@ def main_text(system: System, frames: int) -> str:
     return f"""
 with Ada.Text_IO; with Interfaces; with Ravenchart.Can.Fd_Frames; with {name}.Codecs;
 procedure Fuzzer is
-   use {name}; use type Interfaces.Unsigned_64; use type {WORDS};
+   use {name}; use type Interfaces.Unsigned_64; use type {WORDS.text};
    subtype Bits is Interfaces.Unsigned_64;
-   subtype Words is {WORDS};
+   subtype Words is {WORDS.text};
    Wrong : exception;
    Seed : Bits := 16#9E37_79B9_7F4A_7C15#;
    Sum  : Bits := 0;

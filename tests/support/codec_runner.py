@@ -77,7 +77,7 @@ with Ravenchart.Can.Fd_Frames; with {ada_case(system.name)}.Codecs;
 procedure Runner is
    use Ada.Text_IO; use Ada.Long_Long_Integer_Text_IO; use {ada_case(system.name)};
    use type Interfaces.Unsigned_64;
-   F : {WORDS} := (others => 0);
+   F : {WORDS.text} := (others => 0);
    Kind : Character;
    Number, N : Long_Long_Integer;
    procedure Put_Bytes (Length : Natural) is
