@@ -418,13 +418,13 @@ is
                  (Infusion_Region.Place.In_Motor));
          end if;
       end if;
-      if Infusion_Region.Lost then
+      if Infusion_Region.Deferred.Lost then
          Health_Counts.Counters.Record_Fault
            (Ravenchart.Health.Queue_Overflow);
          Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Bed_Infusion,
             Ravenchart.Health.Fault_Kind'Pos
               (Ravenchart.Health.Queue_Overflow));
-         Infusion_Region.Lost := False;
+         Infusion_Region.Deferred.Lost := False;
       end if;
    end Step_Infusion;
 

@@ -37,10 +37,9 @@ from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 
-from .deferring import declared_deferrals
 from .history import restored_functions, restored_place
 from .lanes import declared_lanes
-from .lasting import declared_domains
+from .lasting import declared_lasting
 from .operations import operations
 from .records import region_types
 from .safety import Safety
@@ -55,7 +54,7 @@ def emit_region(
     """Spec and body of the package of one region; ``noted`` as in `Site`."""
     shape = RegionShape(system, component, region, noted=noted)
     withs = ["Ravenchart.Timers"] if shape.timers else []
-    withs += ["Ravenchart.Event_Lists"] if shape.deferring else []
+    withs += ["Ravenchart.Deferrals"] if shape.deferring else []
     spec = Package(shape.package, _spec(shape), (SPARK,))
     body = Package(shape.package, (*_quiet(shape), *body_of(shape)), (SPARK,), is_body=True)
     seen = ("Ravenchart.Steps",) if noted else ()
@@ -122,11 +121,9 @@ def _declared(shape: RegionShape) -> list[Decl]:
             else "The leaves it leads to; those of a composite are its defaults."
         ),
     ]
-    items += declared_domains(shape)
+    items += declared_lasting(shape)
     items += _selections(shape)
     items += _passing(shape)
-    if shape.deferring:
-        items += declared_deferrals(shape)
     if shape.listed:
         items += declared_lanes(shape)
     return items

@@ -14,8 +14,6 @@ from functools import cached_property
 from ravenchart.gen.emit.ada.syntax import (
     NULL,
     TRUE,
-    Aggregate,
-    Arg,
     Aspect,
     Assign,
     Comment,
@@ -23,7 +21,6 @@ from ravenchart.gen.emit.ada.syntax import (
     Do,
     Expr,
     IfExpr,
-    IfStatement,
     Object,
     Old,
     Package,
@@ -40,19 +37,19 @@ from ravenchart.gen.emit.ada.syntax import (
     call,
     case_of,
     equal,
-    number,
+    units_named_in,
 )
 from ravenchart.gen.emit.language.compound import Effect, EntryStep, Firing, FiringKind
-from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.emit.language.terms import certain_sends, emit_flow, flow_names
 from ravenchart.gen.language.terms import Flow
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import PseudoKind
 
+from .deferring import STORE
 from .history import Restoring
 from .lasting import Lasting, asked, in_one_word, of_before, terminates
-from .moving import Moving
-from .nodes import NODES, Nodes, joined
+from .moving import BEFORE, Moving
+from .nodes import CHART, Nodes, joined
 from .safety import Safety, used
 from .shape import START, RegionShape
 
@@ -62,16 +59,18 @@ each (`BATCH`)."""
 BATCH = 6
 """So many transitions each of them fires: what the prover must see at a time stays small."""
 
-_AGREED = "Is_Agreed"
 _BEFORE, _CHOSEN = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
+_WAS = "Was"
+"""The region before a firing, for the procedures that fire a few transitions each."""
+_BEGUN = "Is_Begun"
+_STILL = "Is_Still"
 
 _Row = tuple[str, tuple[Stmt, ...]]
 
 
-def _between(claim: Expr, effect: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
+def _between(claim: Stmt, effect: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
     """An effect where a claim holds: said on both sides of it, it has no other place."""
-    said = Pragma("Assert", (claim,))
-    return (said, *effect, said) if effect else ()
+    return (claim, *effect, claim) if effect else ()
 
 
 def _range(rows: Sequence[_Row]) -> str:
@@ -101,7 +100,7 @@ class Moves:
         self.lasting = Lasting(shape)
         self.nodes = Nodes(shape)
         self.safety = Safety(shape)
-        self.moving = Moving(shape, self.nodes, self.lasting)
+        self.moving = Moving(shape, self.nodes)
         self._effects_given: list[Flow] = []
 
     def chart(self, fire: Subprogram) -> Package:
@@ -111,43 +110,62 @@ class Moves:
     # --- Fire
 
     def fire(self) -> Subprogram:
-        """Exits, effects and entries of one transition; `Target` says where it leads."""
-        start = (Assign("Self.Started", TRUE), *joined(self._steps(self.shape.start)))
+        """What is declared, then exits, effects and entries of one transition."""
+        start = joined(self._steps(self.shape.start)) or (NULL,)
         rows = [(f.literal, self._row(f)) for f in self.shape.firings]
         rows = rows or [("None", (NULL,))]
-        agreed: Expr = self.nodes.agreed()
-        batches: tuple[Decl, ...] = ()
+        moving = self.moving.procedures()
+        constants = self._constants((*moving, *rows, *self._declared()))
+        batches: list[Decl] = []
         if len(rows) * len(self.shape.lanes) > MANY:
-            agrees = Subprogram(_AGREED, (), "Boolean", (Aspect("Ghost"),), expression=agreed)
-            agreed = Ref(_AGREED)
-            past = [equal(Ref("Self.Past"), Ref("Past"))] if self.shape.memories else []
-            claims = self._claims(*past, agreed)
+            ghost = (Aspect("Ghost"),)
+            was = Object(_WAS, "Region", Ref("Self"), constant=True, aspects=ghost)
             by_batch = [rows[at : at + BATCH] for at in range(0, len(rows), BATCH)]
-            batches = (agrees, *(d for batch in by_batch for d in _procedure(batch, claims)))
+            claims = self._claims_inside()
+            kept = [UseType(STORE)] if self.shape.deferring else []
+            batches = [*kept, was, self._begun(constants), self._still()]
+            batches += [d for batch in by_batch for d in _procedure(batch, claims)]
             rows = [_call(batch) for batch in by_batch]
-        procedures = self.moving.procedures()
         return Subprogram(
             "Fire",
             self.fire_params(),
             aspects=self._claims(),
             declarations=(
-                UseType(NODES),
+                UseType(f"{CHART}.{'Node' if self.shape.single else 'Nodes'}"),
+                *([] if self.shape.single else [UseType(f"{CHART}.Node")]),
                 *self.nodes.variables(),
-                *self._past(),
+                *constants,
                 *self.nodes.moved(),
-                *procedures,
+                *moving,
                 *batches,
             ),
             body=(
+                *self._declared(),
                 case_of(Ref("Chosen"), [(START, start), *rows]),
-                Pragma("Assert", (agreed,)),
+                Pragma("Assert", (self.nodes.agreed(),)),
             ),
         )
 
-    def _past(self) -> tuple[Object, ...]:
-        if not self.shape.memories:
-            return ()
-        return (Object("Past", "Memory", Ref("Self.Past"), constant=True),)
+    def _declared(self) -> tuple[Stmt, ...]:
+        """The configuration that the transition leads to, and what outlasts it."""
+        shape = self.shape
+        given = {shape.place: Ref(BEFORE), "Past": Ref("Past")}
+        goal = call("Target", Ref("Chosen"), *(given[p.name] for p in shape.target_params()))
+        return (
+            Assign("Self.Started", TRUE),
+            Assign(self.held, goal),
+            *self.lasting.moved("Chosen", BEFORE),
+        )
+
+    def _constants(self, named_in: object) -> list[Object]:
+        """What statements need to know of the region before the firing."""
+        named = units_named_in(named_in)
+        parts = ((BEFORE, self.shape.place_type, self.shape.place), ("Past", "Memory", "Past"))
+        return [
+            Object(name, of_type, Ref(f"Self.{part}"), constant=True)
+            for name, of_type, part in parts
+            if name in named
+        ]
 
     def claims(self) -> list[Decl]:
         """What Fire asks for, and what it does, each in one word."""
@@ -161,16 +179,51 @@ class Moves:
             *in_one_word(self._fired, "Is the region after it as declared?"),
         ]
 
-    def _claims(self, *inside: Expr) -> tuple[Aspect, ...]:
-        """Both of a procedure that fires; ``inside`` holds of what only Fire knows.
+    def _claims(self) -> tuple[Aspect, ...]:
+        """Both of Fire.
 
         `Is_Safe` stands beside `Is_Fired`: gnatprove then names it where an invariant breaks.
         """
         fired = asked(self._fired, Before=Old("Self"))
         return (
-            Aspect("Pre", both(self.ready("Chosen"), *inside)),
-            Aspect("Post", both(fired, *self.safety.holds(), *inside[-1:])),
+            Aspect("Pre", self.ready("Chosen")),
+            Aspect("Post", both(fired, *self.safety.holds())),
         )
+
+    def _claims_inside(self) -> tuple[Aspect, ...]:
+        """Both of a procedure that fires a few transitions, and changes nothing declared."""
+        kept = call(_STILL, Old("Self"))
+        return (
+            Aspect("Pre", call(_BEGUN, Ref("Chosen"))),
+            Aspect("Post", both(kept, *self.safety.holds(), self.nodes.agreed())),
+        )
+
+    def _begun(self, constants: Sequence[Object]) -> Subprogram:
+        """What holds when such a procedure begins; nothing has acted yet."""
+        shape = self.shape
+        before = {shape.place: Ref(f"{_WAS}.{shape.place}"), "Past": Ref(f"{_WAS}.Past")}
+        goal = call("Target", Ref("Chosen"), *(before[p.name] for p in shape.target_params()))
+        ready = asked(self._ready("Chosen"), Self=Ref(_WAS))
+        facts = [ready, Ref("Self.Started"), equal(Ref(self.held), goal)]
+        facts += [equal(Ref("Self.Data"), Ref(f"{_WAS}.Data"))] if self.safety else []
+        for one in constants:
+            assert isinstance(one.value, Ref)
+            facts.append(equal(Ref(one.name), Ref(one.value.text.replace("Self.", f"{_WAS}."))))
+        facts += self.nodes.begun(_WAS)
+        return Subprogram(
+            _BEGUN, (_CHOSEN,), "Boolean", (Aspect("Ghost"),), expression=both(*facts)
+        )
+
+    def _still(self) -> Subprogram:
+        """What such a procedure leaves as it was."""
+        shape = self.shape
+        parts = ["Started", shape.place]
+        parts += ["Past"] if shape.memories else []
+        parts += ["Timers"] if shape.timers else []
+        parts += ["Deferred"] if shape.deferring else []
+        same = both(*(equal(Ref(f"Self.{p}"), Ref(f"Before.{p}")) for p in parts))
+        ghost = (Aspect("Ghost"),)
+        return Subprogram(_STILL, (_BEFORE,), "Boolean", ghost, expression=same)
 
     def ready(self, chosen: str) -> Expr:
         """That a transition may be fired."""
@@ -250,13 +303,11 @@ class Moves:
 
     def _row(self, firing: Firing) -> tuple[Stmt, ...]:
         effect = self._effects(firing.effects)
-        if firing.kind is FiringKind.DEFERRAL:
-            return self._defer(firing)
-        if firing.kind is FiringKind.INTERNAL:
+        if firing.kind in (FiringKind.INTERNAL, FiringKind.DEFERRAL):
             return effect or (NULL,)
         assert firing.domain is not None
         out = self._leave(firing)
-        effect = _between(self._claim(firing.domain), effect)
+        effect = _between(self.nodes.empty(firing.domain), effect)
         if terminates(self.shape, firing):
             entered = self._steps(firing.entries[:-1])
             return joined((*out, *effect, *entered, *self._stop(firing)))
@@ -271,14 +322,7 @@ class Moves:
     def _stop(self, firing: Firing) -> tuple[Stmt, ...]:
         """The region stops: nothing is active any more, and nothing more is left."""
         goal = self.shape.leads_to(firing)
-        stops = [
-            Assign(self.shape.at(self.held, lane), Ref(self.shape.literal(leaf)))
-            for lane, leaf in goal.items()
-        ]
-        if self.shape.timers:
-            stopped = Aggregate((Arg("others", Ref("Ravenchart.Timers.Stopped")),))
-            stops.append(Assign("Self.Timers", stopped))
-        return (*stops, *self.nodes.stopped(goal[self.shape.lanes[-1]]))
+        return tuple(self.nodes.stopped(goal[self.shape.lanes[-1]]))
 
     def _effects(self, effects: tuple[Effect, ...]) -> tuple[Stmt, ...]:
         self._effects_given += [e.flow for e in effects]
@@ -286,18 +330,6 @@ class Moves:
             s
             for e in effects
             for s in (*self.shape.note(f"{e.name}.effect"), *emit_flow(self.scope, e.flow))
-        )
-
-    def _defer(self, firing: Firing) -> tuple[Stmt, ...]:
-        item = self.shape.deferred_item(firing)
-        full = equal(
-            call("Deferrals.Count", Ref("Self.Deferred")), number(self.region.deferral_depth)
-        )
-        return (
-            IfStatement(
-                ((full, (Assign("Self.Lost", TRUE),)),),
-                (Do("Deferrals.Append", arguments(Ref("Self.Deferred"), item)),),
-            ),
         )
 
     def _path(self, firing: Firing) -> list[str]:
@@ -327,13 +359,6 @@ class Moves:
     def _splits(self, vertex: str, firing: Firing) -> bool:
         """Is it an orthogonal state around the source? Then all its lanes are left."""
         return vertex != firing.sources[0] and self.region.state(vertex).is_orthogonal
-
-    def _claim(self, domain: Place) -> Expr:
-        """Everything in the region that holds the transition has been left, nothing else."""
-        inside = [self.shape.lane_of(domain), *self.nodes.lanes_inside(domain)]
-        others = [lane for lane in self.shape.lanes if lane not in inside]
-        kept = flat([self.nodes.agreed(others)]) if others else []
-        return both(*self.nodes.empty(domain), *kept)
 
     def _steps(self, steps: tuple[EntryStep, ...]) -> tuple[Stmt, ...]:
         found: list[Stmt] = []

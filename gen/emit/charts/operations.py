@@ -29,7 +29,7 @@ from ravenchart.gen.emit.ada.syntax import (
 )
 from ravenchart.gen.emit.language.events import name_of
 
-from .deferring import FREED
+from .deferring import due, is_taken
 from .lanes import followed
 from .lasting import Lasting
 from .safety import Safety
@@ -132,16 +132,8 @@ _IS_DUE = "Ravenchart.Timers.Is_Due"
 
 def _released(shape: RegionShape) -> tuple[Expr, Expr]:
     """When an event is released from deferral, it comes next."""
-    each = f"1 .. {shape.region.deferral_depth}"
-    kept = Old("Self.Deferred")
-    freed = Old(FREED)
-    released = call("Is_Released", kept, Ref(f"Self.{shape.place}"), freed, Ref("I"))
-    item = call("Deferrals.Element", kept, Ref("I"))
-    comes = [equal(Ref("Now"), call("To_Occurrence", item))]
-    comes += [equal(Ref("Item"), item)] if shape.takes_item else []
-    comes.append(equal(Ref(FREED), call("Freed_Without", Ref("I"), freed)))
-    then = IfExpr(((released, both(*comes)),), None)
-    return ForSome("I", each, released), ForAll("I", each, then)
+    comes = equal(Ref("Now"), call("To_Occurrence", Ref("Item")))
+    return OperatorChain(">", (due(shape), number(0))), both(is_taken(shape), comes)
 
 
 def _taken(shape: RegionShape) -> list[Expr]:

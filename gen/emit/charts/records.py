@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from ravenchart.gen.emit.ada.naming import (
     ada_case,
-    component_name,
     default_value,
     type_name,
     value,
@@ -19,20 +18,18 @@ from ravenchart.gen.emit.ada.syntax import (
     Comment,
     Decl,
     EnumType,
-    GenericInstance,
     PlainType,
     RecordDeclaration,
     Ref,
     UseType,
-    arguments,
     number,
 )
 from ravenchart.gen.emit.ada.syntax import RecordComponent as Field
 from ravenchart.gen.emit.components.packages import reading_type
-from ravenchart.gen.emit.language.events import null_event
 
-from .deferring import freed_field, freed_type
+from .deferring import STORE, deferral_types
 from .guards import guard_operators, guards_of
+from .lasting import TIME_OUTS, domain_types, spans_of_states
 from .safety import Safety
 from .shape import START, RegionShape
 from .working import done_types, work_fields
@@ -158,20 +155,6 @@ def _records(shape: RegionShape) -> list[Decl]:
             Comment("What histories ask for: the last leaf left in a region, if any."),
             RecordDeclaration("Memory", tuple(past)),
         ]
-    if shape.deferring:
-        items += [
-            GenericInstance(
-                "Deferrals",
-                "Ravenchart.Event_Lists",
-                arguments(
-                    Event=Ref(f"{component_name(component)}.Event"),
-                    Null_Event=null_event(component),
-                    Capacity=number(region.deferral_depth),
-                ),
-            ),
-            UseType("Deferrals.List"),
-            *freed_type(shape),
-        ]
     if shape.listed:
         most = shape.most_firings
         none = Aggregate((Arg("others", Ref("None")),))
@@ -186,7 +169,12 @@ def _records(shape: RegionShape) -> list[Decl]:
                 ),
             ),
         ]
-    items += done_types(shape)
+    if shape.timers:
+        all_of = f"Ravenchart.Timers.Timer_Array (1 .. {len(shape.timers)})"
+        items.append(PlainType(TIME_OUTS, all_of, subtype=True))
+    items += [*done_types(shape), *domain_types(shape)]
+    if shape.deferring:
+        items += deferral_types(shape, spans_of_states(shape))
     items += [
         Comment("The region's own state."),
         RecordDeclaration("Region", _region_fields(shape)),
@@ -202,13 +190,11 @@ def _region_fields(shape: RegionShape) -> tuple[Field, ...]:
     if shape.memories:
         rows.append(Field("Past", "Memory"))
     if shape.timers:
-        rows.append(Field("Timers", f"Ravenchart.Timers.Timer_Array (1 .. {len(shape.timers)})"))
+        rows.append(Field("Timers", TIME_OUTS))
     rows += [Field(shape.completed(s), "Boolean", FALSE) for s in shape.completing]
     rows += work_fields(shape)
     if shape.deferring:
-        rows.append(Field("Deferred", "Deferrals.List"))
-        rows.append(freed_field())
-        rows.append(Field("Lost", "Boolean", FALSE))
+        rows.append(Field("Deferred", STORE))
     if shape.region.writes:
         rows.append(Field("Data", "Variables"))
     return tuple(rows)

@@ -9,29 +9,24 @@ from ravenchart.gen.emit.ada.syntax import (
     Decl,
     Do,
     Expr,
-    ForAll,
+    IfExpr,
     IfStatement,
-    Loop,
     Object,
     OperatorChain,
     Param,
-    Pragma,
     Prefix,
     Ref,
-    Say,
     Stmt,
     Subprogram,
     UseType,
     arguments,
-    both,
     call,
     equal,
-    number,
 )
 from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.terms import expressions_in, flow_operators
 
-from .deferring import FREED, is_due
+from .deferring import take_due
 from .firing import Moves
 from .guards import guard_operators, guards_of
 from .lanes import fire, lane_step, passing_step
@@ -80,7 +75,7 @@ def _polling(shape: RegionShape) -> list[Decl]:
         occurs = Assign("Now", Ref(f"Completion_Of_{ada_case(state)}"))
         branches.append((Ref(done), (Assign(done, Ref("False")), occurs)))
     declarations: list[Decl] = [Object("Due", "Natural")] if shape.timers else []
-    declarations += [Object("Released", "Natural")] if shape.deferring else []
+    declarations += [Object("Released", "Boolean")] if shape.deferring else []
     params = shape.poll_params()
     before: tuple[Stmt, ...] = ()
     if len(params) > 2:
@@ -108,33 +103,8 @@ def _polling(shape: RegionShape) -> list[Decl]:
 
 def _deferred(shape: RegionShape) -> tuple[Stmt, ...]:
     """The oldest deferred event that is due."""
-    held = f"Self.{shape.place}"
-    item = call("Deferrals.Element", Ref("Self.Deferred"), Ref("Released"))
-    none_yet = equal(Ref("Released"), number(0))
-    due_j, due_i = (is_due("Self.Deferred", held, FREED, index) for index in "JI")
-    waiting = ForAll("J", "1 .. I - 1", Prefix("not", due_j))
-    search = Loop(
-        "for I in 1 .. Deferrals.Count (Self.Deferred)",
-        (
-            Pragma("Loop_Invariant", (both(none_yet, waiting),)),
-            IfStatement(((due_i, (Assign("Released", Ref("I")), Say("exit"))),)),
-        ),
-    )
-    found = (Ref("Self.Deferred"), Ref(held), Ref(FREED), Ref("Released"))
-    taken = (Assign("Item", item),) if shape.takes_item else ()
-    take = (
-        Pragma("Assert", (call("Is_Released", *found),)),
-        Assign("Now", call("To_Occurrence", item)),
-        *taken,
-        Do("Deferrals.Remove", arguments(Ref("Self.Deferred"), Ref("Released"))),
-        Assign(FREED, call("Freed_Without", Ref("Released"), Ref(FREED))),
-    )
-    return (
-        Assign("Now", Ref("Conditions")),
-        Assign("Released", number(0)),
-        search,
-        IfStatement(((OperatorChain(">", (Ref("Released"), number(0))), take),)),
-    )
+    taken = IfExpr(((Ref("Released"), call("To_Occurrence", Ref("Item"))),), Ref("Conditions"))
+    return (take_due(shape, "Released"), Assign("Now", taken))
 
 
 # --- the step ----------------------------------------------------------------

@@ -261,7 +261,7 @@ class Rows(Site):
             body.append(do("Ravenchart.Steps.Finish", Ref(f'"{self._element(region.name)}"')))
         body += after
         if shape.deferring:
-            lost = f"{name}_Region.Lost"
+            lost = f"{name}_Region.Deferred.Lost"
             told = [self._fault("Queue_Overflow")]
             told += self._note("Fault", region.name, "region", self._fault_number("Queue_Overflow"))
             told += [self._raise(region.on_overflow)] if region.on_overflow is not None else []
