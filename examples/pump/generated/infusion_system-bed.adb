@@ -375,7 +375,7 @@ is
 
    procedure Step_Infusion (Ins : Pump.Infusion.Inputs) is
       Now : Pump.Infusion.Occurrence;
-      Fired : Pump.Infusion.Firing_List;
+      Fired : Pump.Infusion.Firings.List;
 
       use type Pump.Infusion_States.Leaf;
       use type Pump.Infusion.Occurrence;

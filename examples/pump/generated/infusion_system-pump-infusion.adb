@@ -431,264 +431,6 @@ is
          Active.Top := Moved (Active.Top, Chart.Alarm, Chart.Silent);
          Self.Data.Buzzer := False;
       end Enter_Silent;
-
-      use type Deferrals.Store;
-
-      Was : constant Region := Self with Ghost;
-
-      function Is_Begun (Chosen : Firing) return Boolean is
-        (Is_Ready (Was, Ins, Item, Chosen)
-         and then Self.Started
-         and then Self.Place = Target (Chosen, Was.Place, Was.Past)
-         and then Self.Data = Was.Data
-         and then Before = Was.Place
-         and then Past = Was.Past
-         and then Active = Chart.Innermost (Was)
-         and then Active_At_First = Active) with Ghost;
-
-      function Is_Still (Before : Region) return Boolean is
-        (Self.Started = Before.Started
-         and then Self.Place = Before.Place
-         and then Self.Past = Before.Past
-         and then Self.Timers = Before.Timers
-         and then Self.Deferred = Before.Deferred) with Ghost;
-
-      subtype From_Turned is Selection range Turned .. Filled_Up;
-
-      procedure Fire_From_Turned (Chosen : From_Turned)
-      with
-        Pre => Is_Begun (Chosen),
-        Post =>
-          Is_Still (Self'Old)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Active = Chart.Innermost (Self)
-      is
-      begin
-         case Chosen is
-            when Turned =>
-               Exit_Turning;
-               Enter_Motor_Good;
-            when Heard =>
-               Active.Sensor :=
-                 Moved (Active.Sensor, Chart.Listening, Chart.Nowhere);
-               Enter_Sensor_Good;
-            when Loaded =>
-               Active.Top :=
-                 Moved (Active.Top, Chart.Loading, Chart.Giving);
-               Enter_Maintaining;
-            when Change =>
-               Active.Top :=
-                 Moved (Active.Top, Chart.Maintaining, Chart.Giving);
-               Self.Data.Portion := Item.Value_Portion;
-               Active.Top := Moved (Active.Top, Chart.Giving, Chart.Giving);
-               Enter_Maintaining;
-            when Defer_New_Portion_In_Loading =>
-               null;
-            when Filled_Up =>
-               Exit_Filling;
-               Active.Top :=
-                 Moved (Active.Top, Chart.Running, Chart.Giving);
-               Enter_Loading;
-         end case;
-      end Fire_From_Turned;
-
-      subtype From_Beat is Selection range Beat .. Remind;
-
-      procedure Fire_From_Beat (Chosen : From_Beat)
-      with
-        Pre => Is_Begun (Chosen),
-        Post =>
-          Is_Still (Self'Old)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Active = Chart.Innermost (Self)
-      is
-      begin
-         case Chosen is
-            when Beat =>
-               Self.Data.Given :=
-                 Infusion_System.Unit_Ul'Min
-                   (Self.Data.Given + Self.Data.Speed, Self.Data.Volume);
-            when Enough =>
-               Active.Top :=
-                 Moved (Active.Top, Active_At_First.Top, Chart.Running,
-                    Before.Top in Infusion_States.Giving);
-               Enter_All_Given;
-            when Defer_New_Portion_In_Filling =>
-               null;
-            when Finished =>
-               Leave_Running;
-               Exit_Running;
-               Enter_Trickling;
-            when Hush =>
-               Active.Top :=
-                 Moved (Active.Top, Chart.Sounding, Chart.Alarm);
-               Enter_Silent;
-            when Remind =>
-               Active.Top := Moved (Active.Top, Chart.Silent, Chart.Alarm);
-               Enter_Sounding;
-         end case;
-      end Fire_From_Beat;
-
-      subtype From_Restore_Where_It_Was is
-        Selection
-        range Restore_Where_It_Was
-        .. Order_Volume;
-
-      procedure Fire_From_Restore_Where_It_Was
-        (Chosen : From_Restore_Where_It_Was)
-      with
-        Pre => Is_Begun (Chosen),
-        Post =>
-          Is_Still (Self'Old)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Active = Chart.Innermost (Self)
-      is
-      begin
-         case Chosen is
-            when Restore_Where_It_Was =>
-               Active.Top :=
-                 Moved (Active.Top, Chart.Where_It_Was, Chart.Infusing);
-               if Past.Known_In_Infusing then
-                  case Past.Last_In_Infusing is
-                     when Infusion_States.Filling
-                        | Infusion_States.All_Given
-                        | Infusion_States.Where_It_Was =>
-                        Active.Top :=
-                          Moved (Active.Top, Chart.Infusing, Chart.Running);
-                        Enter_Filling;
-                     when Infusion_States.Loading =>
-                        Active.Top :=
-                          Moved (Active.Top, Chart.Infusing, Chart.Running);
-                        Active.Top :=
-                          Moved (Active.Top, Chart.Running, Chart.Giving);
-                        Enter_Loading;
-                     when Infusion_States.Maintaining =>
-                        Active.Top :=
-                          Moved (Active.Top, Chart.Infusing, Chart.Running);
-                        Active.Top :=
-                          Moved (Active.Top, Chart.Running, Chart.Giving);
-                        Enter_Maintaining;
-                     when Infusion_States.Trickling =>
-                        Enter_Trickling;
-                  end case;
-               else
-                  Active.Top :=
-                    Moved (Active.Top, Chart.Infusing, Chart.Running);
-                  Enter_Filling;
-               end if;
-            when Default_Of_Where_It_Was =>
-               Active.Top :=
-                 Moved (Active.Top, Chart.Where_It_Was, Chart.Running);
-               Enter_Filling;
-            when Ready =>
-               Leave_Motor;
-               Active.Sensor :=
-                 Moved (Active.Sensor, Active_At_First.Sensor,
-                    Chart.Nowhere, Before.Top = Infusion_States.Self_Test);
-               Exit_Self_Test;
-               Enter_Programming;
-            when Again =>
-               Leave_Motor;
-               Active.Sensor :=
-                 Moved (Active.Sensor, Active_At_First.Sensor,
-                    Chart.Nowhere, Before.Top = Infusion_States.Self_Test);
-               Exit_Self_Test;
-               Enter_Self_Test;
-               Enter_Turning;
-               Active.Sensor :=
-                 Moved (Active.Sensor, Chart.Nowhere, Chart.Listening,
-                    Active.Top = Chart.Self_Test);
-            when Order_Portion =>
-               Self.Data.Portion := Item.Value_Portion;
-            when Order_Volume =>
-               Self.Data.Volume := Item.Value_Volume;
-         end case;
-      end Fire_From_Restore_Where_It_Was;
-
-      subtype From_Start is Selection range Start .. Give_Up;
-
-      procedure Fire_From_Start (Chosen : From_Start)
-      with
-        Pre => Is_Begun (Chosen),
-        Post =>
-          Is_Still (Self'Old)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Active = Chart.Innermost (Self)
-      is
-      begin
-         case Chosen is
-            when Start =>
-               Active.Top :=
-                 Moved (Active.Top, Chart.Programming, Chart.Nowhere,
-                    Active.Motor = Chart.Nowhere
-                    and then Active.Sensor = Chart.Nowhere);
-               Self.Data.Given := 0;
-               Active.Top :=
-                 Moved (Active.Top, Chart.Nowhere, Chart.Nowhere,
-                    Active.Motor = Chart.Nowhere
-                    and then Active.Sensor = Chart.Nowhere);
-               Enter_Infusing;
-               Active.Top :=
-                 Moved (Active.Top, Chart.Infusing, Chart.Running);
-               Enter_Filling;
-            when Stop =>
-               Leave_Infusing;
-               Exit_Infusing;
-               Enter_Programming;
-            when Lost | Trouble =>
-               Leave_Infusing;
-               Exit_Infusing;
-               Enter_Alarm;
-               Enter_Sounding;
-            when Resume =>
-               Active.Top :=
-                 Moved (Active.Top, Active_At_First.Top, Chart.Alarm,
-                    Before.Top in Infusion_States.Alarm);
-               Exit_Alarm;
-               Active.Top :=
-                 Moved (Active.Top, Chart.Nowhere, Chart.May_Go_On);
-            when Give_Up =>
-               Active.Top :=
-                 Moved (Active.Top, Active_At_First.Top, Chart.Alarm,
-                    Before.Top in Infusion_States.Alarm);
-               Exit_Alarm;
-               Enter_Programming;
-         end case;
-      end Fire_From_Start;
-
-      subtype From_Defer_New_Portion_In_Self_Test is
-        Selection
-        range Defer_New_Portion_In_Self_Test
-        .. Not_Yet;
-
-      procedure Fire_From_Defer_New_Portion_In_Self_Test
-        (Chosen : From_Defer_New_Portion_In_Self_Test)
-      with
-        Pre => Is_Begun (Chosen),
-        Post =>
-          Is_Still (Self'Old)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Active = Chart.Innermost (Self)
-      is
-      begin
-         case Chosen is
-            when Defer_New_Portion_In_Self_Test
-               | Defer_New_Volume_In_Self_Test
-               | Defer_New_Portion_In_Alarm =>
-               null;
-            when Go_On =>
-               Active.Top :=
-                 Moved (Active.Top, Chart.May_Go_On, Chart.Nowhere);
-               Enter_Infusing;
-               Active.Top :=
-                 Moved (Active.Top, Chart.Infusing, Chart.Where_It_Was);
-            when Not_Yet =>
-               Active.Top :=
-                 Moved (Active.Top, Chart.May_Go_On, Chart.Nowhere);
-               Enter_Alarm;
-               Enter_Sounding;
-         end case;
-      end Fire_From_Defer_New_Portion_In_Self_Test;
    begin
       Self.Started := True;
       Self.Place := Target (Chosen, Before, Past);
@@ -704,16 +446,151 @@ is
             Active.Sensor :=
               Moved (Active.Sensor, Chart.Nowhere, Chart.Listening,
                  Active.Top = Chart.Self_Test);
-         when Turned .. Filled_Up =>
-            Fire_From_Turned (Chosen);
-         when Beat .. Remind =>
-            Fire_From_Beat (Chosen);
-         when Restore_Where_It_Was .. Order_Volume =>
-            Fire_From_Restore_Where_It_Was (Chosen);
-         when Start .. Give_Up =>
-            Fire_From_Start (Chosen);
-         when Defer_New_Portion_In_Self_Test .. Not_Yet =>
-            Fire_From_Defer_New_Portion_In_Self_Test (Chosen);
+         when Turned =>
+            Exit_Turning;
+            Enter_Motor_Good;
+         when Heard =>
+            Active.Sensor :=
+              Moved (Active.Sensor, Chart.Listening, Chart.Nowhere);
+            Enter_Sensor_Good;
+         when Loaded =>
+            Active.Top := Moved (Active.Top, Chart.Loading, Chart.Giving);
+            Enter_Maintaining;
+         when Change =>
+            Active.Top :=
+              Moved (Active.Top, Chart.Maintaining, Chart.Giving);
+            Self.Data.Portion := Item.Value_Portion;
+            Active.Top := Moved (Active.Top, Chart.Giving, Chart.Giving);
+            Enter_Maintaining;
+         when Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
+            | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
+            | Defer_New_Portion_In_Alarm =>
+            null;
+         when Filled_Up =>
+            Exit_Filling;
+            Active.Top := Moved (Active.Top, Chart.Running, Chart.Giving);
+            Enter_Loading;
+         when Beat =>
+            Self.Data.Given :=
+              Infusion_System.Unit_Ul'Min
+                (Self.Data.Given + Self.Data.Speed, Self.Data.Volume);
+         when Enough =>
+            Active.Top :=
+              Moved (Active.Top, Active_At_First.Top, Chart.Running,
+                 Before.Top in Infusion_States.Giving);
+            Enter_All_Given;
+         when Finished =>
+            Leave_Running;
+            Exit_Running;
+            Enter_Trickling;
+         when Hush =>
+            Active.Top := Moved (Active.Top, Chart.Sounding, Chart.Alarm);
+            Enter_Silent;
+         when Remind =>
+            Active.Top := Moved (Active.Top, Chart.Silent, Chart.Alarm);
+            Enter_Sounding;
+         when Restore_Where_It_Was =>
+            Active.Top :=
+              Moved (Active.Top, Chart.Where_It_Was, Chart.Infusing);
+            if Past.Known_In_Infusing then
+               case Past.Last_In_Infusing is
+                  when Infusion_States.Filling | Infusion_States.All_Given
+                     | Infusion_States.Where_It_Was =>
+                     Active.Top :=
+                       Moved (Active.Top, Chart.Infusing, Chart.Running);
+                     Enter_Filling;
+                  when Infusion_States.Loading =>
+                     Active.Top :=
+                       Moved (Active.Top, Chart.Infusing, Chart.Running);
+                     Active.Top :=
+                       Moved (Active.Top, Chart.Running, Chart.Giving);
+                     Enter_Loading;
+                  when Infusion_States.Maintaining =>
+                     Active.Top :=
+                       Moved (Active.Top, Chart.Infusing, Chart.Running);
+                     Active.Top :=
+                       Moved (Active.Top, Chart.Running, Chart.Giving);
+                     Enter_Maintaining;
+                  when Infusion_States.Trickling =>
+                     Enter_Trickling;
+               end case;
+            else
+               Active.Top :=
+                 Moved (Active.Top, Chart.Infusing, Chart.Running);
+               Enter_Filling;
+            end if;
+         when Default_Of_Where_It_Was =>
+            Active.Top :=
+              Moved (Active.Top, Chart.Where_It_Was, Chart.Running);
+            Enter_Filling;
+         when Ready =>
+            Leave_Motor;
+            Active.Sensor :=
+              Moved (Active.Sensor, Active_At_First.Sensor, Chart.Nowhere,
+                 Before.Top = Infusion_States.Self_Test);
+            Exit_Self_Test;
+            Enter_Programming;
+         when Again =>
+            Leave_Motor;
+            Active.Sensor :=
+              Moved (Active.Sensor, Active_At_First.Sensor, Chart.Nowhere,
+                 Before.Top = Infusion_States.Self_Test);
+            Exit_Self_Test;
+            Enter_Self_Test;
+            Enter_Turning;
+            Active.Sensor :=
+              Moved (Active.Sensor, Chart.Nowhere, Chart.Listening,
+                 Active.Top = Chart.Self_Test);
+         when Order_Portion =>
+            Self.Data.Portion := Item.Value_Portion;
+         when Order_Volume =>
+            Self.Data.Volume := Item.Value_Volume;
+         when Start =>
+            Active.Top :=
+              Moved (Active.Top, Chart.Programming, Chart.Nowhere,
+                 Active.Motor = Chart.Nowhere
+                 and then Active.Sensor = Chart.Nowhere);
+            Self.Data.Given := 0;
+            Active.Top :=
+              Moved (Active.Top, Chart.Nowhere, Chart.Nowhere,
+                 Active.Motor = Chart.Nowhere
+                 and then Active.Sensor = Chart.Nowhere);
+            Enter_Infusing;
+            Active.Top := Moved (Active.Top, Chart.Infusing, Chart.Running);
+            Enter_Filling;
+         when Stop =>
+            Leave_Infusing;
+            Exit_Infusing;
+            Enter_Programming;
+         when Lost | Trouble =>
+            Leave_Infusing;
+            Exit_Infusing;
+            Enter_Alarm;
+            Enter_Sounding;
+         when Resume =>
+            Active.Top :=
+              Moved (Active.Top, Active_At_First.Top, Chart.Alarm,
+                 Before.Top in Infusion_States.Alarm);
+            Exit_Alarm;
+            Active.Top :=
+              Moved (Active.Top, Chart.Nowhere, Chart.May_Go_On);
+         when Give_Up =>
+            Active.Top :=
+              Moved (Active.Top, Active_At_First.Top, Chart.Alarm,
+                 Before.Top in Infusion_States.Alarm);
+            Exit_Alarm;
+            Enter_Programming;
+         when Go_On =>
+            Active.Top :=
+              Moved (Active.Top, Chart.May_Go_On, Chart.Nowhere);
+            Enter_Infusing;
+            Active.Top :=
+              Moved (Active.Top, Chart.Infusing, Chart.Where_It_Was);
+         when Not_Yet =>
+            Active.Top :=
+              Moved (Active.Top, Chart.May_Go_On, Chart.Nowhere);
+            Enter_Alarm;
+            Enter_Sounding;
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
@@ -723,38 +600,28 @@ is
       Now   : Occurrence;
       Ins   : Inputs;
       Item  : Event;
-      Fired : out Firing_List) is
+      Fired : out Firings.List) is
       C : Choice;
 
       procedure Fire_Whole (T : Firing)
       with
         Pre => Is_Ready (Self, Ins, Item, T) and then Fired.Count <= 6,
         Post =>
-          Fired.Count in Fired.Count'Old + 1 .. Fired.Count'Old + 3
+          Firings.Is_Added (Fired'Old, T, Fired)
           and then Self.Started
-          and then Fired.Items (Fired.Count'Old + 1) = T
-          and then (for all J in 1 .. Fired.Count'Old =>
-                Fired.Items (J) = Fired.Items'Old (J))
-          and then (for all J in Fired.Count'Old + 2 .. Fired.Count =>
-                Is_Segment (Fired.Items (J)))
           and then Segments_Left (Self.Place) = 0
           and then Is_Safe (Self.Place, Self.Data)
       is
-         Before : constant Firing_List := Fired with Ghost;
+         Before : constant Firings.List := Fired with Ghost;
          Segment : Selection;
       begin
          Fire (Self, Ins, Item, T);
-         Fired.Count := Fired.Count + 1;
-         Fired.Items (Fired.Count) := T;
+         Firings.Add (Fired, T);
          for I in 1 .. 2 loop
             pragma Loop_Invariant
               (Fired.Count = Before.Count + I
+               and then Firings.Is_Added (Before, T, Fired)
                and then Self.Started
-               and then Fired.Items (Before.Count + 1) = T
-               and then (for all J in 1 .. Before.Count =>
-                     Fired.Items (J) = Before.Items (J))
-               and then (for all J in Before.Count + 2 .. Fired.Count =>
-                     Is_Segment (Fired.Items (J)))
                and then Segments_Left (Self.Place) <= 3 - I
                and then Is_Safe (Self.Place, Self.Data));
             if Segments_Left (Self.Place) = 0 then
@@ -762,12 +629,11 @@ is
             end if;
             Segment := Next_Segment (Self, Ins, Item);
             Fire (Self, Ins, Item, Segment);
-            Fired.Count := Fired.Count + 1;
-            Fired.Items (Fired.Count) := Segment;
+            Firings.Add (Fired, Segment);
          end loop;
       end Fire_Whole;
    begin
-      Fired := (Count => 0, Items => (others => None));
+      Fired := Firings.Nothing;
       if Now = Start_Of_Region then
          Fire_Whole (Initial_Entry);
       else
@@ -781,8 +647,8 @@ is
             pragma Assert
               (Fired.Count <= 3
                and then Is_Of_Choice (Fired, C, Motor_Transition'Last)
-               and then Is_Ordered (Fired)
-               and then (if C.Motor /= None then Has (Fired, C.Motor)));
+               and then (if C.Motor /= None
+                     then Firings.Has (Fired, C.Motor)));
             if C.Sensor /= None and then In_Source (C.Sensor, Self.Place)
             then
                Fire_Whole (C.Sensor);
@@ -790,18 +656,12 @@ is
             pragma Assert
               (Fired.Count <= 6
                and then Is_Of_Choice (Fired, C, Sensor_Transition'Last)
-               and then Is_Ordered (Fired)
-               and then (if C.Motor /= None then Has (Fired, C.Motor)
-                  elsif C.Sensor /= None then Has (Fired, C.Sensor)));
+               and then (if C.Motor /= None
+                     then Firings.Has (Fired, C.Motor)
+                  elsif C.Sensor /= None then Firings.Has (Fired, C.Sensor)));
             if C.Top /= None and then In_Source (C.Top, Self.Place) then
                Fire_Whole (C.Top);
             end if;
-            pragma Assert
-              (Is_Of_Choice (Fired, C, Top_Transition'Last)
-               and then Is_Ordered (Fired)
-               and then (if C.Motor /= None then Has (Fired, C.Motor)
-                  elsif C.Sensor /= None then Has (Fired, C.Sensor)
-                  elsif C.Top /= None then Has (Fired, C.Top)));
          end if;
       end if;
    end Step;

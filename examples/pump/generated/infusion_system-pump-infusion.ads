@@ -7,6 +7,7 @@ pragma Warnings (Off, "*array aggregate using*");
 
 with Ravenchart.Timers;
 with Ravenchart.Deferrals;
+with Ravenchart.Firing_Lists;
 
 package Infusion_System.Pump.Infusion
 with SPARK_Mode
@@ -100,14 +101,6 @@ is
       Last_In_Infusing  : Infusion_States.Infusing :=
         Infusion_States.Filling;
       Known_In_Infusing : Boolean := False;
-   end record;
-
-   type Firing_Array is array (1 .. 9) of Selection;
-
-   --  What one step has fired, in order; None behind the last.
-   type Firing_List is record
-      Count : Natural range 0 .. 9 := 0;
-      Items : Firing_Array := (others => None);
    end record;
 
    subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 3);
@@ -215,6 +208,17 @@ is
       Deferred            : Deferrals.Store;
       Data                : Variables;
    end record;
+
+   function Is_Segment (T : Selection) return Boolean is
+     (T in Restore_Where_It_Was | Default_Of_Where_It_Was | Go_On | Not_Yet);
+   --  Does it go on from a choice or history?
+
+   package Firings is new Ravenchart.Firing_Lists
+     (Selection => Selection,
+      No_Selection => None,
+      Is_Segment => Is_Segment,
+      Most_Segments => 2,
+      Capacity => 9);
 
    function In_Source
      (T : Transition; Place : Infusion_States.Configuration)
@@ -440,51 +444,30 @@ is
       else 0);
    --  How many segments follow at most; none but in a choice or history.
 
-   function Is_Segment (T : Selection) return Boolean is
-     (T in Restore_Where_It_Was | Default_Of_Where_It_Was | Go_On | Not_Yet);
-   --  Does it go on from a choice or history?
-
-   function Is_Only (Fired : Firing_List; T : Selection) return Boolean is
-     (Fired.Count > 0
-      and then Fired.Items (1) = T
-      and then (for all I in 2 .. Fired.Count =>
-            Is_Segment (Fired.Items (I)))) with Ghost;
-   --  Is that fired, with the segments of its way, and nothing else?
-
    function Choose
      (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
      return Choice
    with Post => Is_Choice (Choose'Result, Self, Now, Ins, Item);
    --  The transitions that one occurrence asks for.
 
-   function Has (Fired : Firing_List; T : Selection) return Boolean is
-     (for some I in 1 .. Fired.Count => Fired.Items (I) = T) with Ghost;
-
    function Is_Of_Choice
-     (Fired : Firing_List; C : Choice; Last : Selection)
+     (Fired : Firings.List; C : Choice; Last : Selection)
      return Boolean is
-     (for all I in 1 .. Fired.Count =>
-         Is_Segment (Fired.Items (I))
-         or else (Fired.Items (I) <= Last
-            and then Fired.Items (I) in C.Motor | C.Sensor | C.Top))
+     (Firings.Is_Ordered (Fired)
+      and then (for all I in 1 .. Fired.Count =>
+            Is_Segment (Fired.Items (I))
+            or else (Fired.Items (I) <= Last
+               and then Fired.Items (I) in C.Motor | C.Sensor | C.Top)))
    with Ghost;
-   --  Is what has fired chosen, and none of it after Last?
+   --  Is what has fired chosen, in the order of the lanes, and none of it
+   --  after Last?
 
-   function Is_Ordered (Fired : Firing_List) return Boolean is
-     (for all I in 1 .. Fired.Count =>
-         Is_Segment (Fired.Items (I))
-         or else (for all J in 1 .. I - 1 =>
-               Is_Segment (Fired.Items (J))
-               or else Fired.Items (J) < Fired.Items (I))) with Ghost;
-   --  Do the lanes fire in their order?
-
-   function Follows (Fired : Firing_List; C : Choice) return Boolean is
-     (if Is_Deferral (C.Top) then Is_Only (Fired, C.Top)
+   function Follows (Fired : Firings.List; C : Choice) return Boolean is
+     (if Is_Deferral (C.Top) then Firings.Is_Only (Fired, C.Top)
       else Is_Of_Choice (Fired, C, Top_Transition'Last)
-         and then Is_Ordered (Fired)
-         and then (if C.Motor /= None then Has (Fired, C.Motor)
-            elsif C.Sensor /= None then Has (Fired, C.Sensor)
-            elsif C.Top /= None then Has (Fired, C.Top))) with Ghost;
+         and then (if C.Motor /= None then Firings.Has (Fired, C.Motor)
+            elsif C.Sensor /= None then Firings.Has (Fired, C.Sensor)
+            elsif C.Top /= None then Firings.Has (Fired, C.Top))) with Ghost;
    --  A deferral is fired alone. Otherwise what is chosen is fired, lane by
    --  lane, and nothing else; a lane inside a state that transitions leave
    --  may be overtaken by an earlier one.
@@ -642,7 +625,7 @@ is
       Now   : Occurrence;
       Ins   : Inputs;
       Item  : Event;
-      Fired : out Firing_List)
+      Fired : out Firings.List)
    with
      Pre =>
        Is_Kept (Self) and then (Now = Start_Of_Region) = not Self.Started,
@@ -652,7 +635,8 @@ is
        and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
        and then (if Segments_Left (Self.Place'Old) = 0
              then Segments_Left (Self.Place) = 0)
-       and then ((Now = Start_Of_Region and Is_Only (Fired, Initial_Entry))
+       and then ((Now = Start_Of_Region
+           and Firings.Is_Only (Fired, Initial_Entry))
           or (Now /= Start_Of_Region
              and Follows (Fired, Choose (Self'Old, Now, Ins, Item))));
    --  One run-to-completion step.

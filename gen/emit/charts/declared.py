@@ -38,7 +38,7 @@ from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 
 from .history import restored_functions, restored_place
-from .lanes import declared_lanes
+from .lanes import LIST, declared_lanes, firing_list
 from .lasting import declared_lasting
 from .operations import operations
 from .records import region_types
@@ -55,6 +55,7 @@ def emit_region(
     shape = RegionShape(system, component, region, noted=noted)
     withs = ["Ravenchart.Timers"] if shape.timers else []
     withs += ["Ravenchart.Deferrals"] if shape.deferring else []
+    withs += ["Ravenchart.Firing_Lists"] if shape.listed else []
     spec = Package(shape.package, _spec(shape), (SPARK,))
     body = Package(shape.package, (*_quiet(shape), *body_of(shape)), (SPARK,), is_body=True)
     seen = ("Ravenchart.Steps",) if noted else ()
@@ -63,7 +64,9 @@ def emit_region(
 
 def _spec(shape: RegionShape) -> tuple[Decl, ...]:
     safe = Safety(shape).declared()
-    return (*_quiet(shape), *region_types(shape), *_declared(shape), *safe, *operations(shape))
+    lists = firing_list(shape) if shape.listed else []
+    types = (*region_types(shape), *lists)
+    return (*_quiet(shape), *types, *_declared(shape), *safe, *operations(shape))
 
 
 def _quiet(shape: RegionShape) -> tuple[Pragma, ...]:
@@ -178,7 +181,7 @@ def _selections(shape: RegionShape) -> list[Decl]:
         items.append(
             Subprogram(
                 f"Has_Left_{ada_case(state)}",
-                (Param("Fired", "in", "Firing_List"),),
+                (Param("Fired", "in", LIST),),
                 "Boolean",
                 expression=ForSome("I", "1 .. Fired.Count", left),
             )

@@ -53,10 +53,10 @@ from .nodes import CHART, Nodes, joined
 from .safety import Safety, used
 from .shape import START, RegionShape
 
-MANY = 24
+MANY = 100
 """More transitions than so many, counted once for each lane, are fired by procedures of a few
 each (`BATCH`)."""
-BATCH = 6
+BATCH = 12
 """So many transitions each of them fires: what the prover must see at a time stays small."""
 
 _BEFORE, _CHOSEN = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")

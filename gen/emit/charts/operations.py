@@ -30,7 +30,7 @@ from ravenchart.gen.emit.ada.syntax import (
 from ravenchart.gen.emit.language.events import name_of
 
 from .deferring import due, is_taken
-from .lanes import followed
+from .lanes import LIST, followed, is_only
 from .lasting import Lasting
 from .safety import Safety
 from .selection import is_selected
@@ -78,7 +78,7 @@ def operations(shape: RegionShape) -> list[Decl]:
         ),
         Comment(_POLLS if shape.polls_more else _POLLS_TIME),
     ]
-    fired = "Firing_List" if shape.listed else "Selection"
+    fired = LIST if shape.listed else "Selection"
     params = shape.step_params()
     items += [
         Subprogram(
@@ -175,6 +175,6 @@ def _stepped(shape: RegionShape) -> list[Expr]:
         facts.append(IfExpr(((rests, still),), None))
     if not shape.single:
         return [*facts, followed(shape)]
-    only = call("Is_Only", Ref("Fired"), Ref(first))
+    only = is_only(Ref(first))
     some = IfExpr(((OperatorChain(">", (Ref("Fired.Count"), number(0))), only),), None)
     return [*facts, IfExpr(((begun, started),), chosen), some]

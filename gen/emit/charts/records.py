@@ -13,8 +13,6 @@ from ravenchart.gen.emit.ada.naming import (
 )
 from ravenchart.gen.emit.ada.syntax import (
     FALSE,
-    Aggregate,
-    Arg,
     Comment,
     Decl,
     EnumType,
@@ -22,7 +20,6 @@ from ravenchart.gen.emit.ada.syntax import (
     RecordDeclaration,
     Ref,
     UseType,
-    number,
 )
 from ravenchart.gen.emit.ada.syntax import RecordComponent as Field
 from ravenchart.gen.emit.components.packages import reading_type
@@ -154,20 +151,6 @@ def _records(shape: RegionShape) -> list[Decl]:
         items += [
             Comment("What histories ask for: the last leaf left in a region, if any."),
             RecordDeclaration("Memory", tuple(past)),
-        ]
-    if shape.listed:
-        most = shape.most_firings
-        none = Aggregate((Arg("others", Ref("None")),))
-        items += [
-            PlainType("Firing_Array", f"array (1 .. {most}) of Selection"),
-            Comment("What one step has fired, in order; None behind the last."),
-            RecordDeclaration(
-                "Firing_List",
-                (
-                    Field("Count", f"Natural range 0 .. {most}", number(0)),
-                    Field("Items", "Firing_Array", none),
-                ),
-            ),
         ]
     if shape.timers:
         all_of = f"Ravenchart.Timers.Timer_Array (1 .. {len(shape.timers)})"

@@ -29,7 +29,7 @@ from ravenchart.gen.emit.language.terms import expressions_in, flow_operators
 from .deferring import take_due
 from .firing import Moves
 from .guards import guard_operators, guards_of
-from .lanes import fire, lane_step, passing_step
+from .lanes import LIST, fire, lane_step, passing_step
 from .safety import Safety
 from .selection import selectors, whole
 from .shape import START, RegionShape
@@ -116,7 +116,7 @@ def _step(shape: RegionShape, moves: Moves) -> Subprogram:
         params[0],
         Param("Now", "in", "Occurrence"),
         *params[1:],
-        Param("Fired", "out", "Firing_List" if shape.listed else "Selection"),
+        Param("Fired", "out", LIST if shape.listed else "Selection"),
     )
     if not shape.listed:
         return Subprogram("Step", profile, body=_plain_step(shape, moves))

@@ -223,7 +223,7 @@ class Rows(Site):
         name = ada_case(region.name)
         declarations: list[Decl] = [
             Object("Now", f"{package}.Occurrence"),
-            Object("Fired", f"{package}.{'Firing_List' if shape.listed else 'Selection'}"),
+            Object("Fired", f"{package}.{'Firings.List' if shape.listed else 'Selection'}"),
         ]
         if len(shape.lanes) > 1 and self._note("State", region.name, "region"):
             states = f"{self.component}.{shape.states}"
