@@ -16,8 +16,7 @@ is
       Self  : Region;
       Now   : Occurrence;
       Ins   : Inputs;
-      Item  : Event)
-     return Selection
+      Item  : Event) return Selection
    with
      Post =>
        Is_Selection (Selected'Result, First, Last, Self, Now, Ins, Item)
@@ -35,8 +34,7 @@ is
    end Selected;
 
    function Next_Segment
-     (Self : Region; Ins : Inputs; Item : Event)
-     return Transition
+     (Self : Region; Ins : Inputs; Item : Event) return Transition
    with
      Pre => Segments_Left (Self.Place) > 0,
      Post =>
@@ -59,7 +57,7 @@ is
    end Next_Segment;
 
    function Choose
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
      return Choice is
       C : Choice;
    begin
@@ -147,7 +145,7 @@ is
    end Tick;
 
    procedure Poll
-     (Self : in out Region; Now  : out Occurrence; Item : out Event) is
+     (Self : in out Region; Now : out Occurrence; Item : out Event) is
       Due : Natural;
       Released : Boolean;
    begin
@@ -198,7 +196,7 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self   : Region; Item   : Event; Chosen : Firing)
+     (Before : Region; Self : Region; Item : Event; Chosen : Firing)
      return Boolean is
      (Self.Timers
       = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Place,
@@ -211,7 +209,7 @@ is
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self   : Region; Item   : Event; Chosen : Firing)
+     (Before : Region; Self : Region; Item : Event; Chosen : Firing)
      return Boolean is
      (Self.Started
       and then Self.Place = Target (Chosen, Before.Place, Before.Past)
@@ -221,10 +219,7 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
 
    procedure Fire
-     (Self   : in out Region;
-      Ins    : Inputs;
-      Item   : Event;
-      Chosen : Firing)
+     (Self : in out Region; Ins : Inputs; Item : Event; Chosen : Firing)
    with
      Pre => Is_Ready (Self, Ins, Item, Chosen),
      Post =>
@@ -243,8 +238,7 @@ is
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
          To_Node     : Chart.Node;
-         In_Order    : Boolean := True)
-        return Chart.Node is
+         In_Order    : Boolean := True) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node and then In_Order
             then To_Node
          else Chart.Disorder) with Ghost;

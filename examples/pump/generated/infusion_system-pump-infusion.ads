@@ -154,17 +154,14 @@ is
    --  Does an active state defer it?
 
    function Is_Freed
-     (Name  : Event_Name;
-      D     : Domain;
-      Place : Infusion_States.Configuration)
+     (Name : Event_Name; D : Domain; Place : Infusion_States.Configuration)
      return Boolean is
      (case Name is
         when New_Portion =>
            (D = Everything and then Place.Top = Infusion_States.Self_Test)
            or else (D in Inside_Running | Inside_Infusing | Everything
               and then Place.Top = Infusion_States.Filling)
-           or else (D
-              in Inside_Giving | Inside_Running | Inside_Infusing
+           or else (D in Inside_Giving | Inside_Running | Inside_Infusing
                 | Everything
               and then Place.Top = Infusion_States.Loading)
            or else (D = Everything
@@ -176,8 +173,7 @@ is
    --  entered.
 
    function Is_Deferral (T : Selection) return Boolean is
-     (T
-      in Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
+     (T in Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
         | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
         | Defer_New_Portion_In_Alarm);
 
@@ -221,8 +217,7 @@ is
       Capacity => 9);
 
    function In_Source
-     (T : Transition; Place : Infusion_States.Configuration)
-     return Boolean is
+     (T : Transition; Place : Infusion_States.Configuration) return Boolean is
      (case T is
         when Turned =>
            Place.Top = Infusion_States.Self_Test
@@ -258,8 +253,7 @@ is
       Self : Region;
       Now  : Occurrence;
       Ins  : Inputs;
-      Item : Event)
-     return Boolean is
+      Item : Event) return Boolean is
      (In_Source (T, Self.Place)
       and then (case T is
            when Turned => Now = Completion_Of_Turning,
@@ -320,7 +314,7 @@ is
    --  The leaf that deep history enters in Infusing.
 
    function Target
-     (T     : Firing; Place : Infusion_States.Configuration; Past  : Memory)
+     (T : Firing; Place : Infusion_States.Configuration; Past : Memory)
      return Infusion_States.Configuration is
      (case T is
         when Initial_Entry | Again =>
@@ -358,8 +352,7 @@ is
      (Timers : Time_Outs;
       D      : Domain;
       Before : Infusion_States.Configuration;
-      After  : Infusion_States.Configuration)
-     return Time_Outs is
+      After  : Infusion_States.Configuration) return Time_Outs is
      ((1 =>
          Ravenchart.Timers.Moved (Timers (1), D in Everything | Beginning,
             D /= Beginning and then Before.Top = Infusion_States.Self_Test,
@@ -381,19 +374,17 @@ is
    --  entered.
 
    function Remembered
-     (D     : Domain; Place : Infusion_States.Configuration; Past  : Memory)
+     (D : Domain; Place : Infusion_States.Configuration; Past : Memory)
      return Memory is
      ((Last_In_Infusing =>
-         (if D
-             in Inside_Running | Inside_Giving | Inside_Infusing
+         (if D in Inside_Running | Inside_Giving | Inside_Infusing
                | Everything
              and then Place.Top in Infusion_States.Infusing
              and then Place.Top /= Infusion_States.Where_It_Was
              then Place.Top
           else Past.Last_In_Infusing),
        Known_In_Infusing =>
-         (if D
-             in Inside_Running | Inside_Giving | Inside_Infusing
+         (if D in Inside_Running | Inside_Giving | Inside_Infusing
                | Everything
              and then Place.Top in Infusion_States.Infusing
              and then Place.Top /= Infusion_States.Where_It_Was
@@ -409,8 +400,7 @@ is
       Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs;
-      Item   : Event)
-     return Boolean is
+      Item   : Event) return Boolean is
      ((Chosen = None
        or else (Chosen in First .. Last
           and then Enabled (Chosen, Self, Now, Ins, Item)))
@@ -424,8 +414,7 @@ is
       Self : Region;
       Now  : Occurrence;
       Ins  : Inputs;
-      Item : Event)
-     return Boolean is
+      Item : Event) return Boolean is
      (Is_Selection (C.Motor, Motor_Transition'First, Motor_Transition'Last,
          Self, Now, Ins, Item)
       and then Is_Selection (C.Sensor, Sensor_Transition'First,
@@ -437,22 +426,20 @@ is
    --  Each lane's first; none where a lane inside it has one.
 
    function Segments_Left
-     (Place : Infusion_States.Configuration)
-     return Natural is
+     (Place : Infusion_States.Configuration) return Natural is
      (if Place.Top = Infusion_States.May_Go_On then 2
       elsif Place.Top = Infusion_States.Where_It_Was then 1
       else 0);
    --  How many segments follow at most; none but in a choice or history.
 
    function Choose
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
      return Choice
    with Post => Is_Choice (Choose'Result, Self, Now, Ins, Item);
    --  The transitions that one occurrence asks for.
 
    function Is_Of_Choice
-     (Fired : Firings.List; C : Choice; Last : Selection)
-     return Boolean is
+     (Fired : Firings.List; C : Choice; Last : Selection) return Boolean is
      (Firings.Is_Ordered (Fired)
       and then (for all I in 1 .. Fired.Count =>
             Is_Segment (Fired.Items (I))
@@ -576,7 +563,7 @@ is
         when others => Conditions);
 
    procedure Poll
-     (Self : in out Region; Now  : out Occurrence; Item : out Event)
+     (Self : in out Region; Now : out Occurrence; Item : out Event)
    with
      Post =>
        (Self.Place = Self.Place'Old

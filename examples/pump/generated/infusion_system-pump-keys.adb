@@ -51,8 +51,7 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started and then Self.Leaf = Target (Chosen, Before.Leaf))
    with Ghost;
    --  Is the region after it as declared?
@@ -76,8 +75,7 @@ is
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
    begin

@@ -277,7 +277,7 @@ is
 
    procedure Step_Chart is
       Now : Qhsm.Chart.Occurrence;
-      Fired : Qhsm.Chart.Firing_List;
+      Fired : Qhsm.Chart.Firings.List;
 
       use type Qhsm.Chart.Occurrence;
 

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
-from .layout import CUT, SOFT, STEP, Doc, cat, group, laid_out, nest, upright
+from .layout import CUT, SOFT, STEP, Doc, cat, group, laid_out, nest, pad, upright
 from .syntax import (
     NULL,
     Aggregate,
@@ -54,8 +54,6 @@ from .syntax import (
 )
 
 WIDTH = 79
-ONE_LINE = 60
-"""Longer parameter lists go one to a line."""
 LONG_REFERENCE = 56
 """Longer names do not fit where they stand deep in other constructs."""
 ADA_NAME = re.compile(r"[\w.]+( \(\w+\)(\.\w+)?)?")
@@ -110,6 +108,7 @@ _LEVELS = (
 )
 """The binary operators of Ada, each row binding its operands closer than the one before."""
 _CLOSENESS = {operator: level for level, row in enumerate(_LEVELS) for operator in row}
+_MEMBERSHIP = ("in", "not in")
 _ARITHMETIC = _LEVELS[2] + _LEVELS[3]
 """Operators without which a line may go on: their operands fill the lines."""
 
@@ -169,6 +168,8 @@ def expression(expr: Expr) -> Doc:
             begin = _signed if operator in ("*", "/") else _operand
             head = begin(operands[0], operator, first=True)
             rest = [_signed(o, operator) for o in operands[1:]]
+            if operator in _MEMBERSHIP and isinstance(operands[0], Ref):
+                return group(head, f" {operator} ", nest(*rest, by=2))
             place = group if operator in _ARITHMETIC else cat
             return group(head, *(place(SOFT, f"{operator} ", nest(r, by=2)) for r in rest))
         case Prefix(operator, operand):
@@ -278,21 +279,22 @@ def _aspects(aspects: Sequence[Aspect]) -> Doc:
 
 @lru_cache(maxsize=8192)
 def _params(params: Sequence[Param]) -> Doc:
-    texts = [f"{'' if p.mode == 'in' else p.mode + ' '}{p.type}" for p in params]
-    plain = sum(len(p.name) + len(t) + 5 for p, t in zip(params, texts, strict=True))
-    #  names are padded only where each stands on a line of its own
-    width = max(len(p.name) for p in params) if plain > ONE_LINE else 0
-    docs = [f"{p.name:<{width}} : {t}" for p, t in zip(params, texts, strict=True)]
-    return nest(SOFT, group("(", nest(*_join(docs, ";"), by=1), ")"), by=2)
+    """All on one line; or one on each line, their colons below each other."""
+    width = max(len(p.name) for p in params)
+    docs = [
+        cat(
+            p.name, pad(width - len(p.name)), f" : {'' if p.mode == 'in' else p.mode + ' '}{p.type}"
+        )
+        for p in params
+    ]
+    return group("(", nest(*_join(docs, ";"), by=1), ")")
 
 
 def _subprogram(sub: Subprogram) -> Doc:
     keyword = "function" if sub.result else "procedure"
-    head = group(
-        f"{keyword} {sub.name}",
-        _params(sub.params) if sub.params else "",
-        nest(SOFT, f"return {sub.result}", by=2) if sub.result else "",
-    )
+    profile = [_params(sub.params)] if sub.params else []
+    profile += [f"return {sub.result}"] if sub.result else []
+    head = group(f"{keyword} {sub.name}", _profile(profile))
     aspects = _aspects(sub.aspects) if sub.aspects else ""
     if sub.expression is not None:
         inner = expression(sub.expression)
@@ -316,6 +318,13 @@ def _subprogram(sub: Subprogram) -> Doc:
         SOFT,
         f"end {sub.name};",
     )
+
+
+def _profile(parts: Sequence[Doc]) -> Doc:
+    """Parameters and result: behind the name, or below it."""
+    first, *rest = parts or ("",)
+    behind = (group(SOFT, part) for part in rest)
+    return nest(SOFT, first, *behind, by=2) if parts else ""
 
 
 def _object(decl: Object) -> Doc:

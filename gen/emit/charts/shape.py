@@ -64,8 +64,7 @@ TYPES = frozenset(
         *("safe_region", "initial_data"),
         *("occurrence", "selection", "firing", "transition", "choice", "domain", "memory", "chart"),
         *("variables", "inputs", "outbox", "region", "item"),
-        *("firing_list", "firing_array", "done_states", "freed_events"),
-        "deferrals",
+        *("firings", "deferrals", "done_states", "time_outs"),
     )
 )
 """What hides an event of the same name inside a region's package."""
