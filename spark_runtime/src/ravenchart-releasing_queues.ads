@@ -24,6 +24,7 @@ generic
    Ceiling : System.Any_Priority;
    --  At least the priority of every caller.
    Policy : Queueing.Overflow_Policy;
+   --  For elements that are put without another.
 package Ravenchart.Releasing_Queues
   with
     SPARK_Mode,
@@ -32,7 +33,10 @@ package Ravenchart.Releasing_Queues
        (Wake_Up with Synchronous, External)),
     Initializes    => (State, Wake_Up)
 is
-   procedure Put (Item : Element_Type; Status : out Queueing.Put_Status)
+   procedure Put
+     (Item      : Element_Type;
+      Status    : out Queueing.Put_Status;
+      When_Full : Queueing.Overflow_Policy := Policy)
    with Global => (In_Out => (State, Wake_Up));
    --  Queue Item and wake the caller of Wait; a full queue gives up an element
    --  and counts it.

@@ -34,6 +34,7 @@ from ravenchart.gen.emit.ada.syntax import (
 )
 from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
 from ravenchart.gen.emit.ada.syntax import OperatorChain as Operation
+from ravenchart.gen.emit.tables.trace_calls import fault_units
 from ravenchart.gen.language.terms import RecordType, Type
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, Provided, Remote, RemoteRead
@@ -77,8 +78,8 @@ def units_of(system: System, instance: Instance) -> Iterator[str]:
     if asked or heard(system, instance):
         yield CALLS
     if any(one.reply for one in asked):
-        yield from ("Ravenchart.Remote_Calls", "Ravenchart.Queueing", "Ravenchart.Health")
-        yield f"{root}.Health_Counts"
+        yield from ("Ravenchart.Remote_Calls", "Ravenchart.Queueing")
+        yield from fault_units(root)
     yield from (f"{root}.{ada_case(message.bus)}" for message in answered)
 
 

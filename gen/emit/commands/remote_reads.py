@@ -20,6 +20,7 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
+from ravenchart.gen.emit.tables.trace_calls import fault_units
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, RemoteRead
 from ravenchart.gen.model.component import Activity
@@ -46,8 +47,8 @@ def read_units(system: System, instance: Instance) -> Iterator[str]:
     """The units that the body of an instance needs for all of this."""
     root = ada_case(system.name)
     if copies(system, instance):
-        yield from (CALLS, "Ravenchart.Remote_Reads", "Ravenchart.Health")
-        yield f"{root}.Health_Counts"
+        yield from (CALLS, "Ravenchart.Remote_Reads")
+        yield from fault_units(root)
     for message in published_afar(system, instance):
         yield f"{root}.{ada_case(message.bus)}"
         if message.every > 1:

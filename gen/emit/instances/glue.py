@@ -23,9 +23,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Decl,
     Do,
     Expr,
-    IfStatement,
     Object,
-    OperatorChain,
     Package,
     Param,
     Pragma,
@@ -35,6 +33,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Unit,
     UseType,
     arguments,
+    do,
     number,
 )
 from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
@@ -66,6 +65,7 @@ from ravenchart.gen.emit.language.events import event_value, name_of, null_event
 from ravenchart.gen.emit.language.own_names import event_literal
 from ravenchart.gen.emit.language.places import Places
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spec
+from ravenchart.gen.emit.tables.trace_calls import FAULTS, element_constant, fault_units
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.commands import Need, Provided
@@ -102,10 +102,10 @@ class Glue(Site):
     def _body_withs(self) -> tuple[str, ...]:
         root = ada_case(self.system.name)
         component = self.instance.component
-        names = {"Ravenchart.Queueing", "Ravenchart.Health", "System", f"{root}.Health_Counts"}
+        names = {"System"}
         queued = bool(component.inputs()) or any(r.events() for r in component.regions)
-        if not queued and not self._served():
-            names -= {"Ravenchart.Queueing", "Ravenchart.Health", f"{root}.Health_Counts"}
+        if queued or self._served():
+            names |= {"Ravenchart.Queueing", "Ravenchart.Offers", *fault_units(root)}
         if not component.events and not self._served():
             names.add(f"{root}.{self.component}")
         if any(n.trace_depth for n in self.system.nodes):
@@ -211,15 +211,13 @@ class Glue(Site):
             yield watch_body(copy.need, copy_name(copy.need), self._passed(copy.need))
 
     def _lost(self, name: str) -> tuple[Stmt, ...]:
-        """Count a call that found no place."""
-        number_ = self._fault_number("Queue_Overflow")
-        return (self._fault("Queue_Overflow"), *self._note("Fault", name, "port", number_))
+        """Report a call that found no place."""
+        return (self._fault("Queue_Overflow", name, "port"),)
 
     def _passed(self, need: Need) -> tuple[Stmt, ...]:
-        """Count a reply that did not come in time, and tell of it."""
-        noted = self._note("Fault", need.name, "port", self._fault_number("Stale_Input"))
+        """Report a reply that did not come in time, and tell of it."""
         told = () if need.on_timeout is None else (self._raise(need.on_timeout),)
-        return (self._fault("Stale_Input"), *noted, *told)
+        return (self._fault("Stale_Input", need.name, "port"), *told)
 
     # --- body: objects
 
@@ -230,6 +228,7 @@ class Glue(Site):
         items += call_objects(self.system, self.instance)
         items += copy_objects(self.system, self.instance)
         items += heard_objects(self.system, self.instance)
+        items += self._overflowed()
         component = self.instance.component
         items += [self._put_body(p) for p in self._connected_inputs()]
         items += [body for p in self._connected_inputs() for body in wait_body(self, p)]
@@ -298,6 +297,9 @@ class Glue(Site):
             kind = "Releasing_Queues" if releases(self, port) else "Queues"
             given = of_type, null, depth, policy, f"{port.name}.mailbox", f"Ravenchart.{kind}"
             items.append(self._queue(f"{name}_Mailbox", *given))
+            if not sampled and port in self._connected_inputs():
+                args = of_type, policy, port.name, "port"
+                items.append(self._offering(name, "Mailbox", *args))
             view = f"{self.component}.{name}_View"
             items.append(Object(f"{name}_Port", view))
             if port.on_overflow:
@@ -352,6 +354,7 @@ class Glue(Site):
                         f"{region.name}.queue",
                     )
                 )
+                items += self._offers(region, event)
             for activity, state in component.completing(region.name):
                 items.append(Comment(f"[{self._element(activity.name)}] completes {state}"))
                 for kind in ("visit", "done"):
@@ -360,18 +363,65 @@ class Glue(Site):
                     items.append(self._board(board, "Ravenchart.Event_Count", number(0), element))
         return items
 
+    def _offers(self, region: Region, event: str) -> list[Decl]:
+        """What puts events into the queue of a region, and reports what it loses."""
+        name = ada_case(region.name)
+        if region.on_overflow is None or not self._heard(region.on_overflow):
+            return [self._offering(name, "Queue", event, region.overflow, region.name, "region")]
+        lost = f"{name}_Overflowed"
+        told = self._offering(name, "Queue", event, region.overflow, region.name, "region", lost)
+        return [Subprogram(lost), told]
+
+    def _offering(
+        self,
+        name: str,
+        queue: str,
+        of_type: str,
+        policy: Overflow,
+        element: str,
+        kind: str,
+        on_loss: str | None = None,
+    ) -> Instantiation:
+        more = {} if on_loss is None else {"On_Loss": Ref(on_loss)}
+        return Instantiation(
+            f"{name}_Offers",
+            "Ravenchart.Offers",
+            arguments(
+                Element_Type=Ref(of_type),
+                Put=Ref(f"{name}_{queue}.Put"),
+                Policy=Ref(f"Ravenchart.Queueing.{ada_case(policy.value)}"),
+                Element=Ref(f"Elements.{element_constant(self._element(element), kind)}"),
+                Report=Ref(f"{FAULTS}.Report"),
+                **more,
+            ),
+        )
+
+    def _overflowed(self) -> Iterator[Decl]:
+        """Raise the event that tells of a loss; what is lost by that is only reported."""
+        component = self.instance.component
+        for region in component.regions:
+            name = region.on_overflow
+            if region.events() and name is not None and self._heard(name):
+                event: Event = named(component.events, name)
+                tell = [
+                    self._enqueue(r, event, event_value(component, name), "Tell")
+                    for r in self._heard(name)
+                ]
+                yield Subprogram(f"{ada_case(region.name)}_Overflowed", body=tuple(tell))
+
+    def _heard(self, event: str) -> list[Region]:
+        """The regions that an event is for."""
+        name = named(self.instance.component.events, event).name
+        return [r for r in self.instance.component.regions if name in r.events()]
+
     # --- body: arrivals, events, sending
 
     def _put_body(self, port: Port) -> Subprogram:
         name = ada_case(port.name)
-        body: list[Stmt] = [
-            Do(f"{name}_Mailbox.Put", arguments(Ref("Item"), Ref("Status"))),
-            *self._note("Arrived", port.name, "port"),
-        ]
-        if releases(self, port):  # what it releases may run before Put returns
-            body = [*body[1:], body[0]]
         if port.kind is PortKind.SAMPLED:
             #  a new sample replaces the old one: nothing is lost
+            body: list[Stmt] = [do(f"{name}_Mailbox.Put", Ref("Item"), Ref("Status"))]
+            body += self._note("Arrived", port.name, "port")
             return Subprogram(
                 f"Put_{name}",
                 self._put_spec(port).params,
@@ -389,19 +439,9 @@ class Glue(Site):
                 ),
                 body=tuple(body),
             )
-        lost: list[Stmt] = [self._fault("Queue_Overflow")]
-        lost += self._note("Fault", port.name, "port", self._fault_number("Queue_Overflow"))
-        condition = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
-        body.append(IfStatement(((condition, tuple(lost)),)))
-        return Subprogram(
-            f"Put_{name}",
-            self._put_spec(port).params,
-            declarations=(
-                Object("Status", "Ravenchart.Queueing.Put_Status"),
-                UseType("Ravenchart.Queueing.Put_Status"),
-            ),
-            body=tuple(body),
-        )
+        put = do(f"{name}_Offers.Offer", Ref("Item"))
+        noted = self._note("Arrived", port.name, "port")
+        return Subprogram(f"Put_{name}", self._put_spec(port).params, body=(*noted, put))
 
     def _offer_body(self) -> Subprogram:
         component = self.instance.component
@@ -411,21 +451,14 @@ class Glue(Site):
             steps: list[Stmt] = []
             for region in regions:
                 if event.name in region.events():
-                    steps += self._enqueue(region, event, Ref("Item"), tells=True)
+                    steps.append(self._enqueue(region, event, Ref("Item"), "Offer"))
             for bus in self._asked(event.name):
                 steps.append(Do(f"{ada_case(bus)}.Controller.Request_Recovery"))
             steps += self._note("Raised", event.name, "event") if steps else ()
             rows.append((f"{self.component}.{event_literal(event.name)}", tuple(steps)))
-        declarations: tuple[Decl, ...] = ()
-        if regions:
-            declarations = (
-                Object("Status", "Ravenchart.Queueing.Put_Status"),
-                UseType("Ravenchart.Queueing.Put_Status"),
-            )
         return Subprogram(
             "Offer",
             self._offer_spec().params,
-            declarations=declarations,
             body=(Case(Ref(name_of(component, "Item")), tuple(rows)),),
         )
 
@@ -434,29 +467,12 @@ class Glue(Site):
         pair = self.instance.name, event
         return tuple(bus.name for bus in self.system.buses if pair in bus.recovers_on)
 
-    def _enqueue(self, region: Region, event: Event, item: Expr, *, tells: bool) -> list[Stmt]:
-        """Put an event into a region's queue; with ``tells``, report what is lost by an event."""
-        queue = f"{ada_case(region.name)}_Queue"
-        full: list[Stmt] = [self._fault("Queue_Overflow")]
-        full += self._note("Fault", region.name, "region", self._fault_number("Queue_Overflow"))
-        if tells and region.on_overflow is not None:
-            full += self.overflowed(region.on_overflow)
-        condition = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
-        args = [item, Ref("Status")]
+    def _enqueue(self, region: Region, event: Event, item: Expr, how: str) -> Stmt:
+        """Put an event into a region's queue, by a procedure of its `_offers`."""
+        args = [item]
         if event.overflow is not None and event.overflow is not region.overflow:
             args.append(Ref(f"Ravenchart.Queueing.{ada_case(event.overflow.value)}"))
-        return [Do(f"{queue}.Put", arguments(*args)), IfStatement(((condition, tuple(full)),))]
-
-    def overflowed(self, name: str) -> list[Stmt]:
-        """Raise the event that tells of a loss; what is lost by that is only counted."""
-        component = self.instance.component
-        event: Event = named(component.events, name)
-        return [
-            s
-            for r in component.regions
-            if event.name in r.events()
-            for s in self._enqueue(r, event, event_value(component, name), tells=False)
-        ]
+        return do(f"{ada_case(region.name)}_Offers.{how}", *args)
 
     def _send_body(self, port: Port) -> Subprogram:
         if port.is_command:

@@ -131,8 +131,7 @@ class Rows(Site):
         arrived += self._record(port.name, f"{name}_Port.Value")
         if port.on_arrival:
             arrived.append(self._raise(port.on_arrival, Ref(f"{name}_Port.Value")))
-        stale: list[Stmt] = [self._fault("Stale_Input")]
-        stale += self._note("Fault", port.name, "port", self._fault_number("Stale_Input"))
+        stale: list[Stmt] = [self._fault("Stale_Input", port.name, "port")]
         if port.on_stale:
             stale.append(self._raise(port.on_stale))
         rows = (
@@ -262,8 +261,7 @@ class Rows(Site):
         body += after
         if shape.deferring:
             lost = f"{name}_Region.Deferred.Lost"
-            told = [self._fault("Queue_Overflow")]
-            told += self._note("Fault", region.name, "region", self._fault_number("Queue_Overflow"))
+            told = [self._fault("Queue_Overflow", region.name, "region")]
             told += [self._raise(region.on_overflow)] if region.on_overflow is not None else []
             body.append(IfStatement(((Ref(lost), (*told, Assign(lost, Ref("False")))),)))
         params = (Param("Ins", "in", f"{package}.Inputs"),) if shape.inputs else ()

@@ -16,7 +16,6 @@ from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
     Aspect,
-    Call,
     Case,
     Comment,
     Decl,
@@ -50,7 +49,13 @@ from ravenchart.gen.emit.certificate.certified import (
     timed_by,
 )
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID
-from ravenchart.gen.emit.tables.trace_calls import element_constant, note, row_number, traced
+from ravenchart.gen.emit.tables.trace_calls import (
+    element_constant,
+    fault,
+    fault_units,
+    row_number,
+    traced,
+)
 from ravenchart.gen.emit.tables.trace_map import VALUE, MappedElement, elements
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.nodes import Node
@@ -91,7 +96,14 @@ def emit_without_tasks(system: System, header: str) -> tuple[Unit, ...]:
 
 def _health(system: System, header: str) -> Unit:
     args = arguments(Ceiling=priority(system.object("health").ceiling))
-    return _holding(system, "Health_Counts", "Counters", "Ravenchart.Health_Counters", args, header)
+    counters, reports = "Ravenchart.Health_Counters", "Ravenchart.Fault_Reports"
+    does = arguments(Record_Fault=Ref("Counters.Record_Fault"))
+    does += arguments(Note=Ref("Trace.Buffer.Note")) if traced(system) else ()
+    root = root_package(system)
+    trace = (f"{root}.Trace",) if traced(system) else ()
+    items = GenericInstance("Counters", counters, args), GenericInstance("Faults", reports, does)
+    package = Package(f"{root}.Health_Counts", items, (SPARK,))
+    return Unit(header, (counters, reports, "System", *trace), package)
 
 
 def _holding(
@@ -218,13 +230,12 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         withs.add("Ravenchart.Schedules")
     else:
         withs.add(f"{root}.{_wait(processor.released_by).rpartition('.')[0]}")
-    context = {f"{root}.Health_Counts", "Ravenchart.Health"}
+    context = fault_units(root)
     context |= {_owner_unit(system, s) for s in processor.slots}
     context |= {f"{root}.{ada_case(i)}" for i, _ in processor.raises}
     context |= {
         f"{root}.{ada_case(system.instance(i).component.name)}" for i, _ in processor.raises
     }
-    context.add(f"{root}.Elements")
     if traced(system):
         context |= {f"{root}.Trace", "Ravenchart.Traces"}
     spec = Package(name, tuple(items), (SPARK,))
@@ -339,10 +350,7 @@ def _fault(
     system: System, processor: Processor, kind: str, events: tuple[tuple[str, str], ...]
 ) -> tuple[Stmt, ...]:
     """Count and note a fault of a processor, and raise its events."""
-    fault = Ref(f"Ravenchart.Health.{kind}")
-    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(fault))
     return (
-        Do("Health_Counts.Counters.Record_Fault", arguments(fault)),
-        *note(system, "Fault", processor.name, "processor", position),
+        fault(kind, processor.name, "processor"),
         *(offer(system, instance, event) for instance, event in events),
     )

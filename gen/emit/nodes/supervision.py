@@ -15,7 +15,6 @@ from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
     Assign,
-    Call,
     Case,
     Comment,
     Decl,
@@ -37,7 +36,7 @@ from ravenchart.gen.emit.ada.syntax import (
 from ravenchart.gen.emit.certificate.certified import agrees, fact
 from ravenchart.gen.emit.commands.lifecycle import UNIT, ends_devices
 from ravenchart.gen.emit.language.own_names import event_literal
-from ravenchart.gen.emit.tables.trace_calls import note, traced
+from ravenchart.gen.emit.tables.trace_calls import fault, fault_units
 from ravenchart.gen.model.nodes import SUPERVISOR, Node, Supervision
 from ravenchart.gen.model.system import Processor, System
 
@@ -121,13 +120,7 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
         Subprogram(
             "On_Silence",
             (Param("Item", "in", "Watched"),),
-            body=(
-                Do(
-                    "Health_Counts.Counters.Record_Fault",
-                    arguments(Ref("Ravenchart.Health.Silence")),
-                ),
-                Case(Ref("Item"), events),
-            ),
+            body=(Case(Ref("Item"), events),),
         ),
     )
     if ends_devices(system):
@@ -135,13 +128,11 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
         body += (Subprogram("Give_Up", body=ends),)
     devices = {f"{root}.{UNIT}"} if ends_devices(system) else set()
     raised = [i for p in watched for i, _ in p.on_silence]
-    context = {f"{root}.Health_Counts", "Ravenchart.Health", "Ravenchart.Liveness"}
+    context = fault_units(root) | {"Ravenchart.Liveness"}
     context |= {f"{root}.Timing_Certificate", *devices}
     context |= {processor_package(system, p) for p in watched}
     context |= {f"{root}.{ada_case(i)}" for i in raised}
     context |= {f"{root}.{component_name(system.instance(i).component)}" for i in raised}
-    if traced(system):
-        context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
     withs = {
         "Ravenchart.Failures",
         "Ravenchart.Supervisors",
@@ -189,10 +180,9 @@ def _look(system: System, processor: Processor) -> tuple[Stmt, ...]:
 
 
 def _silence(system: System, processor: Processor) -> tuple[Stmt, ...]:
-    """Note the silence of a processor, raise its events, and let the program stop."""
-    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(Ref("Ravenchart.Health.Silence")))
+    """Report the silence of a processor, raise its events, and let the program stop."""
     return (
-        *note(system, "Fault", processor.name, "processor", position),
+        fault("Silence", processor.name, "processor"),
         *(offer(system, instance, event) for instance, event in processor.on_silence),
         Do("Ravenchart.Failures.Note_Silence", arguments(Ref(f'"{processor.name}"'))),
     )

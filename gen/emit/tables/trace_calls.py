@@ -1,4 +1,4 @@
-"""Trace calls: present only when the node declares a trace."""
+"""Trace calls, present only when the node declares a trace, and reports of faults."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.model.system import Processor, System
+
+FAULTS = "Health_Counts.Faults"
+"""What counts and traces the faults of a node."""
 
 
 def traced(system: System) -> bool:
@@ -33,6 +36,17 @@ def note(
         value or number(0),
     )
     return (Do("Trace.Buffer.Note", args),)
+
+
+def fault(kind: str, element: str, element_kind: str) -> Stmt:
+    """Count a fault about ``element``, and trace it where there is a trace."""
+    named = Ref(f"Elements.{element_constant(element, element_kind)}")
+    return Do(f"{FAULTS}.Report", arguments(Ref(f"Ravenchart.Health.{kind}"), named))
+
+
+def fault_units(root: str) -> set[str]:
+    """The units that a body with such calls needs."""
+    return {f"{root}.Health_Counts", "Ravenchart.Health", f"{root}.Elements"}
 
 
 def element_constant(element: str, kind: str) -> str:
