@@ -414,11 +414,9 @@ _TIGHT = (Object, PlainType, Rename, UseType, Pragma)
 
 
 def _alike(item: Decl, before: Decl | None) -> bool:
-    """Whether an item stands with the one before: a check with its number, static functions."""
+    """Whether an item stands with the one before; a check stands with its number."""
     match item, before:
         case (Object() | Pragma(), Object() | Pragma()):
-            return True
-        case (Subprogram(aspects=(Aspect("Static"),)), Subprogram(aspects=(Aspect("Static"),))):
             return True
     return isinstance(item, _TIGHT) and type(item) is type(before)
 

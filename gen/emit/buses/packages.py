@@ -445,9 +445,10 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     owners = {instance for check in kept for instance, _ in check.on_error}
     context |= {f"{root}.{ada_case(i)}" for i in owners}
     context |= {f"{root}.{ada_case(system.instance(i).component.name)}" for i in owners}
+    seen = {f"{root}.Elements"}
     return [
-        Unit(header, (f"{root}.Elements",), Package(name, spec, (SPARK,))),
-        Unit(header, tuple(sorted(context)), Package(name, body, (SPARK,), is_body=True)),
+        Unit(header, tuple(seen), Package(name, spec, (SPARK,))),
+        Unit(header, tuple(sorted(context - seen)), Package(name, body, (SPARK,), is_body=True)),
     ]
 
 
