@@ -7,7 +7,7 @@
 --  Tasking      Observe and Observe_Progress by any task up to Ceiling
 --  Timing       each release, the activities whose slot names it
 --  Analysis     one task: T = Period, D = Deadline, O = Offset,
---               P = Task_Priority, C = the largest sum of budgets over the
+--               P = Task_Priority, C = the largest sum of WCETs over the
 --               releases of one Cycle
 --  Assumptions  ASM-003, the clock stays within the range of Time
 

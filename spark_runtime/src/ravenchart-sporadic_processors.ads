@@ -6,7 +6,7 @@
 --  Tasking      Observe and Observe_Progress by any task up to Ceiling
 --  Timing       each release, all activities
 --  Analysis     one task: T = Minimum_Separation, D = Deadline,
---               P = Task_Priority, C = sum of the budgets. A response counts
+--               P = Task_Priority, C = sum of the WCETs. A response counts
 --               from the return of Wait or from the end of the separation
 --  Assumptions  ASM-003, the clock stays within the range of Time
 
