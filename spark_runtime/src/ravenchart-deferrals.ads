@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The events that a region has deferred, and which of them comes next.
 --
 --  An event that is kept is due when no active state defers it, and also from

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The events raised in one step of a region, in the order they were raised.
 --
 --  Guarantees   strict order, no heap, total operations

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What every fault of a node comes to: it is counted, and traced.
 --
 --  Guarantees   no state of its own

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The transitions that one step of a region has fired, in their order.
 --
 --  Each is followed by the segments of its way: the transitions that go on

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Puts elements into a queue; an element that the queue gives up is a fault.
 --
 --  Guarantees   each loss is reported once, about Element

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Bounded queue whose elements release a sporadic processor: the mailbox of a
 --  queued port that releases one.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Sporadic command processor: one task that runs its activities once for
 --  each release it is given.
 --

@@ -12,6 +12,7 @@ import pytest
 import yaml
 
 from ravenchart.paths import ROOT
+from tests.support import licences
 
 LICENCES = ("LICENSE", "LICENSES/Apache-2.0.txt")
 OTHERS = {"LICENSES/MIT.txt": "ravenchart/workbench/assets/preact.js"}
@@ -54,6 +55,11 @@ def test_a_new_tree_has_no_licence_before_it_is_listed() -> None:
         "new_tree/file.py",
         "new.md",
     ]
+
+
+def test_every_source_of_ours_begins_with_its_licence() -> None:
+    assert len(list(licences.sources())) > 100
+    assert licences.without_lines() == []
 
 
 def test_no_annotation_names_what_is_not_there() -> None:

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Driver "bus": a node of the simulated bus behind a bus server on this
 --  machine (docs/bus-protocol.md), as each other process that joins it.
 --

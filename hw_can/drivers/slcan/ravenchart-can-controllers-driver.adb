@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Driver "slcan": a server on 127.0.0.1 that speaks slcan to one client,
 --  which stands for the rest of the bus; or the host of an slcan adapter on
 --  the serial line that RAVENCHART_CAN_DEVICE names.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The serial line of the slcan driver, where an slcan adapter is to be at the
 --  other end.
 --

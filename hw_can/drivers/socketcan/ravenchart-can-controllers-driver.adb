@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Driver "socketcan": a CAN interface of Linux, through a raw socket.
 --
 --  Guarantees   frames go to the interface in the order sent; one that it has

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The few calls of the SocketCAN driver: one raw socket on one interface.
 --
 --  Guarantees   an interface that is down or gone shows as an outcome, never

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What the drivers by sockets and serial lines ask of Linux: calls of the C
 --  library, and numbers.
 --

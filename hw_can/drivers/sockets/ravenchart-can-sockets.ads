@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What sockets of every kind have in common.
 --
 --  Guarantees   nothing is raised

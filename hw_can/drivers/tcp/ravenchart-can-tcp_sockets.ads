@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The few socket calls of the drivers that TCP on this machine reaches: a
 --  server with one client at a time, or a client.
 --
