@@ -105,12 +105,6 @@ is
    with Import, Convention => C, External_Name => "__get_errno";
    --  errno of the calling task, by the Ada run-time library.
 
-   function Setting (Name : String) return String;
-   --  What the environment says; nothing when it is not set.
-
-   procedure Print (File : C_Int; Text : String);
-   --  Write Text and the end of a line to File, unbuffered.
-
    function C_To_Network
      (Value : Interfaces.Unsigned_16) return Interfaces.Unsigned_16
    with Import, Convention => C, External_Name => "htons";

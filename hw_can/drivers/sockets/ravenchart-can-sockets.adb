@@ -9,31 +9,6 @@ package body Ravenchart.Can.Sockets
 is
    use Linux_Calls;
 
-   Complained : Boolean := False
-   with Atomic;
-   --  What fails is tried again; one message is enough.
-
-   --------------
-   -- Announce --
-   --------------
-
-   procedure Announce (Text : String) is
-   begin
-      Print (Standard_Output, "can: " & Text);
-   end Announce;
-
-   --------------
-   -- Complain --
-   --------------
-
-   procedure Complain (Reason : String) is
-   begin
-      if not Complained then
-         Complained := True;
-         Print (Standard_Error, "error: can: " & Reason);
-      end if;
-   end Complain;
-
    -----------
    -- Close --
    -----------
