@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What is around a controller: requests to stop, its report, and its end.
 --
 --  Guarantees   a report that cannot be written never disturbs the controller:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
-from ravenchart.gen.emit.ada.declarations import EnumType, RangeConstrained, Unit
+from ravenchart.gen.emit.ada.declarations import EnumType, Unit
 from ravenchart.gen.emit.ada.expressions import (
     COMPARISONS,
     TRUE,
@@ -21,6 +21,7 @@ from ravenchart.gen.emit.ada.expressions import (
     Membership,
     OperatorChain,
     Prefix,
+    RangeConstrained,
     both,
 )
 from ravenchart.gen.emit.ada.named import DottedName, ref

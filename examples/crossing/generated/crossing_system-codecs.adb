@@ -9,8 +9,7 @@ is
    pragma Warnings (Off, "*can never be *");
 
    function Bits_Of_Type_Order
-     (Item : Crossing_System.Order)
-     return Interfaces.Unsigned_8 is
+     (Item : Crossing_System.Order) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Crossing_System.Order'Pos (Item)))
    with
      Post =>
@@ -18,8 +17,7 @@ is
        and then Value_Of_Type_Order (Bits_Of_Type_Order'Result) = Item;
 
    function Bits_Of_Type_Press
-     (Item : Crossing_System.Press)
-     return Interfaces.Unsigned_8 is
+     (Item : Crossing_System.Press) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Crossing_System.Press'Pos (Item)))
    with
      Post =>
@@ -27,8 +25,7 @@ is
        and then Value_Of_Type_Press (Bits_Of_Type_Press'Result) = Item;
 
    function Bits_Of_Type_Car_Light
-     (Item : Crossing_System.Car_Light)
-     return Interfaces.Unsigned_8 is
+     (Item : Crossing_System.Car_Light) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Crossing_System.Car_Light'Pos (Item)))
    with
      Post =>
@@ -37,8 +34,7 @@ is
          = Item;
 
    function Bits_Of_Type_Walk_Light
-     (Item : Crossing_System.Walk_Light)
-     return Interfaces.Unsigned_8 is
+     (Item : Crossing_System.Walk_Light) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Crossing_System.Walk_Light'Pos (Item)))
    with
      Post =>
@@ -47,8 +43,7 @@ is
          = Item;
 
    function Bits_Of_Type_Boolean
-     (Item : Boolean)
-     return Interfaces.Unsigned_8 is
+     (Item : Boolean) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Boolean'Pos (Item)))
    with
      Post =>
@@ -92,16 +87,14 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with
         Pre => Local_Value <= 16#1#,
         Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
       function Pack
-        (Item : Crossing_System.Order)
-        return Interfaces.Unsigned_64 is
+        (Item : Crossing_System.Order) return Interfaces.Unsigned_64 is
          Local_Value : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Order (Item);
          Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
@@ -174,16 +167,14 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with
         Pre => Local_Value <= 16#1#,
         Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
       function Pack
-        (Item : Crossing_System.Press)
-        return Interfaces.Unsigned_64 is
+        (Item : Crossing_System.Press) return Interfaces.Unsigned_64 is
          Local_Value : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Press (Item);
          Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
@@ -257,16 +248,14 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with
         Pre => Local_Value <= 16#7#,
         Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
       function Pack
-        (Item : Crossing_System.Car_Light)
-        return Interfaces.Unsigned_64 is
+        (Item : Crossing_System.Car_Light) return Interfaces.Unsigned_64 is
          Local_Value : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Car_Light (Item);
          Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
@@ -340,16 +329,14 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with
         Pre => Local_Value <= 16#3#,
         Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
       function Pack
-        (Item : Crossing_System.Walk_Light)
-        return Interfaces.Unsigned_64 is
+        (Item : Crossing_System.Walk_Light) return Interfaces.Unsigned_64 is
          Local_Value : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Walk_Light (Item);
          Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
@@ -422,8 +409,7 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with
         Pre => Local_Value <= 16#1#,

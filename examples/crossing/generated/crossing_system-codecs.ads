@@ -17,32 +17,27 @@ is
    use type Ravenchart.Number;
 
    function Value_Of_Type_Order
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Order is
+     (Raw : Interfaces.Unsigned_8) return Crossing_System.Order is
      (Crossing_System.Order'Val (Raw))
    with Pre => Raw <= 1;
 
    function Value_Of_Type_Press
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Press is
+     (Raw : Interfaces.Unsigned_8) return Crossing_System.Press is
      (Crossing_System.Press'Val (Raw))
    with Pre => Raw <= 0;
 
    function Value_Of_Type_Car_Light
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Car_Light is
+     (Raw : Interfaces.Unsigned_8) return Crossing_System.Car_Light is
      (Crossing_System.Car_Light'Val (Raw))
    with Pre => Raw <= 4;
 
    function Value_Of_Type_Walk_Light
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Walk_Light is
+     (Raw : Interfaces.Unsigned_8) return Crossing_System.Walk_Light is
      (Crossing_System.Walk_Light'Val (Raw))
    with Pre => Raw <= 2;
 
    function Value_Of_Type_Boolean
-     (Raw : Interfaces.Unsigned_8)
-     return Boolean is
+     (Raw : Interfaces.Unsigned_8) return Boolean is
      (Boolean'Val (Raw))
    with Pre => Raw <= 1;
 
@@ -56,18 +51,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#1#));
 
       function Pack
-        (Item : Crossing_System.Order)
-        return Interfaces.Unsigned_64
+        (Item : Crossing_System.Order) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
@@ -104,18 +96,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#1#));
 
       function Pack
-        (Item : Crossing_System.Press)
-        return Interfaces.Unsigned_64
+        (Item : Crossing_System.Press) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
@@ -152,18 +141,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#7#));
 
       function Pack
-        (Item : Crossing_System.Car_Light)
-        return Interfaces.Unsigned_64
+        (Item : Crossing_System.Car_Light) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
@@ -200,18 +186,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#3#));
 
       function Pack
-        (Item : Crossing_System.Walk_Light)
-        return Interfaces.Unsigned_64
+        (Item : Crossing_System.Walk_Light) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
@@ -248,13 +231,11 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#1#));
 
       function Pack (Item : Boolean) return Interfaces.Unsigned_64

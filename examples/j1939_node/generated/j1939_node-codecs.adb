@@ -9,8 +9,7 @@ is
    pragma Warnings (Off, "*can never be *");
 
    function Bits_Of_Type_Name_Half
-     (Item : J1939_Node.Name_Half)
-     return Interfaces.Unsigned_32
+     (Item : J1939_Node.Name_Half) return Interfaces.Unsigned_32
    with
      Post => Value_Of_Type_Name_Half (Bits_Of_Type_Name_Half'Result) = Item
    is
@@ -24,8 +23,7 @@ is
    end Bits_Of_Type_Name_Half;
 
    function Bits_Of_Type_Pgn
-     (Item : J1939_Node.Pgn)
-     return Interfaces.Unsigned_32
+     (Item : J1939_Node.Pgn) return Interfaces.Unsigned_32
    with
      Post =>
        Bits_Of_Type_Pgn'Result <= 262_143
@@ -41,8 +39,7 @@ is
    end Bits_Of_Type_Pgn;
 
    function Bits_Of_Type_Answer_Kind
-     (Item : J1939_Node.Answer_Kind)
-     return Interfaces.Unsigned_8 is
+     (Item : J1939_Node.Answer_Kind) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (J1939_Node.Answer_Kind'Pos (Item)))
    with
      Post =>
@@ -51,8 +48,7 @@ is
          = Item;
 
    function Bits_Of_Type_Address
-     (Item : J1939_Node.Address)
-     return Interfaces.Unsigned_8
+     (Item : J1939_Node.Address) return Interfaces.Unsigned_8
    with Post => Value_Of_Type_Address (Bits_Of_Type_Address'Result) = Item
    is
       Whole : constant Ravenchart.Number range 0 .. 255 :=
@@ -64,8 +60,7 @@ is
    end Bits_Of_Type_Address;
 
    function Bits_Of_Type_Coolant_Temperature
-     (Item : J1939_Node.Coolant_Temperature)
-     return Interfaces.Unsigned_8
+     (Item : J1939_Node.Coolant_Temperature) return Interfaces.Unsigned_8
    with
      Post =>
        Bits_Of_Type_Coolant_Temperature'Result <= 250
@@ -82,8 +77,7 @@ is
    end Bits_Of_Type_Coolant_Temperature;
 
    function Bits_Of_Type_Fan_Speed
-     (Item : J1939_Node.Fan_Speed)
-     return Interfaces.Unsigned_8
+     (Item : J1939_Node.Fan_Speed) return Interfaces.Unsigned_8
    with
      Post =>
        Bits_Of_Type_Fan_Speed'Result <= 250
@@ -99,8 +93,7 @@ is
    end Bits_Of_Type_Fan_Speed;
 
    function Bits_Of_Type_Fan_Rpm
-     (Item : J1939_Node.Fan_Rpm)
-     return Interfaces.Unsigned_16
+     (Item : J1939_Node.Fan_Rpm) return Interfaces.Unsigned_16
    with
      Post =>
        Bits_Of_Type_Fan_Rpm'Result <= 64_255
@@ -182,8 +175,7 @@ is
 
       function Word_Of
         (Local_Low  : Interfaces.Unsigned_32;
-         Local_High : Interfaces.Unsigned_32)
-        return Interfaces.Unsigned_64 is
+         Local_High : Interfaces.Unsigned_32) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Low)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_High), 32))
       with
@@ -269,16 +261,14 @@ is
       end Lemma_Value_Pgn;
 
       function Word_Of
-        (Local_Pgn : Interfaces.Unsigned_32)
-        return Interfaces.Unsigned_64 is
+        (Local_Pgn : Interfaces.Unsigned_32) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Pgn))
       with
         Pre => Local_Pgn <= 16#3FFFF#,
         Post => Raw_Of_Pgn (Word_Of'Result) = Local_Pgn;
 
       function Pack
-        (Item : J1939_Node.Pgn_Octets)
-        return Interfaces.Unsigned_64 is
+        (Item : J1939_Node.Pgn_Octets) return Interfaces.Unsigned_64 is
          Local_Pgn : constant Interfaces.Unsigned_32 :=
            Bits_Of_Type_Pgn (Item.Pgn);
          Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Pgn);
@@ -315,8 +305,7 @@ is
 
    package body Message_Acknowledgement is
       function Bits_Of_Signal_Group_Function
-        (Item : J1939_Node.Unused_8)
-        return Interfaces.Unsigned_8
+        (Item : J1939_Node.Unused_8) return Interfaces.Unsigned_8
       with
         Post =>
           Bits_Of_Signal_Group_Function'Result >= 255
@@ -334,8 +323,7 @@ is
       end Bits_Of_Signal_Group_Function;
 
       function Bits_Of_Signal_Spare
-        (Item : J1939_Node.Unused_16)
-        return Interfaces.Unsigned_16
+        (Item : J1939_Node.Unused_16) return Interfaces.Unsigned_16
       with
         Post =>
           Bits_Of_Signal_Spare'Result >= 65_535
@@ -547,8 +535,7 @@ is
           and then Raw_Of_Pgn (Word_Of'Result) = Local_Pgn;
 
       function Pack
-        (Item : J1939_Node.Acknowledgement)
-        return Interfaces.Unsigned_64 is
+        (Item : J1939_Node.Acknowledgement) return Interfaces.Unsigned_64 is
          Local_Kind : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Answer_Kind (Item.Kind);
          Local_Group_Function : constant Interfaces.Unsigned_8 :=
@@ -664,8 +651,7 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
@@ -709,8 +695,7 @@ is
 
    package body Message_Fan_Drive_State is
       function Bits_Of_Signal_State
-        (Item : J1939_Node.Drive_State)
-        return Interfaces.Unsigned_8 is
+        (Item : J1939_Node.Drive_State) return Interfaces.Unsigned_8 is
         (case Item is
            when J1939_Node.Fan_Off => 0,
            when J1939_Node.Coolant_Too_Hot => 4,
@@ -722,8 +707,7 @@ is
             = Item;
 
       function Bits_Of_Signal_Spare_4
-        (Item : J1939_Node.Unused_4)
-        return Interfaces.Unsigned_8
+        (Item : J1939_Node.Unused_4) return Interfaces.Unsigned_8
       with
         Post =>
           Bits_Of_Signal_Spare_4'Result in 15 .. 15
@@ -740,8 +724,7 @@ is
       end Bits_Of_Signal_Spare_4;
 
       function Bits_Of_Signal_Spare_32
-        (Item : J1939_Node.Unused_32)
-        return Interfaces.Unsigned_32
+        (Item : J1939_Node.Unused_32) return Interfaces.Unsigned_32
       with
         Post =>
           Bits_Of_Signal_Spare_32'Result >= 4_294_967_295
@@ -953,8 +936,7 @@ is
           and then Raw_Of_Spare_32 (Word_Of'Result) = Local_Spare_32;
 
       function Pack
-        (Item : J1939_Node.Fan_Drive)
-        return Interfaces.Unsigned_64 is
+        (Item : J1939_Node.Fan_Drive) return Interfaces.Unsigned_64 is
          Local_Speed : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Fan_Speed (Item.Speed);
          Local_State : constant Interfaces.Unsigned_8 :=

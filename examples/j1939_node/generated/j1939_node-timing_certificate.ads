@@ -229,8 +229,7 @@ is
          Line_Driver_Rx_Request_To_Us_T, Line_Driver_Rx_Request_To_Us_C,
          Line_Driver_Rx_Request_To_All_Up (W))) with Static;
    function Line_Driver_Rx_Request_Without_Address_Up
-     (W : Window)
-     return Time is
+     (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Request_Without_Address_J,
          Line_Driver_Rx_Request_Without_Address_T,
          Line_Driver_Rx_Request_Without_Address_C,
@@ -259,8 +258,7 @@ is
          Line_Driver_Tx_Fan_Drive_State_T, Line_Driver_Tx_Fan_Drive_State_C))
    with Static;
    function Line_Driver_Rx_Engine_Temperature_1_Rest
-     (W : Window)
-     return Time is
+     (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Engine_Temperature_1_J,
          Line_Driver_Rx_Engine_Temperature_1_T,
          Line_Driver_Rx_Engine_Temperature_1_C,
@@ -270,8 +268,7 @@ is
          Line_Driver_Tx_Acknowledgement_T, Line_Driver_Tx_Acknowledgement_C,
          Line_Driver_Rx_Engine_Temperature_1_Rest (W))) with Static;
    function Line_Driver_Rx_Request_Without_Address_Rest
-     (W : Window)
-     return Time is
+     (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Request_Without_Address_J,
          Line_Driver_Rx_Request_Without_Address_T,
          Line_Driver_Rx_Request_Without_Address_C,

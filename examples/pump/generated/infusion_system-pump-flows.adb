@@ -11,7 +11,7 @@ is
    use type Ravenchart.Number;
 
    procedure Turn
-     (Tested     : in out Infusion_System.Turns; Raise_Done : out Boolean) is
+     (Tested : in out Infusion_System.Turns; Raise_Done : out Boolean) is
    begin
       Raise_Done := False;
       if Tested < 10 then
@@ -22,7 +22,7 @@ is
    end Turn;
 
    procedure Fill
-     (Filled     : in out Infusion_System.Turns; Raise_Done : out Boolean) is
+     (Filled : in out Infusion_System.Turns; Raise_Done : out Boolean) is
    begin
       Raise_Done := False;
       if Filled < 10 then

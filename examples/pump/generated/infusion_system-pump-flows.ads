@@ -6,12 +6,12 @@ package Infusion_System.Pump.Flows
 with SPARK_Mode
 is
    procedure Turn
-     (Tested     : in out Infusion_System.Turns; Raise_Done : out Boolean)
+     (Tested : in out Infusion_System.Turns; Raise_Done : out Boolean)
    with Global => null;
    --  [Pump.turn] budget 50_000 ns, every 100_000_000 ns, while in Turning
 
    procedure Fill
-     (Filled     : in out Infusion_System.Turns; Raise_Done : out Boolean)
+     (Filled : in out Infusion_System.Turns; Raise_Done : out Boolean)
    with Global => null;
    --  [Pump.fill] budget 50_000 ns, every 100_000_000 ns, while in Filling
 

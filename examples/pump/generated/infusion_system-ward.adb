@@ -38,11 +38,8 @@ is
       Controller.Send (Frame, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Motor_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Motor_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Motor_Message);
       end if;
    end Send_Motor;
 
@@ -71,12 +68,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Display_Message,
          0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Display_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Display_Message);
       end if;
    end Send_Display;
 end Infusion_System.Ward;

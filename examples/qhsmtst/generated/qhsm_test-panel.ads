@@ -17,8 +17,7 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    function Accepts
-     (Id     : Ravenchart.Can.Identifier;
-      Format : Ravenchart.Can.Frame_Format)
+     (Id : Ravenchart.Can.Identifier; Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
         when Ravenchart.Can.Standard =>

@@ -24,7 +24,7 @@ is
    --  [Io_Board] budget 10_000 ns
 
    procedure Make_Safe
-     (Unit   : Io_Board_Units.Unit; Device : in out Io_Board_States.State)
+     (Unit : Io_Board_Units.Unit; Device : in out Io_Board_States.State)
    with Global => (In_Out => Io_Board_Registers.Registers);
    --  [Io_Board] budget 10_000 ns
 

@@ -10,22 +10,11 @@ from typing import NamedTuple
 
 from ravenchart.gen.frozen import built, frozen
 
-from .expressions import Arg, Attribute, Domain, Expr, Range
+from .expressions import Arg, Attribute, Domain, Expr, Range, RangeConstrained
 from .named import DottedName, Named, defining, identifier, ref
 from .statements import Comment, Pragma, Stmt
 
 # --- Types ---------------------------------------------------------------------------
-
-
-@built
-class RangeConstrained:
-    """``mark range low .. high``"""
-
-    mark: DottedName
-    bounds: Range
-
-    def __init__(self, mark: Named, bounds: Range) -> None:
-        self.mark, self.bounds = ref(mark), bounds
 
 
 @built

@@ -33,6 +33,7 @@ from .expressions import (
     Prefix,
     Qualified,
     Range,
+    RangeConstrained,
     Selected,
     StringLiteral,
 )
@@ -122,7 +123,14 @@ def choice_text(choice: Choice | Domain) -> str:
             return "others"
         case Range(low, high):
             return f"{flat(low)} .. {flat(high)}"
+        case RangeConstrained(mark, bounds):
+            return f"{mark.text} range {choice_text(bounds)}"
     return flat(choice)
+
+
+def _is_named(item: Expr) -> bool:
+    """Is it what a name stands for, which no line begins behind?"""
+    return isinstance(item, DottedName | Selected | Indexed | Attribute)
 
 
 def _among(choices: ChoiceList) -> Doc:
@@ -213,7 +221,8 @@ def expression(expr: Expr) -> Doc:
             return cat("(", nest(expression(operand), by=1), ")")
         case Membership(item, among):
             head = _operand(item, "in", first=True)
-            return group(head, SOFT, "in ", nest(_among(among), by=2))
+            gap = " " if _is_named(item) else SOFT
+            return group(head, gap, "in ", nest(_among(among), by=2))
         case Call(name, args):
             return given(flat(name), args)
         case Aggregate(args, of_type, base):

@@ -124,6 +124,17 @@ class Range:
 
 
 @built
+class RangeConstrained:
+    """``mark range low .. high``"""
+
+    mark: DottedName
+    bounds: Range
+
+    def __init__(self, mark: Named, bounds: Range) -> None:
+        self.mark, self.bounds = ref(mark), bounds
+
+
+@built
 class ChoiceList:
     """``A | B .. C | others``"""
 
@@ -255,7 +266,7 @@ class ForSome:
 Holder = DottedName | Selected | Indexed | Attribute | Call
 """What stands before a dot, an index or an attribute."""
 Callee = DottedName | Attribute
-Domain = DottedName | Attribute | Range
+Domain = DottedName | Attribute | Range | RangeConstrained
 """What a variable goes through."""
 Choice = DottedName | IntegerLiteral | Prefix | Range | Others
 Choices = ChoiceList | Choice | str

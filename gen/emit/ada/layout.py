@@ -57,6 +57,13 @@ CUT = LaidParts(("",))
 """Nothing, or the place where a line ends."""
 
 
+def pad(columns: int) -> Doc:
+    """Blanks where the lines around it break, and nothing on one line."""
+    doc = LaidParts((" " * columns,))
+    doc.flat = ""
+    return doc
+
+
 def cat(*docs: Doc) -> Doc:
     """One after the other."""
     return LaidParts(docs)

@@ -28,7 +28,6 @@ from .declarations import (
     Package,
     Param,
     Protected,
-    RangeConstrained,
     RangeDefinition,
     RecordDeclaration,
     Subprogram,
@@ -58,6 +57,7 @@ from .expressions import (
     ForAll,
     ForSome,
     IfExpr,
+    RangeConstrained,
     StringLiteral,
 )
 from .layout import (
@@ -70,6 +70,7 @@ from .layout import (
     joined,
     laid_out,
     nest,
+    pad,
     parenthesized,
     stacked,
     upright,
@@ -95,8 +96,6 @@ from .statements import (
 from .walking import nodes_in
 
 WIDTH = 79
-ONE_LINE = 60
-"""Longer parameter lists go one to a line."""
 
 
 @lru_cache(maxsize=8192)
@@ -196,12 +195,10 @@ def _given_to(value: Expr | AbstractState) -> Doc:
 
 @lru_cache(maxsize=8192)
 def _params(params: Sequence[Param]) -> Doc:
-    texts = [_formal(p) for p in params]
-    plain = sum(len(p.name) + len(t) + 5 for p, t in zip(params, texts, strict=True))
-    #  names are padded only where each stands on a line of its own
-    width = max(len(p.name) for p in params) if plain > ONE_LINE else 0
-    docs = [f"{p.name:<{width}} : {t}" for p, t in zip(params, texts, strict=True)]
-    return nest(SOFT, group("(", nest(*joined(docs, ";"), by=1), ")"), by=2)
+    """All on one line; or one on each line, their colons below each other."""
+    width = max(len(p.name) for p in params)
+    docs = [cat(p.name, pad(width - len(p.name)), f" : {_formal(p)}") for p in params]
+    return group("(", nest(*joined(docs, ";"), by=1), ")")
 
 
 def _formal(param: Param) -> str:
@@ -213,11 +210,9 @@ def _formal(param: Param) -> str:
 
 def _subprogram(sub: Subprogram) -> Doc:
     keyword = "function" if sub.result else "procedure"
-    head = group(
-        f"{keyword} {sub.name}",
-        _params(sub.params) if sub.params else "",
-        nest(SOFT, f"return {sub.result.text}", by=2) if sub.result else "",
-    )
+    profile = [_params(sub.params)] if sub.params else []
+    profile += [f"return {sub.result.text}"] if sub.result else []
+    head = group(f"{keyword} {sub.name}", _profile(profile))
     aspects = _aspects(sub.aspects) if sub.aspects else ""
     if sub.expression is not None:
         inner = expression(sub.expression)
@@ -241,6 +236,13 @@ def _subprogram(sub: Subprogram) -> Doc:
         SOFT,
         f"end {sub.name};",
     )
+
+
+def _profile(parts: Sequence[Doc]) -> Doc:
+    """Parameters and result: behind the name, or below it."""
+    first, *rest = parts or ("",)
+    behind = (group(SOFT, part) for part in rest)
+    return nest(SOFT, first, *behind, by=2) if parts else ""
 
 
 def _object(decl: Object) -> Doc:
@@ -352,11 +354,9 @@ _TIGHT = (_TYPES, Object, UseType, Pragma)
 
 
 def _alike(item: Decl, before: Decl | None) -> bool:
-    """Whether an item stands with the one before: a check with its number, static functions."""
+    """Whether an item stands with the one before; a check stands with its number."""
     match item, before:
         case (Object() | Pragma(), Object() | Pragma()):
-            return True
-        case (Subprogram(aspects=(Aspect("Static"),)), Subprogram(aspects=(Aspect("Static"),))):
             return True
     return any(isinstance(item, kind) and isinstance(before, kind) for kind in _TIGHT)
 

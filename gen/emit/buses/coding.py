@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from ravenchart.gen.emit.ada.declarations import Aspect, Object, Param, RangeConstrained, Subprogram
+from ravenchart.gen.emit.ada.declarations import Aspect, Object, Param, Subprogram
 from ravenchart.gen.emit.ada.expressions import (
     TRUE,
     Attribute,
@@ -25,6 +25,7 @@ from ravenchart.gen.emit.ada.expressions import (
     Power,
     Prefix,
     Range,
+    RangeConstrained,
     between,
     bits,
     both,

@@ -44,7 +44,7 @@ from ravenchart.gen.emit.ada.statements import Comment, IfStatement, Pragma, Ret
 from ravenchart.gen.emit.certificate.certified import CERTIFICATE, driver_element, fact
 from ravenchart.gen.emit.commands.remote_calls import received_as
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
-from ravenchart.gen.emit.tables.trace_calls import fault_number, note, traced
+from ravenchart.gen.emit.tables.trace_calls import fault, fault_units, note, traced
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.system import System, Work
@@ -189,11 +189,11 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
         segmented = _segmented(system, (*sent, *received))
         states = (*states_of_senders(sent), *authentication.states_of_senders(sent))
         bodies = (*states, *values, *pairs, *segmented)
-        context = {ref(root, "Health_Counts"), ref("Ravenchart.Health")}
+        context = fault_units(root)
         context |= authentication.context(root, sent)
         context |= body_units(root, sent, received) if segmented else set()
         if traced(system):
-            context |= {ref(root, "Trace"), ref(root, "Elements"), ref("Ravenchart.Traces")}
+            context |= {ref(root, "Trace"), ref("Ravenchart.Traces")}
         units.append(
             Unit(header, tuple(sorted(context)), Package(name, bodies, (SPARK,), is_body=True))
         )
@@ -307,23 +307,19 @@ def _segmented(system: System, messages: Sequence[Message]) -> tuple[Decl, ...]:
             continue
         if message.source is not None:
             objects += sender_objects(system, message)
-            ended = _counted(system, message, "Stale_Input")
+            ended = _counted(message, "Stale_Input")
             bodies += sender_bodies(system, message, *_handed(system, message), ended)
         else:
             flow = next(m for m in messages if m.controls == message.name)
             objects += receiver_objects(message)
-            ended = _counted(system, message, "Protection_Error")
+            ended = _counted(message, "Protection_Error")
             bodies += receiver_bodies(message, flow, transport, *_handed(system, flow), ended)
     return (*objects, *bodies)
 
 
-def _counted(system: System, message: Message, fault: str) -> tuple[Stmt, ...]:
-    """Count a fault of a message, and note it."""
-    kind = ref("Ravenchart.Health", fault)
-    return (
-        do("Health_Counts.Counters.Record_Fault", kind),
-        *note(system, "Fault", message.name, "message", fault_number(fault)),
-    )
+def _counted(message: Message, kind: str) -> tuple[Stmt, ...]:
+    """Report a fault of a message."""
+    return (fault(kind, message.name, "message"),)
 
 
 def _handed(system: System, message: Message) -> tuple[tuple[Stmt, ...], tuple[Stmt, ...]]:
@@ -333,7 +329,7 @@ def _handed(system: System, message: Message) -> tuple[tuple[Stmt, ...], tuple[S
         Pragma("Assert", (is_framed(message, ref("Frame")),)),
         do("Controller.Send", ref("Frame"), ref("Status")),
         *note(system, "Sent", message.name, "message"),
-    ), _counted(system, message, "Queue_Overflow")
+    ), _counted(message, "Queue_Overflow")
 
 
 def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
@@ -351,7 +347,7 @@ def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
     sending: tuple[Stmt, ...] = (*handed, ends)
     if own is not None:
         sending = authentication.sealed(
-            message, own, sending, _counted(system, message, "Protection_Error")
+            message, own, sending, _counted(message, "Protection_Error")
         )
     declarations = (
         statuses,
@@ -403,7 +399,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         if message.transport is not None:
             whole = (*note(system, "Arrived", message.name, "message"), *puts)
             unpacked = (unpack, IfStatement(((ref("Valid"), whole),)))
-            refused = _counted(system, message, "Protection_Error")
+            refused = _counted(message, "Protection_Error")
             rows.append((matches, segment_taken(message, unpacked, refused)))
             continue
         family = ref(ANY, "Flexible" if message.fd else "Classic")
@@ -451,18 +447,19 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         context |= {ISO_TP}
     if any(m.transport for m in received):
         context |= {RECEIVERS}
-        context |= {ref("Ravenchart.Health"), ref(root, "Health_Counts")}
+        context |= fault_units(root)
     kept = [m.check for m in received if m.check is not None]
     if kept:
         context |= {PROTECTION, AUTHENTICATION, ref("Interfaces")}
-        context |= {ref("Ravenchart.Health"), ref(root, "Health_Counts")}
+        context |= fault_units(root)
     context |= authentication.context(root, received)
     owners = {instance for check in kept for instance, _ in check.on_error}
     context |= {ref(root, ada_case(i)) for i in owners}
     context |= {ref(root, ada_case(system.instance(i).component.name)) for i in owners}
+    seen = {ref(root, "Elements")}
     return [
-        Unit(header, (ref(root, "Elements"),), Package(name, spec, (SPARK,))),
-        Unit(header, tuple(sorted(context)), Package(name, body, (SPARK,), is_body=True)),
+        Unit(header, tuple(seen), Package(name, spec, (SPARK,))),
+        Unit(header, tuple(sorted(context - seen)), Package(name, body, (SPARK,), is_body=True)),
     ]
 
 
@@ -483,7 +480,7 @@ def _refused(system: System, message: Message) -> tuple[Stmt, ...]:
         return ()
     events = message.check.on_error
     raised = (offer(system, instance, event) for instance, event in events)
-    return (*_counted(system, message, "Protection_Error"), *raised)
+    return (*_counted(message, "Protection_Error"), *raised)
 
 
 def _data(message: Message) -> Expr:

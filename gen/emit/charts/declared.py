@@ -44,10 +44,9 @@ from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 
-from .deferring import declared_deferrals
 from .history import restored_functions, restored_place
-from .lanes import declared_lanes
-from .lasting import declared_domains
+from .lanes import LIST, declared_lanes, firing_list
+from .lasting import declared_lasting
 from .operations import operations
 from .records import region_types
 from .safety import Safety
@@ -62,7 +61,8 @@ def emit_region(
     """Spec and body of the package of one region; ``noted`` as in `Site`."""
     shape = RegionShape(system, component, region, noted=noted)
     withs = [ref("Ravenchart.Timers")] if shape.timers else []
-    withs += [ref("Ravenchart.Event_Lists")] if shape.deferring else []
+    withs += [ref("Ravenchart.Deferrals")] if shape.deferring else []
+    withs += [ref("Ravenchart.Firing_Lists")] if shape.listed else []
     spec = Package(shape.package, _spec(shape), (SPARK,))
     body = Package(shape.package, (*_quiet(shape), *body_of(shape)), (SPARK,), is_body=True)
     seen = (ref("Ravenchart.Steps"),) if noted else ()
@@ -71,7 +71,9 @@ def emit_region(
 
 def _spec(shape: RegionShape) -> tuple[Decl, ...]:
     safe = Safety(shape).declared()
-    return (*_quiet(shape), *region_types(shape), *_declared(shape), *safe, *operations(shape))
+    lists = firing_list(shape) if shape.listed else []
+    types = (*region_types(shape), *lists)
+    return (*_quiet(shape), *types, *_declared(shape), *safe, *operations(shape))
 
 
 def _quiet(shape: RegionShape) -> tuple[Pragma, ...]:
@@ -129,11 +131,9 @@ def _declared(shape: RegionShape) -> list[Decl]:
             else "The leaves it leads to; those of a composite are its defaults."
         ),
     ]
-    items += declared_domains(shape)
+    items += declared_lasting(shape)
     items += _selections(shape)
     items += _passing(shape)
-    if shape.deferring:
-        items += declared_deferrals(shape)
     if shape.listed:
         items += declared_lanes(shape)
     return items
@@ -188,7 +188,7 @@ def _selections(shape: RegionShape) -> list[Decl]:
         items.append(
             Subprogram(
                 f"Has_Left_{ada_case(state)}",
-                (Param("Fired", "in", "Firing_List"),),
+                (Param("Fired", "in", LIST),),
                 "Boolean",
                 expression=ForSome("I", up_to(ref("Fired.Count")), left),
             )

@@ -12,21 +12,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ravenchart.gen.emit.ada.declarations import Aspect, Decl, Object, Param, Subprogram
+from ravenchart.gen.emit.ada.declarations import (
+    Aspect,
+    Decl,
+    GenericInstance,
+    Object,
+    Param,
+    Subprogram,
+)
 from ravenchart.gen.emit.ada.expressions import (
-    Aggregate,
     Arg,
     Attribute,
     Call,
     Expr,
     ForAll,
-    ForSome,
     IfExpr,
     Indexed,
     OperatorChain,
     Prefix,
-    Range,
-    all_else,
+    arguments,
     both,
     call,
     chain,
@@ -39,7 +43,7 @@ from ravenchart.gen.emit.ada.expressions import (
     result,
     up_to,
 )
-from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import (
     Assign,
@@ -56,7 +60,6 @@ from ravenchart.gen.emit.ada.statements import (
 from ravenchart.gen.emit.language.compound import Firing, FiringKind
 from ravenchart.gen.model.statechart import Lane
 
-from .deferring import BEFORE_I
 from .firing import Moves
 from .selection import segment, whole
 from .shape import START, RegionShape
@@ -67,54 +70,52 @@ def fire(moves: Moves, chosen: str) -> Do:
     return do("Fire", *(ref(chosen if n == "Chosen" else n) for n in names))
 
 
-def _nothing() -> Aggregate:
-    """An empty list of firings."""
-    return Aggregate((Arg("Count", number(0)), Arg("Items", all_else(ref("None")))))
-
-
 # --- The contract ------------------------------------------------------------
+
+
+def firing_list(shape: RegionShape) -> list[Decl]:
+    """The list of what one step fires, with the segments that it may hold."""
+    names = [f.literal for f in shape.firings if is_segment(shape, f)]
+    none = equal(ref("T"), ref("None"))
+    chosen = Param("T", "in", "Selection")
+    goes_on = one_of(ref("T"), names) if shape.passes else none
+    return [
+        Subprogram("Is_Segment", (chosen,), "Boolean", expression=goes_on),
+        Comment(_SEGMENTS if shape.passes else _NO_SEGMENTS),
+        GenericInstance(
+            "Firings",
+            "Ravenchart.Firing_Lists",
+            arguments(
+                Selection=ref("Selection"),
+                No_Selection=ref("None"),
+                Is_Segment=ref("Is_Segment"),
+                Most_Segments=number(shape.most_segments),
+                Capacity=number(shape.most_firings),
+            ),
+        ),
+    ]
 
 
 def declared_lanes(shape: RegionShape) -> list[Decl]:
     """Choose, and what a step may fire of a choice."""
-    fired = Param("Fired", "in", "Firing_List")
-    items: list[Decl] = [*_starts_with(shape, fired)]
     if shape.single:
-        return items
+        return []
+    fired = Param("Fired", "in", LIST)
     params = shape.situation
     chosen = Call("Is_Choice", (Arg(None, result("Choose")), *shape.situation_args()))
-    found = ForSome("I", _FIRED, equal(_ITEM, ref("T")))
-    earlier = OperatorChain("<", (_item("J"), _ITEM))
-    pairs = ForAll("J", BEFORE_I, _unless_segment(shape, earlier, "J"))
     choice = Param("C", "in", "Choice")
     ghost = (Aspect("Ghost"),)
     return [
-        *items,
         Subprogram("Choose", params, "Choice", aspects=(Aspect("Post", chosen),)),
         Comment("The transitions that one occurrence asks for."),
-        Subprogram(
-            "Has",
-            (fired, Param("T", "in", "Selection")),
-            "Boolean",
-            aspects=() if shape.watched else ghost,
-            expression=found,
-        ),
         Subprogram(
             _IS_OF,
             (fired, choice, Param("Last", "in", "Selection")),
             "Boolean",
             aspects=ghost,
-            expression=_of_choice(shape),
+            expression=both(call("Firings.Is_Ordered", _FIRED), _of_choice(shape)),
         ),
-        Comment("Is what has fired chosen, and none of it after Last?"),
-        Subprogram(
-            "Is_Ordered",
-            (fired,),
-            "Boolean",
-            aspects=ghost,
-            expression=ForAll("I", _FIRED, _unless_segment(shape, pairs, "I")),
-        ),
-        Comment("Do the lanes fire in their order?"),
+        Comment("Is what has fired chosen, in the order of the lanes, and none of it after Last?"),
         Subprogram(
             "Follows", (fired, choice), "Boolean", aspects=ghost, expression=_follows(shape)
         ),
@@ -125,29 +126,29 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
 def _of_choice(shape: RegionShape) -> Expr:
     """Each is chosen for a lane, or goes on from a choice or history."""
     chosen = (ref("C", shape.lane_name(n)) for n in shape.busy_lanes)
-    due = both(OperatorChain("<=", (_ITEM, ref("Last"))), member(_ITEM, *chosen))
-    return ForAll("I", _FIRED, _unless_segment(shape, due, "I"))
+    due: Expr = both(OperatorChain("<=", (_ITEM, ref("Last"))), member(_ITEM, *chosen))
+    if shape.passes:
+        due = OperatorChain("or else", (call("Is_Segment", _ITEM), due))
+    return ForAll("I", up_to(_COUNT), due)
 
 
 def _is_of(shape: RegionShape, lane: Lane) -> Expr:
     last = Attribute(shape.transitions_of(lane), "Last")
-    return call(_IS_OF, ref("Fired"), ref("C"), last)
+    return call(_IS_OF, _FIRED, ref("C"), last)
 
 
 BEFORE = "Place_Before"
 """The configuration before anything has fired."""
 
+LIST = ref("Firings.List")
+"""The type of the list of what a step fires."""
+
 _IS_OF = "Is_Of_Choice"
+_FIRED = ref("Fired")
 _COUNT = ref("Fired.Count")
-_FIRED = up_to(_COUNT)
-
-
-def _item(index: str) -> Indexed:
-    return Indexed("Fired.Items", ref(index))
-
-
-_ITEM = _item("I")
-_ORDERED = call("Is_Ordered", ref("Fired"))
+_ITEM = Indexed("Fired.Items", ref("I"))
+_SEGMENTS = "Does it go on from a choice or history?"
+_NO_SEGMENTS = "None does: the chart has neither choices nor histories."
 _FOLLOWS = (
     "A deferral is fired alone. Otherwise what is chosen is fired, lane by lane, and nothing else; "
 )
@@ -155,38 +156,9 @@ _OVERTAKEN = "a lane inside a state that transitions leave may be overtaken by a
 _DROPPED = "of two that conflict, as one leaves a state in which the other fires, the earlier one."
 
 
-def _starts_with(shape: RegionShape, fired: Param) -> list[Decl]:
-    first: list[Expr] = [
-        OperatorChain(
-            ">" if shape.passes else "=", (ref("Fired.Count"), number(0 if shape.passes else 1))
-        ),
-        equal(Indexed("Fired.Items", plain(1)), ref("T")),
-    ]
-    items: list[Decl] = []
-    if shape.passes:
-        names = [f.literal for f in shape.firings if is_segment(shape, f)]
-        items = [
-            Subprogram(
-                "Is_Segment",
-                (Param("T", "in", "Selection"),),
-                "Boolean",
-                expression=one_of(ref("T"), names),
-            ),
-            Comment("Does it go on from a choice or history?"),
-        ]
-        rest = call("Is_Segment", _ITEM)
-        first.append(ForAll("I", Range(plain(2), _COUNT), rest))
-    return [
-        *items,
-        Subprogram(
-            "Is_Only",
-            (fired, Param("T", "in", "Selection")),
-            "Boolean",
-            aspects=(Aspect("Ghost"),),
-            expression=both(*first),
-        ),
-        Comment("Is that fired, with the segments of its way, and nothing else?"),
-    ]
+def is_only(chosen: Expr) -> Expr:
+    """That is fired, with the segments of its way, and nothing else."""
+    return call("Firings.Is_Only", _FIRED, chosen)
 
 
 def is_segment(shape: RegionShape, firing: Firing) -> bool:
@@ -194,22 +166,13 @@ def is_segment(shape: RegionShape, firing: Firing) -> bool:
     return shape.region.pseudostate(firing.sources[0]) is not None
 
 
-def _unless_segment(shape: RegionShape, fact: Expr, index: str) -> Expr:
-    if not shape.passes:
-        return fact
-    return OperatorChain("or else", (call("Is_Segment", _item(index)), fact))
-
-
 def _choice(shape: RegionShape, lane: Lane) -> Expr:
     return ref("C", shape.lane_name(lane))
 
 
 def _follows(shape: RegionShape) -> Expr:
-    facts = both(_is_of(shape, shape.busy_lanes[-1]), _ORDERED, *_asked(shape, shape.busy_lanes))
-    deferrals = tuple(
-        (call("Is_Deferral", lane), call("Is_Only", ref("Fired"), lane))
-        for lane in _deferring(shape)
-    )
+    facts = both(_is_of(shape, shape.busy_lanes[-1]), *_asked(shape, shape.busy_lanes))
+    deferrals = tuple((call("Is_Deferral", lane), is_only(lane)) for lane in _deferring(shape))
     return IfExpr(deferrals, facts) if deferrals else facts
 
 
@@ -239,7 +202,7 @@ def _has(shape: RegionShape, lane: Lane) -> Expr:
 
 
 def _fired(shape: RegionShape, lane: Lane) -> Expr:
-    return call("Has", ref("Fired"), _choice(shape, lane))
+    return call("Firings.Has", _FIRED, _choice(shape, lane))
 
 
 def _clashes(shape: RegionShape, lane: Lane, others: Sequence[Lane]) -> Iterator[Expr]:
@@ -268,7 +231,7 @@ def _unmoved(shape: RegionShape, done: Sequence[Lane]) -> Iterator[Expr]:
     for lane in () if shape.passes else shape.busy_lanes[len(done) :]:
         around = [ada_case(s) for s in shape.watched if lane in shape.lanes_in(s)]
         if around:
-            stays = [Prefix("not", call(f"Has_Left_{s}", ref("Fired"))) for s in around]
+            stays = [Prefix("not", call(f"Has_Left_{s}", _FIRED)) for s in around]
             asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), ref("None"))), *stays]
             same = [
                 equal(shape.at(shape.held, n), shape.at(BEFORE, n))
@@ -287,8 +250,8 @@ def followed(shape: RegionShape) -> Expr:
     """What Step says of all that it has fired."""
     begun = equal(ref("Now"), ref("Start_Of_Region"))
     choice = Call("Choose", shape.situation_args(Self=old("Self")))
-    only = call("Is_Only", ref("Fired"), ref(START))
-    follows = call("Follows", ref("Fired"), choice)
+    only = is_only(ref(START))
+    follows = call("Follows", _FIRED, choice)
     #  no `if`: 'Old behind a condition known on entry wants an exception handler
     goes_on = OperatorChain("/=", (ref("Now"), ref("Start_Of_Region")))
     return OperatorChain(
@@ -303,7 +266,7 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
     """Every lane's transition in order; what conflicts with an earlier one is dropped."""
     work: tuple[Stmt, ...] = (
         *moves.safety.alone(),
-        *(s for lane in shape.busy_lanes for s in (_lane(shape, lane), _so_far(shape, lane))),
+        *(s for lane in shape.busy_lanes for s in (_lane(shape, lane), *_so_far(shape, lane))),
     )
     if deferred := _deferring(shape):
         rows = [(call("Is_Deferral", one), (do("Fire_Whole", one),)) for one in deferred]
@@ -338,7 +301,7 @@ def _step(
         profile,
         declarations=(*declared, _fire_whole(shape, moves)),
         body=(
-            Assign("Fired", _nothing()),
+            Assign("Fired", ref("Firings.Nothing")),
             IfStatement(((begun, (do("Fire_Whole", ref(START)),)),), work),
         ),
     )
@@ -356,24 +319,28 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
         if not earlier:
             continue
         name = ada_case(state)
-        still = [Prefix("not", call("Has", ref("Fired"), _choice(shape, n))) for n in earlier]
+        still = [Prefix("not", _fired(shape, n)) for n in earlier]
         stays = Prefix("not", call(f"Leaves_{name}", chosen))
-        free.append(Prefix("not", call(f"Has_Left_{name}", ref("Fired"))))
+        free.append(Prefix("not", call(f"Has_Left_{name}", _FIRED)))
         free.append(OperatorChain("or else", (stays, chain("and then", still))))
     if lane != shape.busy_lanes[0] and _overtaken(shape, lane):
         free.append(call("In_Source", chosen, shape.held))
     return IfStatement(((chain("and then", free), (do("Fire_Whole", chosen),)),))
 
 
-def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
-    """What has been fired of the lanes up to this one; types bound it when it is the last."""
+def _so_far(shape: RegionShape, lane: Lane) -> tuple[Pragma, ...]:
+    """What has been fired of the lanes up to this one; types bound it when it is the last.
+
+    After the last one provers need it only where transitions conflict.
+    """
     done = shape.busy_lanes[: shape.busy_lanes.index(lane) + 1]
-    few: list[Expr] = []
-    if lane != shape.busy_lanes[-1]:
-        few = [OperatorChain("<=", (_COUNT, number(len(done) * (1 + shape.most_segments))))]
-    of_lanes = _is_of(shape, lane)
-    facts = (*few, of_lanes, _ORDERED, *_asked(shape, done), *_unmoved(shape, done))
-    return Pragma("Assert", (both(*facts),))
+    is_last = lane == shape.busy_lanes[-1]
+    if is_last and (shape.passes or not shape.watched):
+        return ()
+    most = number(len(done) * (1 + shape.most_segments))
+    few = () if is_last else (OperatorChain("<=", (_COUNT, most)),)
+    facts = (*few, _is_of(shape, lane), *_asked(shape, done), *_unmoved(shape, done))
+    return (Pragma("Assert", (both(*facts),)),)
 
 
 def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
@@ -384,71 +351,43 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
     before = shape.most_firings - 1 - most
     room = OperatorChain("<=" if before else "=", (_COUNT, number(before)))
     left = call("Segments_Left", held)
-    body: list[Stmt] = [fire(moves, "T"), *_note("T")]
+    body: list[Stmt] = [fire(moves, "T"), _note("T")]
     declarations: tuple[Decl, ...] = ()
-    count = old(_COUNT)
-    grown: Expr = equal(_COUNT, _more(count, 1))
-    settled: list[Expr] = []
+    settled = equal(held, shape.target("T"))
     if most:
         ghost = (Aspect("Ghost"),)
         declarations = (
-            Object("Before", "Firing_List", ref("Fired"), constant=True, aspects=ghost),
+            Object("Before", LIST, _FIRED, constant=True, aspects=ghost),
             Object("Segment", "Selection"),
         )
         bound = OperatorChain("<=", (left, OperatorChain("-", (number(most + 1), ref("I")))))
         counted = equal(_COUNT, OperatorChain("+", (ref("Before.Count"), ref("I"))))
-        noted = _noted(shape, ref("Before.Count"), ref("Before.Items"))
-        going_on = Pragma("Loop_Invariant", (both(counted, *noted, bound, *safe),))
+        added = call("Firings.Is_Added", ref("Before"), ref("T"), _FIRED)
+        facts = both(counted, added, ref("Self.Started"), bound, *safe)
         body.append(
             Loop(
                 ForLoop("I", up_to(plain(most))),
                 (
-                    going_on,
+                    Pragma("Loop_Invariant", (facts,)),
                     IfStatement(((equal(left, number(0)), (ExitStatement(),)),)),
                     Assign("Segment", segment(shape)),
                     fire(moves, "Segment"),
-                    *_note("Segment"),
+                    _note("Segment"),
                 ),
             )
         )
-        if before:
-            grown = member(_COUNT, Range(_more(count, 1), _more(count, most + 1)))
-        else:
-            grown = OperatorChain(">=", (_COUNT, number(1)))
-        settled = [equal(left, number(0))]
-    else:
-        settled = [equal(held, shape.target("T"))]
-    facts = (grown, *_noted(shape, count, old("Fired.Items")), *settled, *safe)
+        settled = equal(left, number(0))
+    added = call("Firings.Is_Added", old(_FIRED), ref("T"), _FIRED)
+    post = both(added, ref("Self.Started"), settled, *safe)
     return Subprogram(
         "Fire_Whole",
         (Param("T", "in", "Firing"),),
-        aspects=(Aspect("Pre", both(moves.ready("T"), room)), Aspect("Post", both(*facts))),
+        aspects=(Aspect("Pre", both(moves.ready("T"), room)), Aspect("Post", post)),
         declarations=declarations,
         body=tuple(body),
     )
 
 
-def _more(count: Expr, by: int) -> Expr:
-    return OperatorChain("+", (count, plain(by)))
-
-
-def _noted(shape: RegionShape, count: Expr, items: DottedName | Attribute) -> list[Expr]:
-    """The transition and its segments stand behind what was fired before."""
-    item = _item("J")
-    facts: list[Expr] = [
-        ref("Self.Started"),
-        equal(Indexed("Fired.Items", _more(count, 1)), ref("T")),
-        ForAll("J", up_to(count), equal(item, Indexed(items, ref("J")))),
-    ]
-    if shape.passes:
-        behind = Range(_more(count, 2), _COUNT)
-        facts.append(ForAll("J", behind, call("Is_Segment", item)))
-    return facts
-
-
-def _note(fired: str) -> tuple[Stmt, ...]:
+def _note(fired: str) -> Stmt:
     """It is the last that has fired."""
-    return (
-        Assign(_COUNT, OperatorChain("+", (_COUNT, number(1)))),
-        Assign(Indexed("Fired.Items", _COUNT), ref(fired)),
-    )
+    return do("Firings.Add", _FIRED, ref(fired))

@@ -7,27 +7,24 @@ The *domain* of a transition is the innermost region that holds all it leaves an
 enters (the "transition domain" of SCXML 3.13). Everything active inside it is left,
 and what is active inside it afterwards was entered. From the domain and the
 configurations before and after follow the time-outs that are cancelled and started,
-and the leaves that histories remember; `Timer_After` and `Remembered` declare it,
-and the contract of each firing claims it.
+and the leaves that histories remember; `Timers_After` and `Remembered` declare it,
+and each firing does it by them.
 """
 
 from __future__ import annotations
 
 from ravenchart.gen.emit.ada.declarations import Decl, EnumType, Param, Subprogram
 from ravenchart.gen.emit.ada.expressions import (
-    OTHERS,
     Aggregate,
     Arg,
     Attribute,
-    CaseExpr,
-    Choices,
     Expr,
     IfExpr,
     Indexed,
     OperatorChain,
+    all_else,
     both,
     call,
-    chain,
     choice_of,
     equal,
     number,
@@ -37,17 +34,20 @@ from ravenchart.gen.emit.ada.expressions import (
 )
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.statements import Comment, Pragma
+from ravenchart.gen.emit.ada.statements import Assign, Comment, Pragma, Stmt
 from ravenchart.gen.emit.ada.walking import rewritten
-from ravenchart.gen.emit.language.compound import TOP, Firing, FiringKind
+from ravenchart.gen.emit.language.compound import TOP, Firing
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import After, Every
 
-from .deferring import freed_after, kept_events
+from .deferring import change, is_changed
 from .shape import START, HistoryMemory, RegionShape
 
 _STOPPED = ref("Ravenchart.Timers.Stopped")
+TIME_OUTS = "Time_Outs"
+"""The type of a region's timers."""
+_TIMERS, _PAST = ref("Self.Timers"), ref("Self.Past")
 
 
 def in_one_word(fact: Subprogram, told: str) -> list[Decl]:
@@ -96,16 +96,15 @@ def _domain(shape: RegionShape, firing: Firing) -> str:
 # --- The chart as declared ---------------------------------------------------
 
 
-def declared_domains(shape: RegionShape) -> list[Decl]:
-    """Domain, Domain_Of, Timer_After and Remembered, as far as the chart needs them."""
+def domain_types(shape: RegionShape) -> list[Decl]:
+    """Domain and Domain_Of, where something outlasts a firing."""
     if not has_domains(shape):
         return []
     rows = tuple((f.literal, ref(_domain(shape, f))) for f in shape.firings)
     regions = [Place(s.name, r.name) for s in shape.region.states for r in s.regions]
-    found = {_domain(shape, f) for f in shape.firings}
-    ends = ("Ending",) if "Ending" in found else ()
+    ends = ("Ending",) if _ends(shape) else ()
     literals = ("Nothing", *map(_inside, regions), "Everything", "Beginning", *ends)
-    items: list[Decl] = [
+    return [
         Comment("The innermost region that holds all that a transition leaves and enters."),
         EnumType("Domain", literals),
         Subprogram(
@@ -116,42 +115,22 @@ def declared_domains(shape: RegionShape) -> list[Decl]:
         ),
         Comment("Everything active inside it is left, and what is active then is entered."),
     ]
-    if shape.timers:
-        items += _timer_after(shape, bool(ends))
-    if shape.memories:
-        items += _remembered(shape)
-    if shape.deferring:
-        items += _freed(shape)
-    return items
 
 
-def _freed(shape: RegionShape) -> list[Decl]:
-    rows: list[Arg] = []
-    for event in kept_events(shape):
-        exits = [
-            both(
-                *flat([_spans(shape.compounds.places(s.name)), shape.in_state(shape.place, s.name)])
-            )
-            for s in shape.region.states
-            if event in s.defers
-        ]
-        before = ref("Freed", ada_case(event))
-        freed = IfExpr(((chain("or else", exits), ref("Count")),), before)
-        rows.append(Arg(ada_case(event), freed))
-    return [
-        Subprogram(
-            "Freed_After",
-            (
-                Param("D", "in", "Domain"),
-                Param(shape.place, "in", shape.place_type),
-                Param("Count", "in", "Natural"),
-                Param("Freed", "in", "Freed_Events"),
-            ),
-            "Freed_Events",
-            expression=Aggregate(tuple(rows)),
-        ),
-        Comment("Each exit of a state frees the events that it defers, of those kept till then."),
-    ]
+def declared_lasting(shape: RegionShape) -> list[Decl]:
+    """Timers_After and Remembered, as far as the chart needs them."""
+    timers = _timers_after(shape, _ends(shape)) if shape.timers else []
+    return timers + (_remembered(shape) if shape.memories else [])
+
+
+def spans_of_states(shape: RegionShape) -> dict[str, Expr]:
+    """For each state the test whether a domain holds a region around it."""
+    return {s.name: _spans(shape.compounds.places(s.name)) for s in shape.region.states}
+
+
+def _ends(shape: RegionShape) -> bool:
+    """Does a transition stop the region?"""
+    return any(terminates(shape, f) for f in shape.firings)
 
 
 def _spans(places: list[Place], *more: str) -> Expr:
@@ -168,8 +147,8 @@ def _fresh(shape: RegionShape, index: int) -> Expr:
     return call("Ravenchart.Timers.Started", *args)
 
 
-def _timer_after(shape: RegionShape, ends: bool) -> list[Decl]:
-    rows: list[tuple[Choices, Expr]] = []
+def _timers_after(shape: RegionShape, ends: bool) -> list[Decl]:
+    rows: list[Arg] = []
     for i, timed in enumerate(shape.timers, 1):
         places = shape.compounds.places(timed.source)
         active = both(
@@ -181,26 +160,23 @@ def _timer_after(shape: RegionShape, ends: bool) -> list[Decl]:
             )
         )
         after = shape.in_state("After", timed.source)
-        spanned = _spans(places, "Beginning")
-        moved = call(
-            "Ravenchart.Timers.Moved", ref("Timer"), spanned, active, after, _fresh(shape, i)
-        )
-        rows.append((plain(i), moved))
-    choice: Expr = CaseExpr(ref("I"), (*rows, (OTHERS, ref("Timer"))))
+        spanned, timer = _spans(places, "Beginning"), Indexed("Timers", plain(i))
+        moved = call("Ravenchart.Timers.Moved", timer, spanned, active, after, _fresh(shape, i))
+        rows.append(Arg(plain(i), moved))
+    moves: Expr = Aggregate(tuple(rows))
     if ends:
-        choice = IfExpr(((equal(ref("D"), ref("Ending")), _STOPPED),), choice)
+        moves = IfExpr(((equal(ref("D"), ref("Ending")), all_else(_STOPPED)),), moves)
     return [
         Subprogram(
-            "Timer_After",
+            "Timers_After",
             (
-                Param("I", "in", "Positive"),
+                Param("Timers", "in", TIME_OUTS),
                 Param("D", "in", "Domain"),
                 Param("Before", "in", shape.place_type),
                 Param("After", "in", shape.place_type),
-                Param("Timer", "in", "Ravenchart.Timers.Timer"),
             ),
-            "Ravenchart.Timers.Timer",
-            expression=choice,
+            TIME_OUTS,
+            expression=moves,
         ),
         Comment("Each time-out: cancelled when its state is left, started when it is entered."),
     ]
@@ -265,72 +241,37 @@ def _active(shape: RegionShape, memory: HistoryMemory) -> Expr:
 
 
 class Lasting:
-    """What outlasts the exits, entries and firings of one region."""
+    """What outlasts the firings of one region."""
 
     def __init__(self, shape: RegionShape) -> None:
         self.shape = shape
         self.region = shape.region
 
-    def timed(self, state: str) -> list[int]:
-        """The numbers of a state's time-outs."""
-        return [i for i, t in enumerate(self.shape.timers, 1) if t.source == state]
-
-    def remembered(self, leaf: str) -> list[tuple[HistoryMemory, bool]]:
-        """The memories that the exit of a leaf changes; False: there is nothing to remember."""
-        if not self.shape.is_literal(leaf):
-            return []
-        around = self.shape.compounds.places(leaf)
-        lane = self.region.lane(leaf)
-        final = self.region.state(leaf).final
-        return [
-            (m, not (final and around[0] == m.place))
-            for m in self.shape.memories
-            if m.place in around and self.shape.lane_of(m.place) == lane
-        ]
+    def moved(self, chosen: str, before: str) -> list[Stmt]:
+        """What a firing does to them; ``before`` holds the configuration that it leaves."""
+        shape = self.shape
+        domain, left = call("Domain_Of", ref(chosen)), ref(before)
+        done: list[Stmt] = []
+        if shape.timers:
+            after = call("Timers_After", _TIMERS, domain, left, shape.held)
+            done.append(Assign(_TIMERS, after))
+        if shape.memories:
+            done.append(Assign(_PAST, call("Remembered", domain, left, _PAST)))
+        if shape.deferring:
+            done.append(change(chosen, domain, before))
+        return done
 
     def fired(self, chosen: str) -> list[Expr]:
         """After a firing: what is declared; ``chosen`` names the transition."""
         facts: list[Expr] = []
         held = self.shape.held
         domain = call("Domain_Of", ref(chosen))
-        for i in range(1, len(self.shape.timers) + 1):
-            before = Indexed(old("Self.Timers"), plain(i))
-            after = call("Timer_After", number(i), domain, old(held), held, before)
-            facts.append(equal(Indexed("Self.Timers", plain(i)), after))
-        ends = any(terminates(self.shape, f) for f in self.shape.firings)
-        goes_on = OperatorChain("/=", (domain, ref("Ending")))
+        if self.shape.timers:
+            after = call("Timers_After", old(_TIMERS), domain, old(held), held)
+            facts.append(equal(_TIMERS, after))
         if self.shape.memories:
-            recalled = call("Remembered", domain, old(held), old("Self.Past"))
-            known = equal(ref("Self.Past"), recalled)
-            kept = equal(ref("Self.Past"), old("Self.Past"))
-            #  where the region ends, nothing will be remembered
-            later: Expr = IfExpr(((goes_on, known),), None) if ends else known
-            facts.append(IfExpr(((old("Self.Started"), later),), kept))
+            recalled = call("Remembered", domain, old(held), old(_PAST))
+            facts.append(equal(_PAST, recalled))
         if self.shape.deferring:
-            count = call("Deferrals.Count", old("Self.Deferred"))
-            freed = freed_after(self.shape, domain, count)
-            facts.append(IfExpr(((goes_on, freed),), None) if ends else freed)
-        return [*facts, *self._deferred(chosen)]
-
-    def _deferred(self, chosen: str) -> list[Expr]:
-        """A deferral keeps its event, or counts it as lost; nothing else touches what is kept."""
-        shape = self.shape
-        deferrals = [f for f in shape.firings if f.kind is FiringKind.DEFERRAL]
-        if not deferrals:
-            return []
-        kept, before = ref("Self.Deferred"), old("Self.Deferred")
-        full = equal(call("Deferrals.Count", before), number(self.region.deferral_depth))
-        lost = equal(ref("Self.Lost"), OperatorChain("or", (old("Self.Lost"), full)))
-        names: dict[DottedName, list[str]] = {}
-        for firing in deferrals:
-            names.setdefault(shape.deferred_item(firing), []).append(firing.literal)
-        one = len(names) == 1
-        added = tuple(
-            (
-                call("Is_Deferral", ref(chosen)) if one else one_of(ref(chosen), of),
-                both(call("Deferrals.Is_Appended", before, item, kept), lost),
-            )
-            for item, of in names.items()
-        )
-        same = both(equal(kept, before), equal(ref("Self.Lost"), old("Self.Lost")))
-        return [IfExpr(added, same)]
+            facts.append(is_changed(self.shape, chosen, domain))
+        return facts

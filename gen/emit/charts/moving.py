@@ -3,9 +3,9 @@
 
 """Exits and entries of one region: a procedure for each state where one does something.
 
-A state without actions, time-outs or history is exited and entered in the ghost of the
-active states alone, for which there is no code. The procedures have neither parameters nor
-contracts: gnatprove inlines them where they are called, and proves the caller with their work.
+A state without actions and completion is exited and entered in the ghost of the active
+states alone, for which there is no code. The procedures have neither parameters nor contracts:
+gnatprove inlines them where they are called, and proves the caller with their work.
 """
 
 from __future__ import annotations
@@ -16,28 +16,24 @@ from ravenchart.gen.emit.ada.expressions import (
     TRUE,
     Choice,
     Expr,
-    Indexed,
     Qualified,
     both,
     call,
     chain,
     equal,
-    number,
-    plain,
 )
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Assign, IfStatement, Stmt, case_of, do
-from ravenchart.gen.emit.language.compound import Enter
 from ravenchart.gen.emit.language.terms import emit_flow
 from ravenchart.gen.language.terms import Flow
 from ravenchart.gen.model.chart.tree import Place
-from ravenchart.gen.model.statechart import After, Every
 
-from .deferring import freed_by
-from .lasting import Lasting
 from .nodes import Nodes, joined
 from .shape import RegionShape
+
+BEFORE = "Before"
+"""The configuration before a firing."""
 
 
 def _leave_name(place: Place) -> str:
@@ -47,11 +43,10 @@ def _leave_name(place: Place) -> str:
 class Moving:
     """Gives the statements of exits and entries, and remembers which procedures they need."""
 
-    def __init__(self, shape: RegionShape, nodes: Nodes, lasting: Lasting) -> None:
+    def __init__(self, shape: RegionShape, nodes: Nodes) -> None:
         self.shape = shape
         self.region = shape.region
         self.nodes = nodes
-        self.lasting = lasting
         self.scope = shape.scope("Self.Data")
         self.held = shape.held
         self._exited: set[str] = set()
@@ -70,16 +65,16 @@ class Moving:
     def enter(self, vertex: str) -> tuple[Stmt, ...]:
         """The entry of one state, or of a pseudostate that is passed."""
         if self.region.pseudostate(vertex) is not None:
-            return (self.nodes.enter(vertex), *self._place(vertex))
+            return (self.nodes.enter(vertex),)
         if vertex in self._entered or any(self._work_of_entry(vertex)):
             self._entered.add(vertex)
             return (do(f"Enter_{ada_case(vertex)}"),)
-        return (self.nodes.enter(vertex), *self._place(vertex), *self._noted(vertex, "entry"))
+        return (self.nodes.enter(vertex), *self._noted(vertex, "entry"))
 
     def leave(self, place: Place) -> Stmt:
         """The exits of all that is active in a region."""
         if place.owner is not None and self._is_silent(place):
-            return self.nodes.leave(place)
+            return self.nodes.leave(place, BEFORE)
         if place not in self._left:
             self._left.add(place)
             for child in self.region.children(place.owner, place.region):
@@ -132,58 +127,23 @@ class Moving:
         return () if self.region.state(state).final else self.shape.note(f"{state}.{what}")
 
     def _work_of_exit(self, state: str) -> tuple[Stmt, ...]:
-        """What the exit of a state does: actions, time-outs, what it frees, what is remembered."""
-        stops = tuple(
-            do("Ravenchart.Timers.Disarm", Indexed("Self.Timers", plain(i)))
-            for i in self.lasting.timed(state)
-        )
+        """What the exit of a state does: actions, and that its completion is over."""
         completed = Assign(ref("Self", self.shape.completed(state)), FALSE)
         undone = (completed,) if state in self.shape.completing else ()
-        action = emit_flow(self.scope, self.region.state(state).exit)
-        freed = freed_by(self.shape, state)
-        return (*action, *stops, *undone, *freed, *self._remember(state))
-
-    def _remember(self, leaf: str) -> tuple[Stmt, ...]:
-        found: list[Stmt] = []
-        for memory, goes_on in self.lasting.remembered(leaf):
-            if goes_on:
-                found.append(Assign(ref("Self.Past", memory.last), self.shape.literal(leaf)))
-            found.append(Assign(ref("Self.Past", memory.known), TRUE if goes_on else FALSE))
-        return tuple(found)
+        return (*emit_flow(self.scope, self.region.state(state).exit), *undone)
 
     def _entry(self, vertex: str) -> Subprogram:
         first, then = self._work_of_entry(vertex)
         noted = self._noted(vertex, "entry")
         return Subprogram(
             f"Enter_{ada_case(vertex)}",
-            body=(*self._place(vertex), *first, self.nodes.enter(vertex), *noted, *then),
-        )
-
-    def _place(self, vertex: str) -> tuple[Stmt, ...]:
-        """The leaves that an entry sets."""
-        return tuple(
-            Assign(self.shape.at(self.held, lane), self.shape.literal(leaf))
-            for lane, leaf in self.shape.after((Enter(vertex),)).items()
+            body=(*first, self.nodes.enter(vertex), *noted, *then),
         )
 
     def _work_of_entry(self, state: str) -> tuple[tuple[Stmt, ...], tuple[Stmt, ...]]:
-        """What the entry of a state does: its time-outs and visits; its action and completion."""
+        """What the entry of a state does: another visit; its action and completion."""
         action = emit_flow(self.scope, self.region.state(state).entry)
-        return (
-            (*self._arm(state), *self._begin_work(state)),
-            (*action, *self._complete(state)),
-        )
-
-    def _arm(self, state: str) -> tuple[Stmt, ...]:
-        found: list[Stmt] = []
-        for i in self.lasting.timed(state):
-            trigger = self.shape.timers[i - 1].trigger
-            assert isinstance(trigger, After | Every)
-            args: list[Expr] = [Indexed("Self.Timers", plain(i)), number(trigger.executions)]
-            if isinstance(trigger, Every):
-                args.append(number(trigger.executions))
-            found.append(do("Ravenchart.Timers.Arm", *args))
-        return tuple(found)
+        return self._begin_work(state), (*action, *self._complete(state))
 
     def _begin_work(self, state: str) -> tuple[Stmt, ...]:
         """Another visit, in which the do activity is not done yet."""
@@ -226,7 +186,7 @@ class Moving:
             rows.append((shape.literal(child.name), joined((*inner, *self.exit(child.name)))))
         rows += [(shape.literal(p), self.exit(p)) for p in shape.compounds.passed(place)]
         lane = shape.lane_of(place)
-        leaf: Expr = shape.at(self.held, lane)
+        leaf: Expr = shape.at(BEFORE, lane)
         if not self.region.state(place.owner).is_orthogonal:
             leaf = Qualified(shape.literal(place.owner), leaf)
         return Subprogram(_leave_name(place), body=(case_of(leaf, rows),))

@@ -29,15 +29,14 @@ from ravenchart.gen.emit.ada.expressions import (
     number,
     old,
     plain,
-    up_to,
 )
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.language.events import name_of
 
-from .deferring import FREED
-from .lanes import followed
+from .deferring import due, is_taken
+from .lanes import LIST, followed, is_only
 from .lasting import Lasting
 from .safety import Safety
 from .selection import is_selected
@@ -87,7 +86,7 @@ def operations(shape: RegionShape) -> list[Decl]:
         ),
         Comment(_POLLS if shape.polls_more else _POLLS_TIME),
     ]
-    fired = "Firing_List" if shape.listed else "Selection"
+    fired = LIST if shape.listed else "Selection"
     params = shape.step_params()
     items += [
         Subprogram(
@@ -144,16 +143,8 @@ _TIMER_BEFORE = Indexed(old("Self.Timers"), ref("I"))
 
 def _released(shape: RegionShape) -> tuple[Expr, Expr]:
     """When an event is released from deferral, it comes next."""
-    each = up_to(plain(shape.region.deferral_depth))
-    kept = old("Self.Deferred")
-    freed = old(FREED)
-    released = call("Is_Released", kept, shape.held, freed, ref("I"))
-    item = call("Deferrals.Element", kept, ref("I"))
-    comes: list[Expr] = [equal(ref("Now"), call("To_Occurrence", item))]
-    comes += [equal(ref("Item"), item)] if shape.takes_item else []
-    comes.append(equal(FREED, call("Freed_Without", ref("I"), freed)))
-    then = IfExpr(((released, both(*comes)),), None)
-    return ForSome("I", each, released), ForAll("I", each, then)
+    comes = equal(ref("Now"), call("To_Occurrence", ref("Item")))
+    return OperatorChain(">", (due(shape), number(0))), both(is_taken(shape), comes)
 
 
 def _taken(shape: RegionShape) -> list[Expr]:
@@ -195,6 +186,6 @@ def _stepped(shape: RegionShape) -> list[Expr]:
         facts.append(IfExpr(((rests, still),), None))
     if not shape.single:
         return [*facts, followed(shape)]
-    only = call("Is_Only", ref("Fired"), first)
+    only = is_only(first)
     some = IfExpr(((OperatorChain(">", (ref("Fired.Count"), number(0))), only),), None)
     return [*facts, IfExpr(((begun, started),), chosen), some]

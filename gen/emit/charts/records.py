@@ -8,31 +8,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ravenchart.gen.emit.ada.declarations import (
-    ArrayDefinition,
     Decl,
     EnumType,
-    GenericInstance,
     IndexConstrained,
-    RangeConstrained,
     RecordComponent,
     RecordDeclaration,
     SubtypeDeclaration,
-    TypeDeclaration,
     UseType,
 )
 from ravenchart.gen.emit.ada.expressions import (
     FALSE,
     Range,
-    all_else,
-    arguments,
-    number,
+    RangeConstrained,
     plain,
     up_to,
 )
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import (
     ada_case,
-    component_name,
     default_value,
     type_name,
     value,
@@ -40,10 +33,10 @@ from ravenchart.gen.emit.ada.naming import (
 )
 from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.components.packages import reading_type
-from ravenchart.gen.emit.language.events import null_event
 
-from .deferring import freed_field, freed_type
+from .deferring import STORE, deferral_types
 from .guards import guard_operators, guards_of
+from .lasting import TIME_OUTS, domain_types, spans_of_states
 from .safety import Safety
 from .shape import START, RegionShape
 from .working import done_types, work_fields
@@ -173,36 +166,13 @@ def _records(shape: RegionShape) -> list[Decl]:
             Comment("What histories ask for: the last leaf left in a region, if any."),
             RecordDeclaration("Memory", tuple(past)),
         ]
+    if shape.timers:
+        each = up_to(plain(len(shape.timers)))
+        timers = IndexConstrained("Ravenchart.Timers.Timer_Array", each)
+        items.append(SubtypeDeclaration(TIME_OUTS, timers))
+    items += [*done_types(shape), *domain_types(shape)]
     if shape.deferring:
-        items += [
-            GenericInstance(
-                "Deferrals",
-                "Ravenchart.Event_Lists",
-                arguments(
-                    Event=ref(component_name(component), "Event"),
-                    Null_Event=null_event(component),
-                    Capacity=number(region.deferral_depth),
-                ),
-            ),
-            UseType("Deferrals.List"),
-            *freed_type(shape),
-        ]
-    if shape.listed:
-        most = shape.most_firings
-        count = RangeConstrained("Natural", Range(number(0), plain(most)))
-        none = all_else(ref("None"))
-        items += [
-            TypeDeclaration("Firing_Array", ArrayDefinition(up_to(plain(most)), "Selection")),
-            Comment("What one step has fired, in order; None behind the last."),
-            RecordDeclaration(
-                "Firing_List",
-                (
-                    RecordComponent("Count", count, number(0)),
-                    RecordComponent("Items", "Firing_Array", none),
-                ),
-            ),
-        ]
-    items += done_types(shape)
+        items += deferral_types(shape, spans_of_states(shape))
     items += [
         Comment("The region's own state."),
         RecordDeclaration("Region", _region_fields(shape)),
@@ -218,15 +188,11 @@ def _region_fields(shape: RegionShape) -> tuple[RecordComponent, ...]:
     if shape.memories:
         rows.append(RecordComponent("Past", "Memory"))
     if shape.timers:
-        each = up_to(plain(len(shape.timers)))
-        timers = IndexConstrained("Ravenchart.Timers.Timer_Array", each)
-        rows.append(RecordComponent("Timers", timers))
+        rows.append(RecordComponent("Timers", TIME_OUTS))
     rows += [RecordComponent(shape.completed(s), "Boolean", FALSE) for s in shape.completing]
     rows += work_fields(shape)
     if shape.deferring:
-        rows.append(RecordComponent("Deferred", "Deferrals.List"))
-        rows.append(freed_field())
-        rows.append(RecordComponent("Lost", "Boolean", FALSE))
+        rows.append(RecordComponent("Deferred", STORE))
     if shape.region.writes:
         rows.append(RecordComponent("Data", "Variables"))
     return tuple(rows)

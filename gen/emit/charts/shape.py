@@ -66,8 +66,7 @@ TYPES = frozenset(
         *("safe_region", "initial_data"),
         *("occurrence", "selection", "firing", "transition", "choice", "domain", "memory", "chart"),
         *("variables", "inputs", "outbox", "region", "item"),
-        *("firing_list", "firing_array", "done_states", "freed_events"),
-        "deferrals",
+        *("firings", "deferrals", "done_states", "time_outs"),
     )
 )
 """What hides an event of the same name inside a region's package."""
@@ -260,7 +259,7 @@ class RegionShape(Places):
         """The profile of Poll; a deferred event comes with its value."""
         mode = "in out" if self.polls_out else "in"
         params = [Param("Self", mode, "Region"), Param("Now", "out", "Occurrence")]
-        if self.deferring and self.takes_item:
+        if self.deferring:
             params.append(replace(ITEM, mode="out"))
         return tuple(params)
 
@@ -391,12 +390,6 @@ class RegionShape(Places):
             parts += [p for s in firing.sources if (p := self.is_complete(s)) is not None]
         return both(*flat(parts))
 
-    def deferred_item(self, firing: Firing) -> DottedName:
-        """What a deferral keeps: the event with its value, where events have one."""
-        (event,) = firing.triggers
-        assert isinstance(event, str)
-        return ref("Item") if self.takes_item else self.event(event)
-
     def event(self, event: str) -> DottedName:
         """The event as the region's package names it."""
         name = event_literal(event)
@@ -426,7 +419,8 @@ class RegionShape(Places):
     def fires_with_item(self) -> bool:
         """Does a behaviour ask for the event's value, or is the event kept?"""
         flows = (e for flow in flows_of(self.region) for e in expressions_in(flow))
-        return carries(self.component) and (any(map(asks_event, flows)) or self.deferring)
+        asks = carries(self.component) and any(map(asks_event, flows))
+        return asks or self.deferring
 
     @cached_property
     def situation(self) -> tuple[Param, ...]:

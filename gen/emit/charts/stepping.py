@@ -10,36 +10,23 @@ from ravenchart.gen.emit.ada.expressions import (
     FALSE,
     OTHERS,
     Expr,
-    ForAll,
+    IfExpr,
     OperatorChain,
     Prefix,
-    both,
     call,
     equal,
-    number,
     plain,
-    up_to,
 )
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.statements import (
-    Assign,
-    Case,
-    ExitStatement,
-    ForLoop,
-    IfStatement,
-    Loop,
-    Pragma,
-    Stmt,
-    do,
-)
+from ravenchart.gen.emit.ada.statements import Assign, Case, IfStatement, Stmt, do
 from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.terms import expressions_in, flow_operators
 
-from .deferring import BEFORE_I, COUNT, FREED, is_due
+from .deferring import take_due
 from .firing import Moves
 from .guards import guard_operators, guards_of
-from .lanes import fire, lane_step, passing_step
+from .lanes import LIST, fire, lane_step, passing_step
 from .safety import Safety
 from .selection import selectors, whole
 from .shape import START, RegionShape
@@ -85,7 +72,7 @@ def _polling(shape: RegionShape) -> list[Decl]:
         occurs = Assign("Now", ref(f"Completion_Of_{ada_case(state)}"))
         branches.append((done, (Assign(done, FALSE), occurs)))
     declarations: list[Decl] = [Object("Due", "Natural")] if shape.timers else []
-    declarations += [Object("Released", "Natural")] if shape.deferring else []
+    declarations += [Object("Released", "Boolean")] if shape.deferring else []
     params = shape.poll_params()
     before: tuple[Stmt, ...] = ()
     if len(params) > 2:
@@ -113,33 +100,9 @@ def _polling(shape: RegionShape) -> list[Decl]:
 
 def _deferred(shape: RegionShape) -> tuple[Stmt, ...]:
     """The oldest deferred event that is due."""
-    held = shape.held
-    item = call("Deferrals.Element", ref("Self.Deferred"), ref("Released"))
-    none_yet = equal(ref("Released"), number(0))
-    due_j, due_i = (is_due("Self.Deferred", held, FREED, index) for index in "JI")
-    waiting = ForAll("J", BEFORE_I, Prefix("not", due_j))
-    search = Loop(
-        ForLoop("I", up_to(COUNT)),
-        (
-            Pragma("Loop_Invariant", (both(none_yet, waiting),)),
-            IfStatement(((due_i, (Assign("Released", ref("I")), ExitStatement())),)),
-        ),
-    )
-    found = (ref("Self.Deferred"), held, FREED, ref("Released"))
-    taken = (Assign("Item", item),) if shape.takes_item else ()
-    take = (
-        Pragma("Assert", (call("Is_Released", *found),)),
-        Assign("Now", call("To_Occurrence", item)),
-        *taken,
-        do("Deferrals.Remove", ref("Self.Deferred"), ref("Released")),
-        Assign(FREED, call("Freed_Without", ref("Released"), FREED)),
-    )
-    return (
-        Assign("Now", ref("Conditions")),
-        Assign("Released", number(0)),
-        search,
-        IfStatement(((OperatorChain(">", (ref("Released"), number(0))), take),)),
-    )
+    released = ref("Released")
+    taken = IfExpr(((released, call("To_Occurrence", ref("Item"))),), ref("Conditions"))
+    return (take_due(shape, released), Assign("Now", taken))
 
 
 # --- the step ----------------------------------------------------------------
@@ -151,7 +114,7 @@ def _step(shape: RegionShape, moves: Moves) -> Subprogram:
         params[0],
         Param("Now", "in", "Occurrence"),
         *params[1:],
-        Param("Fired", "out", "Firing_List" if shape.listed else "Selection"),
+        Param("Fired", "out", LIST if shape.listed else "Selection"),
     )
     if not shape.listed:
         return Subprogram("Step", profile, body=_plain_step(shape, moves))

@@ -117,7 +117,7 @@ def _driver(system: System, kind: DeviceType, header: str) -> Unit:
     uses = (Aspect("Global", used),)
     for operation, what, wcet in _operations(system, kind):
         items.append(Subprogram(operation.name, operation.params, aspects=uses))
-        items.append(Comment(f"[{kind.name}{what}] budget {wcet:_} ns"))
+        items.append(Comment(f"[{kind.name}{what}] WCET {wcet:_} ns"))
     root = root_package(system)
     withs = {states_package(system, kind)}
     withs |= {ref(root, units_package(kind))} if kind.tells_apart else set()
@@ -266,7 +266,7 @@ def _spec(system: System, device: Device, name: DottedName, header: str) -> Unit
     items: list[Decl] = [*lifecycle_specs(device)]
     for one in called(system, device):
         items.append(Subprogram(ada_case(one.name), _params(system, one), aspects=(INLINE,)))
-        items.append(Comment(f"[{device.name}.{one.name}] budget {one.wcet:_} ns"))
+        items.append(Comment(f"[{device.name}.{one.name}] WCET {one.wcet:_} ns"))
     return Unit(header, (), Package(name, tuple(items), (SPARK,)))
 
 

@@ -130,11 +130,11 @@ def lifecycle_specs(device: Device) -> tuple[Decl, ...]:
     life = device.type.lifecycle
     items: list[Decl] = [
         Subprogram("Start", (Param("Passed", "out", "Boolean"),)),
-        Comment(f"[{device.name}] before the first release; budget {life.start:_} ns"),
+        Comment(f"[{device.name}] before the first release; WCET {life.start:_} ns"),
     ]
     if life.make_safe is not None:
         items.append(Subprogram("Make_Safe"))
-        items.append(Comment(f"[{device.name}] at the end; budget {life.make_safe:_} ns"))
+        items.append(Comment(f"[{device.name}] at the end; WCET {life.make_safe:_} ns"))
     return tuple(items)
 
 

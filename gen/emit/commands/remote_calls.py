@@ -37,6 +37,7 @@ from ravenchart.gen.emit.ada.expressions import (
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name
 from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Stmt, do
+from ravenchart.gen.emit.tables.trace_calls import fault_units
 from ravenchart.gen.language.terms import RecordType, Type
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, Provided, Remote, RemoteRead
@@ -80,12 +81,8 @@ def units_of(system: System, instance: Instance) -> Iterator[DottedName]:
     if asked or heard(system, instance):
         yield CALLS
     if any(one.reply for one in asked):
-        yield from (
-            ref("Ravenchart.Remote_Calls"),
-            ref("Ravenchart.Queueing"),
-            ref("Ravenchart.Health"),
-        )
-        yield ref(root, "Health_Counts")
+        yield from (ref("Ravenchart.Remote_Calls"), ref("Ravenchart.Queueing"))
+        yield from fault_units(root)
     yield from (ref(root, ada_case(message.bus)) for message in answered)
 
 

@@ -13,6 +13,7 @@ from ravenchart.gen.emit.ada.expressions import arguments, number
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name, value
 from ravenchart.gen.emit.ada.statements import Comment, Do, IfStatement, Stmt, do
+from ravenchart.gen.emit.tables.trace_calls import fault_units
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, RemoteRead
 from ravenchart.gen.model.component import Activity
@@ -39,8 +40,8 @@ def read_units(system: System, instance: Instance) -> Iterator[DottedName]:
     """The units that the body of an instance needs for all of this."""
     root = ada_case(system.name)
     if copies(system, instance):
-        yield from (CALLS, ref("Ravenchart.Remote_Reads"), ref("Ravenchart.Health"))
-        yield ref(root, "Health_Counts")
+        yield from (CALLS, ref("Ravenchart.Remote_Reads"))
+        yield from fault_units(root)
     for message in published_afar(system, instance):
         yield ref(root, ada_case(message.bus))
         if message.every > 1:

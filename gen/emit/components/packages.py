@@ -268,7 +268,7 @@ def _specs(
         timing = activity.timing
         items.append(
             Comment(
-                f"[{component.name}.{activity.name}] budget {timing.wcet:_} ns, "
+                f"[{component.name}.{activity.name}] WCET {timing.wcet:_} ns, "
                 f"every {timing.period:_} ns"
                 + (f", while in {activity.while_in.state}" if activity.while_in else "")
             )

@@ -26,7 +26,6 @@ from ravenchart.gen.emit.ada.expressions import (
     BOX,
     Arg,
     Expr,
-    OperatorChain,
     StringLiteral,
     all_else,
     arguments,
@@ -41,7 +40,7 @@ from ravenchart.gen.emit.ada.naming import (
     type_name,
     value,
 )
-from ravenchart.gen.emit.ada.statements import Assign, Case, Comment, IfStatement, Pragma, Stmt, do
+from ravenchart.gen.emit.ada.statements import Assign, Case, Comment, Pragma, Stmt, do
 from ravenchart.gen.emit.charts.shape import RegionShape
 from ravenchart.gen.emit.commands.device_calls import (
     call_body,
@@ -66,18 +65,18 @@ from ravenchart.gen.emit.commands.remote_calls import (
 from ravenchart.gen.emit.commands.remote_reads import copies, copy_name, copy_objects, read_units
 from ravenchart.gen.emit.components.contracts import stored_type
 from ravenchart.gen.emit.components.packages import activity_package, leaf_type
-from ravenchart.gen.emit.language.events import event_value, name_of, null_event
+from ravenchart.gen.emit.language.events import name_of, null_event
 from ravenchart.gen.emit.language.own_names import event_literal
 from ravenchart.gen.emit.language.places import Places
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spec
-from ravenchart.gen.emit.tables.trace_calls import fault_number
+from ravenchart.gen.emit.tables.trace_calls import fault_units
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
-from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.commands import Need, Provided
-from ravenchart.gen.model.component import Activity, Event, Port, PortKind
-from ravenchart.gen.model.statechart import Overflow, Region
+from ravenchart.gen.model.component import Activity, Port, PortKind
+from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import System, Work
 
+from .offers import OFFERS, enqueue, offers_of_port, offers_of_region, overflowed, put
 from .releasing import releases, wait_body, wait_spec
 from .rows import Rows
 from .site import Site
@@ -107,19 +106,10 @@ class Glue(Site):
     def _body_withs(self) -> tuple[DottedName, ...]:
         root = ada_case(self.system.name)
         component = self.instance.component
-        names = {
-            ref("Ravenchart.Queueing"),
-            ref("Ravenchart.Health"),
-            ref("System"),
-            ref(root, "Health_Counts"),
-        }
+        names = {ref("System")}
         queued = bool(component.inputs()) or any(r.events() for r in component.regions)
-        if not queued and not self._served():
-            names -= {
-                ref("Ravenchart.Queueing"),
-                ref("Ravenchart.Health"),
-                ref(root, "Health_Counts"),
-            }
+        if queued or self._served():
+            names |= {ref("Ravenchart.Queueing"), OFFERS, *fault_units(root)}
         if not component.events and not self._served():
             names.add(ref(root, self.component))
         if any(n.trace_depth for n in self.system.nodes):
@@ -225,15 +215,13 @@ class Glue(Site):
             yield watch_body(copy.need, copy_name(copy.need), self._passed(copy.need))
 
     def _lost(self, name: str) -> tuple[Stmt, ...]:
-        """Count a call that found no place."""
-        number_ = fault_number("Queue_Overflow")
-        return (self._fault("Queue_Overflow"), *self._note("Fault", name, "port", number_))
+        """Report a call that found no place."""
+        return (self._fault("Queue_Overflow", name, "port"),)
 
     def _passed(self, need: Need) -> tuple[Stmt, ...]:
-        """Count a reply that did not come in time, and tell of it."""
-        noted = self._note("Fault", need.name, "port", fault_number("Stale_Input"))
+        """Report a reply that did not come in time, and tell of it."""
         told = () if need.on_timeout is None else (self._raise(need.on_timeout),)
-        return (self._fault("Stale_Input"), *noted, *told)
+        return (self._fault("Stale_Input", need.name, "port"), *told)
 
     # --- body: objects
 
@@ -244,6 +232,7 @@ class Glue(Site):
         items += call_objects(self.system, self.instance)
         items += copy_objects(self.system, self.instance)
         items += heard_objects(self.system, self.instance)
+        items += overflowed(self.instance.component)
         component = self.instance.component
         items += [self._put_body(p) for p in self._connected_inputs()]
         items += [body for p in self._connected_inputs() for body in wait_body(self, p)]
@@ -312,6 +301,8 @@ class Glue(Site):
             kind = "Releasing_Queues" if releases(self, port) else "Queues"
             given = of_type, null, depth, policy, f"{port.name}.mailbox", ref(RUNTIME, kind)
             items.append(self._queue(f"{name}_Mailbox", *given))
+            if not sampled and port in self._connected_inputs():
+                items.append(offers_of_port(self, port, of_type))
             view = ref(self.component, f"{name}_View")
             items.append(Object(f"{name}_Port", view))
             if port.on_overflow:
@@ -366,6 +357,7 @@ class Glue(Site):
                         f"{region.name}.queue",
                     )
                 )
+                items += offers_of_region(self, region, event)
             for activity, state in component.completing(region.name):
                 items.append(Comment(f"[{self._element(activity.name)}] completes {state}"))
                 for kind in ("visit", "done"):
@@ -378,14 +370,10 @@ class Glue(Site):
 
     def _put_body(self, port: Port) -> Subprogram:
         name = ada_case(port.name)
-        body: list[Stmt] = [
-            do(ref(f"{name}_Mailbox", "Put"), ref("Item"), ref("Status")),
-            *self._note("Arrived", port.name, "port"),
-        ]
-        if releases(self, port):  # what it releases may run before Put returns
-            body = [*body[1:], body[0]]
+        noted = self._note("Arrived", port.name, "port")
         if port.kind is PortKind.SAMPLED:
             #  a new sample replaces the old one: nothing is lost
+            mailed = do(ref(f"{name}_Mailbox", "Put"), ref("Item"), ref("Status"))
             return Subprogram(
                 f"Put_{name}",
                 self._put_spec(port).params,
@@ -401,21 +389,10 @@ class Glue(Site):
                         ),
                     ),
                 ),
-                body=tuple(body),
+                body=(mailed, *noted),
             )
-        lost: list[Stmt] = [self._fault("Queue_Overflow")]
-        lost += self._note("Fault", port.name, "port", fault_number("Queue_Overflow"))
-        condition = OperatorChain("/=", (ref("Status"), ref("Ravenchart.Queueing.Queued")))
-        body.append(IfStatement(((condition, tuple(lost)),)))
-        return Subprogram(
-            f"Put_{name}",
-            self._put_spec(port).params,
-            declarations=(
-                Object("Status", "Ravenchart.Queueing.Put_Status"),
-                UseType("Ravenchart.Queueing.Put_Status"),
-            ),
-            body=tuple(body),
-        )
+        body = (*noted, put(port.name, ref("Item")))
+        return Subprogram(f"Put_{name}", self._put_spec(port).params, body=body)
 
     def _offer_body(self) -> Subprogram:
         component = self.instance.component
@@ -425,21 +402,14 @@ class Glue(Site):
             steps: list[Stmt] = []
             for region in regions:
                 if event.name in region.events():
-                    steps += self._enqueue(region, event, ref("Item"), tells=True)
+                    steps.append(enqueue(region, event, ref("Item")))
             for bus in self._asked(event.name):
                 steps.append(do(ref(ada_case(bus), "Controller.Request_Recovery")))
             steps += self._note("Raised", event.name, "event") if steps else ()
             rows.append((ref(self.component, event_literal(event.name)), tuple(steps)))
-        declarations: tuple[Decl, ...] = ()
-        if regions:
-            declarations = (
-                Object("Status", "Ravenchart.Queueing.Put_Status"),
-                UseType("Ravenchart.Queueing.Put_Status"),
-            )
         return Subprogram(
             "Offer",
             self._offer_spec().params,
-            declarations=declarations,
             body=(Case(name_of(component, "Item"), rows),),
         )
 
@@ -447,30 +417,6 @@ class Glue(Site):
         """The buses that an event asks to recover."""
         pair = self.instance.name, event
         return tuple(bus.name for bus in self.system.buses if pair in bus.recovers_on)
-
-    def _enqueue(self, region: Region, event: Event, item: Expr, *, tells: bool) -> list[Stmt]:
-        """Put an event into a region's queue; with ``tells``, report what is lost by an event."""
-        queue = f"{ada_case(region.name)}_Queue"
-        full: list[Stmt] = [self._fault("Queue_Overflow")]
-        full += self._note("Fault", region.name, "region", fault_number("Queue_Overflow"))
-        if tells and region.on_overflow is not None:
-            full += self.overflowed(region.on_overflow)
-        condition = OperatorChain("/=", (ref("Status"), ref("Ravenchart.Queueing.Queued")))
-        args = [item, ref("Status")]
-        if event.overflow is not None and event.overflow is not region.overflow:
-            args.append(ref("Ravenchart.Queueing", ada_case(event.overflow.value)))
-        return [do(ref(queue, "Put"), *args), IfStatement(((condition, tuple(full)),))]
-
-    def overflowed(self, name: str) -> list[Stmt]:
-        """Raise the event that tells of a loss; what is lost by that is only counted."""
-        component = self.instance.component
-        event: Event = named(component.events, name)
-        return [
-            s
-            for r in component.regions
-            if event.name in r.events()
-            for s in self._enqueue(r, event, event_value(component, name), tells=False)
-        ]
 
     def _send_body(self, port: Port) -> Subprogram:
         if port.is_command:

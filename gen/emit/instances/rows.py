@@ -37,6 +37,7 @@ from ravenchart.gen.emit.ada.statements import (
     Stmt,
     do,
 )
+from ravenchart.gen.emit.charts.lanes import LIST
 from ravenchart.gen.emit.charts.shape import RegionShape
 from ravenchart.gen.emit.commands.device_calls import asked, asked_args, served
 from ravenchart.gen.emit.commands.remote_calls import watched
@@ -54,7 +55,6 @@ from ravenchart.gen.emit.components.packages import (
 from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.places import Places
 from ravenchart.gen.emit.language.terms import names_in
-from ravenchart.gen.emit.tables.trace_calls import fault_number
 from ravenchart.gen.model.commands import Binding, Device, Poll, RemoteRead, Server
 from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
@@ -140,8 +140,7 @@ class Rows(Site):
         arrived += self._record(port.name, f"{name}_Port.Value")
         if port.on_arrival:
             arrived.append(self._raise(port.on_arrival, ref(f"{name}_Port", "Value")))
-        stale: list[Stmt] = [self._fault("Stale_Input")]
-        stale += self._note("Fault", port.name, "port", fault_number("Stale_Input"))
+        stale: list[Stmt] = [self._fault("Stale_Input", port.name, "port")]
         if port.on_stale:
             stale.append(self._raise(port.on_stale))
         rows = (
@@ -232,7 +231,7 @@ class Rows(Site):
         name = ada_case(region.name)
         declarations: list[Decl] = [
             Object("Now", ref(package, "Occurrence")),
-            Object("Fired", ref(package, "Firing_List" if shape.listed else "Selection")),
+            Object("Fired", ref(package, LIST if shape.listed else "Selection")),
         ]
         if len(shape.lanes) > 1 and self._note("State", region.name, "region"):
             states = ref(self.component, shape.states)
@@ -270,9 +269,8 @@ class Rows(Site):
             body.append(do("Ravenchart.Steps.Finish", StringLiteral(self._element(region.name))))
         body += after
         if shape.deferring:
-            lost = ref(f"{name}_Region", "Lost")
-            told = [self._fault("Queue_Overflow")]
-            told += self._note("Fault", region.name, "region", fault_number("Queue_Overflow"))
+            lost = ref(f"{name}_Region", "Deferred.Lost")
+            told = [self._fault("Queue_Overflow", region.name, "region")]
             told += [self._raise(region.on_overflow)] if region.on_overflow is not None else []
             body.append(IfStatement(((lost, (*told, Assign(lost, FALSE))),)))
         params = (Param("Ins", "in", ref(package, "Inputs")),) if shape.inputs else ()

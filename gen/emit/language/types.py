@@ -13,14 +13,13 @@ from ravenchart.gen.emit.ada.declarations import (
     EnumType,
     Object,
     Package,
-    RangeConstrained,
     RecordComponent,
     RecordDeclaration,
     SubtypeDeclaration,
     TypeDeclaration,
     Unit,
 )
-from ravenchart.gen.emit.ada.expressions import Expr, Range, signed
+from ravenchart.gen.emit.ada.expressions import Expr, Range, RangeConstrained, signed
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import (
     NUMBER,

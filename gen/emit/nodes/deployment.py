@@ -54,8 +54,8 @@ from ravenchart.gen.emit.certificate.certified import (
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID
 from ravenchart.gen.emit.tables.trace_calls import (
     element_constant,
-    fault_number,
-    note,
+    fault,
+    fault_units,
     row_number,
     traced,
 )
@@ -99,7 +99,14 @@ def emit_without_tasks(system: System, header: str) -> tuple[Unit, ...]:
 
 def _health(system: System, header: str) -> Unit:
     args = arguments(Ceiling=priority(system.object("health").ceiling))
-    return _holding(system, "Health_Counts", "Counters", "Ravenchart.Health_Counters", args, header)
+    counters, reports = ref("Ravenchart.Health_Counters"), ref("Ravenchart.Fault_Reports")
+    does = arguments(Record_Fault=ref("Counters.Record_Fault"))
+    does += arguments(Note=ref("Trace.Buffer.Note")) if traced(system) else ()
+    root = root_package(system)
+    trace = (ref(root, "Trace"),) if traced(system) else ()
+    items = GenericInstance("Counters", counters, args), GenericInstance("Faults", reports, does)
+    package = Package(ref(root, "Health_Counts"), items, (SPARK,))
+    return Unit(header, (counters, reports, ref("System"), *trace), package)
 
 
 def _holding(
@@ -230,11 +237,10 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         withs.add(ref("Ravenchart.Schedules"))
     else:
         withs.add(ref(root, _wait(processor).parent))
-    context = {ref(root, "Health_Counts"), ref("Ravenchart.Health")}
+    context = fault_units(root)
     context |= {_owner_unit(system, s) for s in processor.slots}
     context |= {ref(root, ada_case(i)) for i, _ in processor.raises}
     context |= {ref(root, ada_case(system.instance(i).component.name)) for i, _ in processor.raises}
-    context.add(ref(root, "Elements"))
     if traced(system):
         context |= {ref(root, "Trace"), ref("Ravenchart.Traces")}
     spec = Package(name, tuple(items), (SPARK,))
@@ -351,9 +357,7 @@ def _fault(
     system: System, processor: Processor, kind: str, events: tuple[tuple[str, str], ...]
 ) -> tuple[Stmt, ...]:
     """Count and note a fault of a processor, and raise its events."""
-    fault = ref("Ravenchart.Health", kind)
     return (
-        do("Health_Counts.Counters.Record_Fault", fault),
-        *note(system, "Fault", processor.name, "processor", fault_number(kind)),
+        fault(kind, processor.name, "processor"),
         *(offer(system, instance, event) for instance, event in events),
     )

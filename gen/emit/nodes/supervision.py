@@ -38,7 +38,7 @@ from ravenchart.gen.emit.ada.statements import Assign, Case, Comment, Stmt, do
 from ravenchart.gen.emit.certificate.certified import agrees, fact
 from ravenchart.gen.emit.commands.lifecycle import UNIT, ends_devices
 from ravenchart.gen.emit.language.own_names import event_literal
-from ravenchart.gen.emit.tables.trace_calls import fault_number, note, traced
+from ravenchart.gen.emit.tables.trace_calls import fault, fault_units
 from ravenchart.gen.model.nodes import SUPERVISOR, Node, Supervision
 from ravenchart.gen.model.system import Processor, System
 
@@ -122,10 +122,7 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
         Subprogram(
             "On_Silence",
             (Param("Item", "in", "Watched"),),
-            body=(
-                do("Health_Counts.Counters.Record_Fault", ref("Ravenchart.Health.Silence")),
-                Case(ref("Item"), events),
-            ),
+            body=(Case(ref("Item"), events),),
         ),
     )
     if ends_devices(system):
@@ -133,13 +130,11 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
         body += (Subprogram("Give_Up", body=ends),)
     devices = {ref(root, UNIT)} if ends_devices(system) else set()
     raised = [i for p in watched for i, _ in p.on_silence]
-    context = {ref(root, "Health_Counts"), ref("Ravenchart.Health"), ref("Ravenchart.Liveness")}
+    context = fault_units(root) | {ref("Ravenchart.Liveness")}
     context |= {ref(root, "Timing_Certificate"), *devices}
     context |= {processor_package(system, p) for p in watched}
     context |= {ref(root, ada_case(i)) for i in raised}
     context |= {ref(root, component_name(system.instance(i).component)) for i in raised}
-    if traced(system):
-        context |= {ref(root, "Trace"), ref(root, "Elements"), ref("Ravenchart.Traces")}
     withs = {
         ref("Ravenchart.Failures"),
         ref("Ravenchart.Supervisors"),
@@ -187,9 +182,9 @@ def _look(system: System, processor: Processor) -> tuple[Stmt, ...]:
 
 
 def _silence(system: System, processor: Processor) -> tuple[Stmt, ...]:
-    """Note the silence of a processor, raise its events, and let the program stop."""
+    """Report the silence of a processor, raise its events, and let the program stop."""
     return (
-        *note(system, "Fault", processor.name, "processor", fault_number("Silence")),
+        fault("Silence", processor.name, "processor"),
         *(offer(system, instance, event) for instance, event in processor.on_silence),
         do("Ravenchart.Failures.Note_Silence", StringLiteral(processor.name)),
     )

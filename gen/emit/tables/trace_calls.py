@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Trace calls: present only when the node declares a trace."""
+"""Trace calls, present only when the node declares a trace, and reports of faults."""
 
 from __future__ import annotations
 
@@ -13,10 +13,13 @@ from ravenchart.gen.emit.ada.expressions import (
     call,
     number,
 )
-from ravenchart.gen.emit.ada.named import Named, ref
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import constant_name
-from ravenchart.gen.emit.ada.statements import Do, Stmt
+from ravenchart.gen.emit.ada.statements import Do, Stmt, do
 from ravenchart.gen.model.system import Processor, System
+
+FAULTS = ref("Health_Counts.Faults")
+"""What counts and traces the faults of a node."""
 
 
 def traced(system: System) -> bool:
@@ -41,6 +44,17 @@ def note(
 def fault_number(kind: str) -> Expr:
     """What a trace record about a fault says of its kind."""
     return call(Attribute("Ravenchart.Health.Fault_Kind", "Pos"), ref("Ravenchart.Health", kind))
+
+
+def fault(kind: str, element: str, element_kind: str) -> Stmt:
+    """Count a fault about ``element``, and trace it where there is a trace."""
+    named = ref("Elements", element_constant(element, element_kind))
+    return do(ref(FAULTS, "Report"), ref("Ravenchart.Health", kind), named)
+
+
+def fault_units(root: str) -> set[DottedName]:
+    """The units that a body with such calls needs."""
+    return {ref(root, "Health_Counts"), ref("Ravenchart.Health"), ref(root, "Elements")}
 
 
 def element_constant(element: str, kind: str) -> str:

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Driver "slcan": a server on 127.0.0.1 that speaks slcan to one client,
 --  which stands for the rest of the bus; or the host of an slcan adapter on
 --  the serial line that RAVENCHART_CAN_DEVICE names.
@@ -18,8 +21,10 @@ with Ada.Real_Time;
 with Ravenchart.Epochs;
 with Ravenchart.Queues;
 with Ravenchart.Can.Connections;
+with Ravenchart.Can.Driver_Hosts;
+with Ravenchart.Can.Ports;
 with Ravenchart.Can.Serial_Lines;
-with Ravenchart.Can.Slcan;
+with Ravenchart.Can.Slcan.Openings;
 with Ravenchart.Can.Sockets;
 with Ravenchart.Can.Tcp_Sockets;
 
@@ -106,6 +111,80 @@ package body Driver is
        (In_Out => (Line.State, Line.Wake_Up, Upper.State,
                    Sockets.Network));
    --  Write it, if there is a client whose channel is open, and count it.
+
+   Device_Variable : constant String := "RAVENCHART_CAN_DEVICE";
+   --  It names the serial line of an adapter.
+
+   procedure Open_Server (Server : out Sockets.Socket)
+   with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
+   --  Listen on the port that RAVENCHART_CAN_PORT names, or on one that the
+   --  system chooses, and announce it on standard output.
+
+   procedure Open_Serial (Client : out Sockets.Socket)
+   with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
+   --  Open the serial line, tell the slcan adapter there its bit rates and to
+   --  open its channel, and announce it on standard output. The digit that
+   --  RAVENCHART_CAN_SPEED names goes before the bit rate of the bus.
+
+   -----------------
+   -- Open_Server --
+   -----------------
+
+   procedure Open_Server (Server : out Sockets.Socket) is
+      Asked    : Ports.Port;
+      Given    : Ports.Port;
+      Is_Sound : Boolean;
+      Result   : Tcp_Sockets.Outcome;
+   begin
+      Server := Sockets.No_Socket;
+      Ports.Read ("RAVENCHART_CAN_PORT", 0, Asked, Is_Sound);
+      if Is_Sound then
+         Tcp_Sockets.Open_Server (Asked, Server, Given, Result);
+         case Result is
+            when Tcp_Sockets.Opened    =>
+               Driver_Hosts.Announce
+                 ("slcan on 127.0.0.1:", Ports.Image (Given));
+            when Tcp_Sockets.None_Left =>
+               Driver_Hosts.Complain
+                 ("no socket: the system has none left");
+            when Tcp_Sockets.Refused   =>
+               Driver_Hosts.Complain
+                 ("port ",
+                  Ports.Image (Asked),
+                  " cannot be opened: is it in use? trying again");
+         end case;
+      end if;
+   end Open_Server;
+
+   -----------------
+   -- Open_Serial --
+   -----------------
+
+   procedure Open_Serial (Client : out Sockets.Socket) is
+      Path   : constant String := Driver_Hosts.Setting (Device_Variable);
+      Speed  : constant String :=
+        Driver_Hosts.Setting ("RAVENCHART_CAN_SPEED");
+      Result : Serial_Lines.Outcome;
+   begin
+      Client := Sockets.No_Socket;
+      if not Slcan.Openings.Is_Speed (Speed) then
+         Driver_Hosts.Complain
+           ("RAVENCHART_CAN_SPEED must be a digit, 0 to 8");
+         return;
+      end if;
+      Serial_Lines.Open
+        (Path, Slcan.Openings.Opening (Setting, Speed), Client, Result);
+      case Result is
+         when Serial_Lines.Opened    =>
+            Driver_Hosts.Announce ("slcan on ", Path);
+         when Serial_Lines.No_Device =>
+            Driver_Hosts.Complain
+              (Path, " cannot be opened: trying again");
+         when Serial_Lines.No_Line   =>
+            Driver_Hosts.Complain
+              (Path, " is no serial line: trying again");
+      end case;
+   end Open_Serial;
 
    ----------------
    -- Put_Answer --
@@ -230,17 +309,17 @@ package body Driver is
       delay until Epochs.Start;
       --  A client that came before the processors run would find nobody
       --  to take its frames.
-      Serial_Lines.Ask (Serial);
+      Serial := Driver_Hosts.Setting (Device_Variable) /= "";
       if not Serial then
          loop
-            Tcp_Sockets.Open_Server (Server);
+            Open_Server (Server);
             exit when Server /= Sockets.No_Socket;
             Line.Pause (Milliseconds => 1_000);
          end loop;
       end if;
       loop
          if Serial then
-            Serial_Lines.Open (Setting, Client);
+            Open_Serial (Client);
          else
             Tcp_Sockets.Accept_Client (Server, Client);
          end if;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Driver "socketcan": a CAN interface of Linux, through a raw socket.
 --
 --  Guarantees   frames go to the interface in the order sent; one that it has
@@ -15,6 +18,7 @@
 with Ada.Real_Time;
 with Ravenchart.Epochs;
 with Ravenchart.Can.Connections;
+with Ravenchart.Can.Driver_Hosts;
 with Ravenchart.Can.Raw_Sockets;
 with Ravenchart.Can.Socket_Frames;
 with Ravenchart.Can.Sockets;
@@ -66,8 +70,51 @@ package body Driver is
    with
      Global =>
        (In_Out => (Line.State, Line.Wake_Up, Upper.State,
-                   Sockets.Network));
+                   Driver_Hosts.Console, Sockets.Network));
    --  Try to send F once; Sent is False when it must wait.
+
+   function Interface_Name return String
+   with
+     Global => null,
+     Post   => Interface_Name'Result'Length <= Driver_Hosts.Text_Limit;
+   --  What RAVENCHART_CAN_INTERFACE says, or can0.
+
+   procedure Open (Bus : out Sockets.Socket)
+   with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
+   --  A socket on that interface, announced on standard output; No_Socket,
+   --  with one message on standard error, where there is none.
+
+   --------------------
+   -- Interface_Name --
+   --------------------
+
+   function Interface_Name return String is
+      Named : constant String :=
+        Driver_Hosts.Setting ("RAVENCHART_CAN_INTERFACE");
+   begin
+      return (if Named = "" then "can0" else Named);
+   end Interface_Name;
+
+   ----------
+   -- Open --
+   ----------
+
+   procedure Open (Bus : out Sockets.Socket) is
+      Name   : constant String := Interface_Name;
+      Result : Raw_Sockets.Opening;
+   begin
+      Raw_Sockets.Open (Name, Setting.Takes_Fd, Bus, Result);
+      case Result is
+         when Raw_Sockets.Joined       =>
+            Driver_Hosts.Announce ("socketcan on ", Name);
+         when Raw_Sockets.No_Can       =>
+            Driver_Hosts.Complain
+              ("this system has no SocketCAN; trying again");
+         when Raw_Sockets.No_Interface =>
+            Driver_Hosts.Complain
+              ("there is no CAN interface ", Name, "; trying again");
+      end case;
+   end Open;
 
    -----------------
    -- Note_Report --
@@ -143,6 +190,8 @@ package body Driver is
             null;
          when Raw_Sockets.Refused                 =>
             Upper.Count (Upper.Lost_Out);
+            Driver_Hosts.Complain
+              (Interface_Name, " is not set up for CAN FD (fd on)");
          when Raw_Sockets.Down | Raw_Sockets.Gone =>
             Upper.Count (Upper.Lost_Out);
             Upper.Note (Stopped);
@@ -161,7 +210,7 @@ package body Driver is
       delay until Epochs.Start;
       --  Frames that come before the processors run would find nobody.
       loop
-         Raw_Sockets.Open (Setting.Takes_Fd, Bus);
+         Open (Bus);
          if Bus = Sockets.No_Socket then
             Line.Pause (Milliseconds => 1_000);
          else
