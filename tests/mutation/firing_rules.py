@@ -5,8 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Iterator
 from itertools import pairwise
 
 from ravenchart.gen.emit.ada.declarations import Aspect, Object, Unit
@@ -60,44 +59,52 @@ NOTE = ref("Ravenchart.Steps.Note")
 TIMERS = ref("Ravenchart.Timers")
 DEFERRALS = ref("Deferrals")
 SELF = ref("Self")
-STARTED = ref("Self.Started")
-PAST = ref("Self.Past")
 _MOVES = ("Exit_", "Leave_", "Enter_")
 _Row = Spot[tuple[Stmt, ...]]
 
 
-def ghosts(unit: Unit) -> set[DottedName]:
-    """The objects that are there for proof alone."""
+def _idle_names(unit: Unit) -> set[DottedName]:
+    """What is there for proof or simulation alone: objects, and the procedures that do no more."""
     every = whole(unit).within(Object)
-    return {ref(one.node.name) for one in every if Aspect("Ghost") in one.node.aspects}
+    found = {ref(one.node.name) for one in every if Aspect("Ghost") in one.node.aspects} | {NOTE}
+    for one in bodies(unit):
+        if one.name.startswith("Leave_") and all(_is_idle(s, found) for s in one.inner.node):
+            found.add(ref(one.name))
+    return found
 
 
 def _rows(unit: Unit) -> Iterator[tuple[str, list[Spot[Stmt]]]]:
     """The lists of statements in which a firing moves, with the name of what holds them."""
-    proved = ghosts(unit)
+    idle = _idle_names(unit)
     for one in bodies(unit):
         if one.is_expression:
             continue
         if one.fires or one.name.startswith("Leave_"):
             for inner in lists_in(one.inner):
-                yield one.name, _working(inner, proved)
+                yield one.name, _working(inner, idle)
         elif one.name.startswith(("Enter_", "Exit_")):
-            yield one.name, _working(one.inner, proved)
+            yield one.name, _working(one.inner, idle)
 
 
-def _working(inner: _Row, proved: set[DottedName]) -> list[Spot[Stmt]]:
+def _working(inner: _Row, idle: set[DottedName]) -> list[Spot[Stmt]]:
     """The statements that run and are not there for simulation."""
-    return [one for one in statements(inner) if not _is_idle(one.node, proved)]
+    return [one for one in statements(inner) if not _is_idle(one.node, idle)]
 
 
-def _is_idle(statement: Stmt, proved: set[DottedName]) -> bool:
+def _is_idle(statement: Stmt, idle: set[DottedName]) -> bool:
+    """Does it do nothing but what is there for proof or simulation?"""
     match statement:
         case NullStatement() | Pragma() | Comment():
             return True
         case Do(name):
-            return name == NOTE
-        case Assign(target):
-            return target in proved
+            return name in idle
+        case Assign(DottedName() as target):
+            return any(is_within(target, one) for one in idle)
+        case Case(_, branches):
+            return all(_is_idle(one, idle) for _, body in branches for one in body)
+        case IfStatement(branches, otherwise):
+            inner = (*(one for _, body in branches for one in body), *otherwise)
+            return all(_is_idle(one, idle) for one in inner)
     return False
 
 
@@ -116,21 +123,6 @@ def _assigned(statement: Stmt) -> DottedName | None:
     return None
 
 
-def _sets_configuration(statement: Stmt) -> bool:
-    target = _assigned(statement)
-    return target is not None and target.parts[:2] in (("Self", "Leaf"), ("Self", "Place"))
-
-
-def _keeps(statement: Stmt) -> bool:
-    """Does it remember, complete, or start or stop a time-out?"""
-    match statement:
-        case Do(name):
-            return is_within(name, TIMERS)
-        case Assign(DottedName(("Self", what, *_))):
-            return what in ("Past", "Timers") or what.startswith("Completed_")
-    return False
-
-
 def _uses(node: object, name: DottedName | None) -> bool:
     return name is not None and any(is_within(one, name) for one in names_of(node))
 
@@ -139,7 +131,7 @@ def _uses(node: object, name: DottedName | None) -> bool:
 
 
 def target_in_code(file: str, units: Units) -> Iterator[Broken]:
-    """Another state that is entered last, or another leaf that an entry sets."""
+    """Another state that is entered last, or a configuration that stays as it was."""
     unit = units[file]
     entries = [one.name for one in bodies(unit) if one.name.startswith("Enter_")]
     firing = {one.name for one in bodies(unit) if one.fires}
@@ -148,22 +140,17 @@ def target_in_code(file: str, units: Units) -> Iterator[Broken]:
         other = following(last, entries) if last in entries and place in firing else None
         if other is not None:
             yield place, "enter", put(row[-1], Do(other))
-    yield from _others(unit, "leaf", lambda one: one.fires or one.name.startswith("Enter_"))
+    for place, set_ in _set_by_fire(unit, "Leaf", "Place"):
+        yield place, "stay", put(set_, NULL)
 
 
-def _others(unit: Unit, rule: str, wanted: Callable[[Body], bool]) -> Iterator[Broken]:
-    """Each leaf that is set with the next of those that are set there."""
-    found = [
-        (one.name, set_.node.target, set_.at("value"))
-        for one in bodies(unit)
-        if wanted(one) and not one.is_expression
-        for set_ in one.inner.within(Assign)
-        if _sets_configuration(set_.node) and isinstance(set_.node.value, DottedName)
-    ]
-    for place, target, spot in found:
-        same = [other.node for _, where, other in found if where == target]
-        if (other := following(spot.node, same)) is not None:
-            yield place, rule, put(spot, other)
+def _set_by_fire(unit: Unit, *parts: str) -> Iterator[tuple[str, Spot[Assign]]]:
+    """Where Fire gives parts of the region's own state their new value, with its name."""
+    fire = body_of(unit, "Fire")
+    targets = {ref(SELF, part) for part in parts}
+    for set_ in fire.inner.within(Assign) if fire is not None else ():
+        if set_.node.target in targets:
+            yield "Fire", set_
 
 
 def target_declared(file: str, units: Units) -> Iterator[Broken]:
@@ -194,7 +181,8 @@ def _is_literal(value: object) -> bool:
 
 def order(file: str, units: Units) -> Iterator[Broken]:
     """Two neighbours of a firing in the other order: exits, effects, entries, or two effects of
-    which one reads what the other sets; two lanes that fire in the other order."""
+    which one reads what the other sets; what is declared of the configuration before it is set;
+    two lanes that fire in the other order."""
     unit = units[file]
     entered = {one.name: one.inner.node for one in bodies(unit)}
     for place, row in _rows(unit):
@@ -204,6 +192,10 @@ def order(file: str, units: Units) -> Iterator[Broken]:
                 yield place, "late", exchanged(first, second)
             elif _ordered(first.node, second.node):
                 yield place, "exchange", exchanged(first, second)
+    fire = body_of(unit, "Fire")
+    for first, second in pairwise(statements(fire.inner) if fire is not None else ()):
+        if isinstance(second.node, Assign) and _uses(second.node.value, _assigned(first.node)):
+            yield "Fire", "late", exchanged(first, second)
     step = body_of(unit, "Step")
     lanes = [] if step is None else [s for s in step.inner.within(IfStatement) if _of_lane(s.node)]
     for one, other in pairwise(lanes):
@@ -222,13 +214,11 @@ def _of_lane(statement: IfStatement) -> bool:
 
 
 def _ordered(first: Stmt, second: Stmt) -> bool:
-    """Whether somebody orders two statements; that the region has started is part of no order."""
+    """Whether somebody orders two statements."""
     pair = first, second
-    if any(_assigned(one) == STARTED for one in pair):
-        return False
     if any(map(_moved, pair)):
         return first != second
-    if any(_sets_configuration(one) or _keeps(one) for one in pair):
+    if any(map(_completes, pair)):
         return False
     if any(isinstance(one, IfStatement | Case) for one in pair):
         return False
@@ -245,7 +235,7 @@ def missing(file: str, units: Units) -> Iterator[Broken]:
             node = statement.node
             if _moved(node):
                 yield place, "no move", put(statement, NULL)
-            elif not _sets_configuration(node) and not _keeps(node) and not _is_move(statement):
+            elif not _completes(node) and not _is_move(statement):
                 yield place, "no action", put(statement, NULL)
 
 
@@ -255,9 +245,13 @@ def _is_move(statement: Spot[Stmt]) -> bool:
         return False
     if any(_moved(one.node) for one in statement.within(Do)):
         return True
-    return any(
-        is_within(name, DEFERRALS) or _is_completion(name) for name in names_of(statement.node)
-    )
+    return any(map(_is_completion, names_of(statement.node)))
+
+
+def _completes(statement: Stmt) -> bool:
+    """Does it say that a state has completed, or that this is over?"""
+    target = _assigned(statement)
+    return target is not None and _is_completion(target)
 
 
 def _is_completion(name: DottedName) -> bool:
@@ -271,21 +265,9 @@ def _is_completion(name: DottedName) -> bool:
 
 
 def history_in_code(file: str, units: Units) -> Iterator[Broken]:
-    """A leaf that is not remembered, or another one; something else restored."""
+    """What is left is not remembered; something else is restored."""
     unit = units[file]
-    found = [
-        (one.name, set_)
-        for one in bodies(unit)
-        if one.name.startswith("Exit_")
-        for set_ in one.inner.within(Assign)
-        if isinstance(set_.node.target, DottedName) and is_within(set_.node.target, PAST)
-    ]
-    for place, set_ in found:
-        value = set_.node.value
-        same = [one.node.value for _, one in found if one.node.target == set_.node.target]
-        same += [TRUE, FALSE] if value in (TRUE, FALSE) else []
-        if (other := following(value, same)) is not None:
-            yield place, "remember", put(set_.at("value"), other)
+    for place, set_ in _set_by_fire(unit, "Past"):
         yield place, "forget", put(set_, NULL)
     for fire in (one for one in bodies(unit) if one.fires):
         yield from _restored(fire)
@@ -305,8 +287,11 @@ def _restored(fire: Body) -> Iterator[Broken]:
 
 
 def history_declared(file: str, units: Units) -> Iterator[Broken]:
-    """Another leaf that a history is declared to restore."""
+    """Another leaf that a history is declared to restore, or nothing that is remembered."""
     for one in bodies(units[file]):
+        if one.is_expression and one.name == "Remembered":
+            for asks in one.inner.within(IfExpr):
+                yield one.name, "forget", put(asks, asks.node.otherwise)
         if one.is_expression and one.name.startswith(("Deep_", "Shallow_")):
             values = [
                 value
@@ -326,27 +311,24 @@ def _calls(body: Body, name: DottedName) -> Iterator[Spot[Do]]:
 
 
 def deferral(file: str, units: Units) -> Iterator[Broken]:
-    """A deferred event that is taken twice, never, or not kept."""
-    for one in bodies(units[file]):
-        if not one.fires and one.name != "Poll":
-            continue
-        for call in _calls(one, ref(DEFERRALS, "Remove")):
-            yield one.name, "twice", put(call, NULL)
-        for call in _calls(one, ref(DEFERRALS, "Append")):
-            yield one.name, "lose", put(call, NULL)
-        for chain in one.inner.within(OperatorChain):
-            match chain.node:
-                case OperatorChain("=", (Call(DottedName(("Deferrals", "Count"))), _)):
-                    yield one.name, "full", put(chain, replace(chain.node, operator="/="))
+    """A deferred event that is not kept, or never taken."""
+    for name, procedure, rule, instead in (
+        ("Fire", "Change", "lose", NULL),
+        ("Poll", "Take_Due", "never", Assign("Released", FALSE)),
+    ):
+        one = body_of(units[file], name)
+        for call in _calls(one, ref(DEFERRALS, procedure)) if one is not None else ():
+            yield name, rule, put(call, instead)
 
 
 def deferral_declared(file: str, units: Units) -> Iterator[Broken]:
-    """An event that is not declared as deferred."""
-    one = body_of(units[file], "Is_Deferred")
-    for case in one.inner.within(CaseExpr) if one is not None else ():
-        for place, (_, value) in enumerate(case.node.branches):
-            if value != FALSE:
-                yield "Is_Deferred", "take", put(case.at("branches", place, 1), FALSE)
+    """An event that is not declared as deferred, or as freed by the exit of a state."""
+    for name, rule in (("Is_Deferred", "take"), ("Is_Freed", "keep")):
+        one = body_of(units[file], name)
+        for case in one.inner.within(CaseExpr) if one is not None else ():
+            for place, (_, value) in enumerate(case.node.branches):
+                if value != FALSE:
+                    yield name, rule, put(case.at("branches", place, 1), FALSE)
 
 
 def _longer(count: Spot[Expr]) -> tuple[Put, ...]:
@@ -355,15 +337,9 @@ def _longer(count: Spot[Expr]) -> tuple[Put, ...]:
 
 
 def timeout(file: str, units: Units) -> Iterator[Broken]:
-    """A time-out that is longer, not started, not stopped, or taken for another."""
-    for one in bodies(units[file]):
-        if one.is_expression or not one.name.startswith(("Enter_", "Exit_")):
-            continue
-        for call in _calls(one, ref(TIMERS, "Arm")):
-            yield one.name, "later", _longer(call.at("args", 1, "value"))
-            yield one.name, "start", put(call, NULL)
-        for call in _calls(one, ref(TIMERS, "Disarm")):
-            yield one.name, "stop", put(call, NULL)
+    """Time-outs that neither start nor stop; one that is not taken, or taken for another."""
+    for place, set_ in _set_by_fire(units[file], "Timers"):
+        yield place, "move", put(set_, NULL)
     poll = body_of(units[file], "Poll")
     if poll is None:
         return
@@ -379,11 +355,14 @@ def _is_expiry(value: Expr) -> bool:
 
 
 def timeout_declared(file: str, units: Units) -> Iterator[Broken]:
-    """A time-out that is declared longer."""
-    one = body_of(units[file], "Timer_After")
+    """A time-out that is declared longer, or as one that does not start or stop."""
+    one = body_of(units[file], "Timers_After")
     for call in one.inner.within(Call) if one is not None else ():
         if call.node.name == ref(TIMERS, "Started"):
-            yield "Timer_After", "later", _longer(call.at("args", 0, "value"))
+            yield "Timers_After", "later", _longer(call.at("args", 0, "value"))
+        elif call.node.name == ref(TIMERS, "Moved"):
+            yield "Timers_After", "stop", put(call.at("args", 2, "value"), FALSE)
+            yield "Timers_After", "start", put(call.at("args", 3, "value"), FALSE)
 
 
 def domain_declared(file: str, units: Units) -> Iterator[Broken]:

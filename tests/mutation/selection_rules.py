@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -13,11 +13,12 @@ from ravenchart.gen.emit.ada.declarations import EnumType, Unit
 from ravenchart.gen.emit.ada.expressions import (
     COMPARISONS,
     TRUE,
+    Arg,
+    Attribute,
     Call,
     CaseExpr,
     ChoiceList,
     Expr,
-    IfExpr,
     Membership,
     OperatorChain,
     Prefix,
@@ -25,14 +26,13 @@ from ravenchart.gen.emit.ada.expressions import (
     both,
 )
 from ravenchart.gen.emit.ada.named import DottedName, ref
-from ravenchart.gen.emit.ada.statements import IfStatement
+from ravenchart.gen.emit.ada.statements import Assign, IfStatement, Return
+from ravenchart.gen.emit.charts.shape import PASSING
 
 from .mutants import Broken, Units
 from .nodes import (
-    Body,
     Put,
     Spot,
-    bodies,
     body_of,
     conjuncts,
     each_following,
@@ -40,95 +40,72 @@ from .nodes import (
     following,
     names_of,
     put,
+    statements,
     whole,
 )
 
-_SELECTION = ref("Selection")
-_NOW = ref("Now")
+_IN_SOURCE, _ENABLED, _SELECTED = ref("In_Source"), ref("Enabled"), ref("Selected")
+_NOW, _NONE = ref("Now"), ref("None")
 _COMPARED = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "=": "/=", "/=": "="}
 
 
-def selectors(unit: Unit) -> Iterator[tuple[Body, Spot[IfExpr]]]:
-    """The functions that select by the occurrence, with their branches."""
-    for one in bodies(unit):
-        inner = one.inner
-        gives = one.spot.node.result == _SELECTION and isinstance(inner.node, IfExpr)
-        if gives and _asked(inner.node.branches[0][0]) == _NOW:
-            yield one, inner
+def _calls(unit: Unit, function: str, called: DottedName) -> list[Spot[Call]]:
+    """The calls of a function in the body of another one."""
+    one = body_of(unit, function)
+    every = one.inner.within(Call) if one is not None else ()
+    return [call for call in every if call.node.name == called]
 
 
-def selecting(unit: Unit, transition: DottedName) -> list[str]:
-    """The functions with a contract that select a transition by themselves."""
-    return [
-        one.name
-        for one in bodies(unit)
-        if one.is_expression
-        and one.spot.node.result == _SELECTION
-        and one.spot.node.aspects
-        and transition in names_of(one.inner.node)
-    ]
-
-
-def _asked(condition: Expr) -> Expr | None:
-    """What a condition asks for first."""
-    match condition:
-        case OperatorChain("and then", operands):
-            return _asked(operands[0])
-        case OperatorChain("=", (left, _)):
-            return left
-        case Membership(item):
-            return item
-    return None
-
-
-def _heads(chosen: Spot[IfExpr]) -> list[Spot[Expr]]:
-    return [chosen.at("branches", place, 0) for place in range(len(chosen.node.branches))]
-
-
-def _rows(case: Spot[CaseExpr]) -> list[Spot[Expr]]:
-    """The values of the alternatives of a case."""
-    return [case.at("branches", place, 1) for place in range(len(case.node.branches))]
-
-
-def declared_rows(unit: Unit, function: str) -> list[Spot[Expr]]:
-    """The alternatives of the case of an expression function, whatever stands before it."""
+def _alternatives(unit: Unit, function: str) -> list[tuple[list[DottedName], Spot[Expr]]]:
+    """The transitions and values of the case of an expression function."""
     one = body_of(unit, function)
     case = next(one.inner.within(CaseExpr), None) if one is not None else None
-    return [] if case is None else _rows(case)
+    if case is None:
+        return []
+    return [
+        (
+            [one for one in choices.choices if isinstance(one, DottedName)],
+            case.at("branches", place, 1),
+        )
+        for place, (choices, _) in enumerate(case.node.branches)
+    ]
 
 
 # --- source
 
 
 def source_in_code(file: str, units: Units) -> Iterator[Broken]:
-    """A transition that its leaf forgets, and leaves whose functions are exchanged."""
-    for one, chosen in selectors(units[file]):
-        branches = chosen.node.branches
-        for place in range(len(branches)):
-            left = (*branches[:place], *branches[place + 1 :])
-            rest = replace(chosen.node, branches=left) if left else chosen.node.otherwise
-            yield one.name, "forget", put(chosen, rest)
-    for one in bodies(units[file]):
-        if one.is_expression and one.spot.node.result == _SELECTION:
-            for case in one.inner.within(CaseExpr):
-                for first, second in pairwise(_rows(case)):
-                    yield one.name, "exchange", exchanged(first, second)
+    """The transitions of another lane, among which one is selected; the one found is forgotten."""
+    lanes = [
+        [end for n in range(2) if isinstance((end := call.at("args", n, "value")).node, Attribute)]
+        for call in _calls(units[file], "Choose", _SELECTED)
+    ]
+    for lane in lanes:
+        if (other := following(_nodes(lane), list(map(_nodes, lanes)))) is not None:
+            puts = zip(lane, other, strict=True)
+            yield "Choose", "lane", tuple(one for end, to in puts for one in put(end, to))
+    one = body_of(units[file], _SELECTED.text)
+    for gives in one.inner.within(Return) if one is not None else ():
+        if gives.node.value != _NONE:
+            yield _SELECTED.text, "forget", put(gives.at("value"), _NONE)
+
+
+def _nodes(spots: Sequence[Spot[Expr]]) -> tuple[Expr, ...]:
+    return tuple(spot.node for spot in spots)
 
 
 def source_declared(file: str, units: Units) -> Iterator[Broken]:
     """Another state as the source of a declared transition; none that is asked for."""
-    for _, puts in each_following(_compared(units[file], "In_Source")):
+    for _, puts in each_following(_compared(units[file], _IN_SOURCE.text)):
         yield "In_Source", "source", puts
-    one = body_of(units[file], "Enabled")
-    for asked in one.inner.within(Call) if one is not None else ():
-        if asked.node.name == ref("In_Source"):
-            yield "Enabled", "source", put(asked, TRUE)
+    for asked in _calls(units[file], _ENABLED.text, _IN_SOURCE):
+        yield "Enabled", "source", put(asked, TRUE)
 
 
 def _compared(unit: Unit, function: str) -> list[tuple[object, Spot[DottedName]]]:
     """The literals that the alternatives of a function compare, with what is alike in them."""
     found: list[tuple[object, Spot[DottedName]]] = []
-    for row in declared_rows(unit, function):
+    for _, row in _alternatives(unit, function):
         for part in conjuncts(row):
             match part.node:
                 case OperatorChain("=", (DottedName() as left, DottedName())):
@@ -143,18 +120,11 @@ def _compared(unit: Unit, function: str) -> list[tuple[object, Spot[DottedName]]
 
 
 def trigger_in_code(file: str, units: Units) -> Iterator[Broken]:
-    """Another occurrence in the condition of a selected transition."""
-    found = [
-        (one.name, first.at("operands", 1))
-        for one, chosen in selectors(units[file])
-        for head in _heads(chosen)
-        for first in conjuncts(head)[:1]
-        if isinstance(first.node, OperatorChain)
-    ]
-    for name, spot in found:
-        other = following(spot.node, [each.node for _, each in found])
-        if other is not None:
-            yield name, "trigger", put(spot, other)
+    """Another occurrence for which a segment is selected."""
+    for call in _calls(units[file], "Next_Segment", _SELECTED):
+        for arg in call.within(Arg):
+            if arg.node.value == ref(PASSING):
+                yield "Next_Segment", "trigger", put(arg.at("value"), ref("Conditions"))
 
 
 def trigger_declared(file: str, units: Units) -> Iterator[Broken]:
@@ -169,16 +139,17 @@ def trigger_declared(file: str, units: Units) -> Iterator[Broken]:
 
 
 def guard_in_code(file: str, units: Units) -> Iterator[Broken]:
-    """A guard that is dropped, denied or shifted by one comparison, in a leaf's function."""
-    for one, chosen in selectors(units[file]):
-        for head in _heads(chosen):
-            for rule, puts in _guards(head):
-                yield one.name, rule, puts
+    """The first transition is selected whether it is enabled or not, or one that is not."""
+    one = body_of(units[file], _SELECTED.text)
+    for asks in one.inner.within(IfStatement) if one is not None else ():
+        condition = asks.at("branches", 0, 0)
+        yield _SELECTED.text, "drop guard", put(condition, TRUE)
+        yield _SELECTED.text, "deny guard", put(condition, Prefix("not", condition.node))
 
 
 def guard_declared(file: str, units: Units) -> Iterator[Broken]:
     """A guard that is dropped, denied or shifted by one comparison."""
-    for row in declared_rows(units[file], "Enabled"):
+    for _, row in _alternatives(units[file], _ENABLED.text):
         for rule, puts in _guards(row):
             yield "Enabled", rule, puts
 
@@ -199,42 +170,36 @@ def _guards(condition: Spot[Expr]) -> Iterator[tuple[str, tuple[Put, ...]]]:
 
 
 def priority_in_code(file: str, units: Units) -> Iterator[Broken]:
-    """Two transitions of one trigger that are looked at in the other order; an outer lane that
-    selects although an inner one does."""
-    for one, chosen in selectors(units[file]):
-        for place in _same_trigger(chosen):
-            first, second = (chosen.at("branches", n) for n in (place, place + 1))
-            yield one.name, "precede", exchanged(first, second)
+    """An outer lane that selects although an inner one does, or before it."""
     choose = body_of(units[file], "Choose")
-    for asks in choose.inner.within(IfStatement) if choose is not None else ():
-        if all(name.first != "C" for name in names_of(asks.node.branches[0][0])):
-            continue
-        yield "Choose", "outer lane", put(asks.at("branches", 0, 0), TRUE)
-
-
-def _same_trigger(chosen: Spot[IfExpr]) -> Iterator[int]:
-    """The positions of branches that the next one has the trigger of."""
-    triggers = [conjuncts(head)[0].node for head in _heads(chosen)]
-    for place, (first, second) in enumerate(pairwise(triggers)):
-        if first == second:
-            yield place
+    if choose is None:
+        return
+    for before, asks in pairwise(statements(choose.inner)):
+        if isinstance(asks.node, IfStatement):
+            condition = asks.at("branches", 0, 0)
+            yield "Choose", "outer lane", put(condition, TRUE)
+            asked = set(names_of(condition.node))
+            if isinstance(before.node, Assign) and before.node.target in asked:
+                yield "Choose", "outer first", exchanged(before, asks)
 
 
 def priority_declared(file: str, units: Units) -> Iterator[Broken]:
-    """Two transitions of one trigger that are declared in the other order."""
-    body = units.get(f"{units[file].name.file_stem}.adb")
+    """Two transitions of one source and trigger that are declared in the other order."""
     every = whole(units[file])
     listed = next((t for t in every.within(EnumType) if t.node.name == "Selection"), None)
-    if listed is None or body is None:
+    if listed is None:
         return
-    at = {name: listed.at("literals", n) for n, name in enumerate(listed.node.literals)}
+    triggers = {
+        choice: conjuncts(row)[0].node
+        for choices, row in _alternatives(units[file], _ENABLED.text)
+        for choice in choices
+    }
+    at = {ref(name): listed.at("literals", n) for n, name in enumerate(listed.node.literals)}
     bounds = {name for one in every.within(RangeConstrained) for name in names_of(one.node.bounds)}
-    done: set[tuple[str, str]] = set()
-    for _, chosen in selectors(body):
-        for place in _same_trigger(chosen):
-            pair = [value for _, value in chosen.node.branches[place : place + 2]]
-            names = [value.text for value in pair if isinstance(value, DottedName)]
-            first, second = names
-            if (first, second) not in done and not bounds & set(pair):
-                done.add((first, second))
-                yield "Selection", "precede", exchanged(at[first], at[second])
+    for choices, _ in _alternatives(units[file], _IN_SOURCE.text):
+        alike: dict[Expr, list[DottedName]] = {}
+        for choice in choices:
+            alike.setdefault(triggers[choice], []).append(choice)
+        for pair in (pair for same in alike.values() for pair in pairwise(same)):
+            if not bounds & set(pair):
+                yield "Selection", "precede", exchanged(at[pair[0]], at[pair[1]])

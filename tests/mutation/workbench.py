@@ -20,8 +20,7 @@ import yaml
 from ravenchart.building import checking, generation, programs
 from ravenchart.failures import Refused, ToolFailed
 from ravenchart.gen.emit.ada.declarations import GenericInstance, Unit
-from ravenchart.gen.emit.ada.expressions import CaseExpr
-from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.emit.buses.layout_tables import LAYOUTS
 from ravenchart.gen.emit.program import generate, units_of_program, user_units
@@ -32,7 +31,6 @@ from ravenchart.tools.toolchain import ToolMissing, have
 from .mutants import Files, Mutant, text_of
 from .nodes import bodies, body_of, whole
 from .observing import Observer, Simulated
-from .selection_rules import selecting
 
 LONGEST = 1200
 """Seconds after which a tool is given up: the mutant counts as not caught by it."""
@@ -189,26 +187,8 @@ class Workbench:
             names = [mutant.place]
             if mutant.place.startswith(("Enter_", "Exit_", "Leave_")):
                 names = _firing(unit)
-            elif mutant.place.startswith("Around_"):
-                names = [
-                    one.name for one in bodies(unit) if one.name.startswith(("In_", "Select_"))
-                ]
             return [n for n in names if body_of(unit, n) is not None]
-        for literal in self._enabled(mutant):
-            if found := selecting(unit, literal):
-                return found[:1]
         return _firing(unit)
-
-    def _enabled(self, mutant: Mutant) -> list[DottedName]:
-        """The transitions whose trigger or guard a mutant declares in another way."""
-        one = body_of(self.units[mutant.file], "Enabled") if mutant.place == "Enabled" else None
-        found: list[DottedName] = []
-        for case in one.inner.within(CaseExpr) if one is not None else ():
-            for place, (choices, _) in enumerate(case.node.branches):
-                row = (*case.path, "branches", place)
-                if mutant.puts[0].path[: len(row)] == row:
-                    found += [c for c in choices.choices if isinstance(c, DottedName)]
-        return found
 
     def _place(self, name: str, mutant: Mutant, broken: str) -> str:
         """Where a subprogram is declared, as gnatprove wants it."""
