@@ -18,6 +18,7 @@ CALLED_BY_OTHERS = {
     "_recv_internal": "python-can calls it",
     "_fill_text": "argparse calls it",
     "capture_signals": "uvicorn calls it",
+    "_remember": "pydantic calls it",
     "conjunct": "lark calls it",
     "handle": "socketserver calls it",
     "PRESENT": "an import that must come before a signal can",
