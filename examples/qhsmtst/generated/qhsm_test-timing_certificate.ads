@@ -84,6 +84,7 @@ is
    function Panel_Driver_Rx_Key_Up (W : Window) return Time is
      (Demand (W, Panel_Driver_Rx_Key_J, Panel_Driver_Rx_Key_T,
          Panel_Driver_Rx_Key_C)) with Static;
+
    function Reception_Up (W : Window) return Time is
      (Demand (W, Reception_J, Reception_T, Reception_C,
          Panel_Driver_Rx_Key_Up (W))) with Static;
@@ -103,6 +104,7 @@ is
 
    function Panel_Bits (Stuffed : Positive) return Time is
      (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+
    function Panel_Time_Of (Stuffed : Positive) return Time is
      ((Panel_Bits (Stuffed) * 10**9 + (Panel_Bit_Rate - 1)) / Panel_Bit_Rate)
    with Static;
