@@ -187,7 +187,7 @@ def test_an_arrival_is_noted_before_it_releases() -> None:
         for unit in emit_instances(system_of(), "")
         if unit.item.name == ref("Releases_Feature.Drive") and getattr(unit.item, "is_body", False)
     )
-    assert body.index("Elements.Drive_Level, 0") < body.index("Level_Mailbox.Put (")
+    assert body.index("Elements.Drive_Level, 0") < body.index("Level_Offers.Offer (")
 
 
 @pytest.mark.parametrize(
