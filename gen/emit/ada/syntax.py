@@ -414,8 +414,6 @@ def _together(rows: Iterable[tuple[str, Result]]) -> tuple[tuple[str, Result], .
     return tuple((" | ".join(names), result) for result, names in found.items())
 
 
-COMPARISONS = frozenset(("=", "/=", "<", "<=", ">", ">=", "in", "not in"))
-
 _NAME = re.compile(r"[A-Za-z]\w*(?:\.\w+)*")
 
 
@@ -447,11 +445,13 @@ def _parts(construct: object) -> Sequence[object]:
     return [getattr(construct, name) for name in getattr(construct, "__slots__", ())]
 
 
-def compares(construct: object) -> bool:
-    """Is there a comparison or a membership test in it?"""
-    if isinstance(construct, OperatorChain) and construct.operator in COMPARISONS:
-        return True
-    return any(compares(part) for part in _parts(construct))
+def chains_in(construct: object) -> Iterator[OperatorChain]:
+    """Each chain of operands in it."""
+    if isinstance(construct, OperatorChain):
+        yield construct
+    if not isinstance(construct, str):
+        for part in _parts(construct):
+            yield from chains_in(part)
 
 
 def names_in(construct: object) -> Iterator[str]:

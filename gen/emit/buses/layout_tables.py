@@ -205,7 +205,11 @@ class LayoutTable:
 
     def has_value(self, signal: Signal, raw: Expr) -> Expr:
         """Does a raw value stand for something?"""
-        return TRUE if signal.other is not None else member(raw, self._raw_values(signal))
+        if signal.other is not None:
+            return TRUE
+        values = self._raw_values(signal)
+        first, _, last = values.partition(" .. ")
+        return equal(raw, Ref(first)) if first == last else member(raw, values)
 
     def _raw_values(self, signal: Signal) -> str:
         """All raw values that stand for something, as choices."""

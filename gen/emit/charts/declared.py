@@ -19,7 +19,6 @@ from ravenchart.gen.emit.ada.syntax import (
     IfExpr,
     Package,
     Param,
-    Pragma,
     Ref,
     Subprogram,
     Unit,
@@ -57,7 +56,7 @@ def emit_region(
     withs += ["Ravenchart.Deferrals"] if shape.deferring else []
     withs += ["Ravenchart.Firing_Lists"] if shape.listed else []
     spec = Package(shape.package, _spec(shape), (SPARK,))
-    body = Package(shape.package, (*_quiet(shape), *body_of(shape)), (SPARK,), is_body=True)
+    body = Package(shape.package, body_of(shape), (SPARK,), is_body=True)
     seen = ("Ravenchart.Steps",) if noted else ()
     return Unit(header, tuple(withs), spec), Unit(header, seen, body)
 
@@ -66,13 +65,7 @@ def _spec(shape: RegionShape) -> tuple[Decl, ...]:
     safe = Safety(shape).declared()
     lists = firing_list(shape) if shape.listed else []
     types = (*region_types(shape), *lists)
-    return (*_quiet(shape), *types, *_declared(shape), *safe, *operations(shape))
-
-
-def _quiet(shape: RegionShape) -> tuple[Pragma, ...]:
-    """Functions of a chart without transitions do not ask for what is active or occurs."""
-    words = () if shape.firings else ("formal parameter * is not referenced", "condition is always")
-    return tuple(Pragma("Warnings", (Ref("Off"), Ref(f'"*{word}*"'))) for word in words)
+    return (*types, *_declared(shape), *safe, *operations(shape))
 
 
 # --- The chart as declared ---------------------------------------------------
