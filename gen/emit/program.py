@@ -5,9 +5,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
+from itertools import chain
 from typing import TypeVar
 
 from ravenchart.gen.derive.calls import device_types
@@ -43,10 +44,14 @@ from ravenchart.gen.emit.components.packages import (
 )
 from ravenchart.gen.emit.instances.glue import emit_instances
 from ravenchart.gen.emit.language.quiet import (
-    OfComponent,
+    DecidedStates,
+    declared_in,
+    done_in,
+    promised_in,
     quiet,
-    words_of_system,
-    words_of_types,
+    words_of,
+    words_of_idle,
+    worked_in,
 )
 from ravenchart.gen.emit.language.types import emit_root
 from ravenchart.gen.emit.nodes.deployment import emit_deployment, emit_without_tasks
@@ -101,9 +106,9 @@ class _Maker:
         #  without such a type the root has no need of the runtime, and its children
         #  cannot see it through the root
         self.blind = not any(isinstance(t, IntegerType) for t in system.types)
-        self.words_of_types = words_of_types(system)
         used = {i.component.name for i in system.instances}
         self.components = [c for c in system.components if c.name in used]
+        self.decided = DecidedStates(self.components)
 
     def logic(self, meanwhile: Callable[[], T]) -> tuple[list[MadeUnit], T]:
         """The root and the components (no state, no tasks), and what is made ``meanwhile``."""
@@ -118,25 +123,26 @@ class _Maker:
 
     def _of_component(self, component: Component) -> list[MadeUnit]:
         system, header = self.system, self.header
-        words = OfComponent(component, self.words_of_types)
-        required = any(activity.requires for activity in component.activities)
-        whole = emit_component(system, component, header)
-        found = [quiet(whole, words.activities() if required else ())]
+        promised = [*words_of(promised_in(component), by_name=True)]
+        worked = [*words_of(worked_in(component), by_name=True)]
+        found = [self._quiet(emit_component(system, component, header), component, promised)]
         for region in component.regions:
-            own = emit_region(system, component, region, header, noted=self.noted)
-            found += [quiet(unit, words.region(region)) for unit in own]
-        own = emit_activities(system, component, header)
-        found += [quiet(unit, words.activities()) for unit in own]
+            spec, body = emit_region(system, component, region, header, noted=self.noted)
+            declared = chain(words_of(declared_in(component, region)), words_of_idle(region))
+            found.append(self._quiet(spec, component, declared))
+            found.append(self._quiet(body, component, words_of(done_in(region))))
+        for unit in emit_activities(system, component, header):
+            is_body = isinstance(unit.item, Package) and unit.item.is_body
+            found.append(self._quiet(unit, component, worked if is_body else promised))
         return self._read(found)
 
-    @cached_property
-    def words(self) -> tuple[str, ...]:
-        """What the compiler says in the units that belong to no component."""
-        return words_of_system(self.system)
+    def _quiet(self, unit: Unit, component: Component, words: Iterable[str]) -> Unit:
+        """A unit of a component, without the warnings of these words and of states."""
+        return quiet(unit, chain(words, self.decided.words(unit, component)))
 
     def made(self, found: Sequence[Unit]) -> list[MadeUnit]:
         """Units that belong to no component, with their texts and readings."""
-        return self._read([quiet(unit, self.words) for unit in found])
+        return self._read([quiet(unit, self.decided.words(unit, None)) for unit in found])
 
     def _read(self, found: Sequence[Unit]) -> list[MadeUnit]:
         if self.blind:

@@ -5,9 +5,6 @@
 package body Canopen_Device.Codecs
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Bits_Of_Type_Addressee
      (Item : Canopen_Device.Addressee) return Interfaces.Unsigned_8
    with

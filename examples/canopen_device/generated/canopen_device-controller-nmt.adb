@@ -5,9 +5,6 @@
 package body Canopen_Device.Controller.Nmt
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Selected
      (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
      return Selection

@@ -7,9 +7,6 @@ with Ravenchart.Timers;
 package Canopen_Device.Controller.Nmt
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Nmt_States.Leaf;
    use type Ravenchart.Timers.Timer;
    use type Ravenchart.Timers.Timer_Array;

@@ -20,9 +20,6 @@ with System;
 package body Canopen_Device.Device
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [device.nmt_in]
    package Nmt_In_Mailbox is new Ravenchart.Queues
      (Element_Type => Canopen_Device.Nmt_Command,

@@ -11,9 +11,6 @@ with Ravenchart.Traces;
 package body Canopen_Device.Line
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Frame_Of_Tpdo_1
      (Item : Canopen_Device.Status_Pdo)
      return Ravenchart.Can.Any_Frames.Any_Frame is

@@ -10,9 +10,6 @@ with Ravenchart.Response_Times;
 package Canopen_Device.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "49f9db734c82e469138fdeac3f7b5f9e76c0faf3d85759460f66d2aa53aaa7da";

@@ -9,9 +9,6 @@ with Ravenchart.Can.Layouts;
 package Crossing_System.Codecs
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Interfaces.Unsigned_64;
    use type Interfaces.Unsigned_8;
    use type Ravenchart.Number;
@@ -24,7 +21,7 @@ is
    function Value_Of_Type_Press
      (Raw : Interfaces.Unsigned_8) return Crossing_System.Press is
      (Crossing_System.Press'Val (Raw))
-   with Pre => Raw <= 0;
+   with Pre => Raw = 0;
 
    function Value_Of_Type_Car_Light
      (Raw : Interfaces.Unsigned_8) return Crossing_System.Car_Light is
@@ -119,11 +116,10 @@ is
       with
         Post =>
           Valid
-          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value) in 0 .. 0)
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value) = 0)
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
-                   = Crossing_System.Press'Pos (Item)
-             else Item = Crossing_System.Pressed);
+                   = Crossing_System.Press'Pos (Item));
       --  Valid when all bits stand for values.
 
       procedure Lemma_Survives (Item : Crossing_System.Press)

@@ -5,9 +5,6 @@
 package body Crossing_System.Crossing.Lights
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Selected
      (First : Transition;
       Last  : Transition;

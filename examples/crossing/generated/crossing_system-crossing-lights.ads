@@ -11,9 +11,6 @@ with Ravenchart.Firing_Lists;
 package Crossing_System.Crossing.Lights
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Lights_States.Leaf;
    use type Lights_States.Cars_Leaf;
    use type Lights_States.Configuration;

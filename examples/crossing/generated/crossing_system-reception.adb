@@ -11,9 +11,6 @@ with Ravenchart.Traces;
 package body Crossing_System.Reception
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is

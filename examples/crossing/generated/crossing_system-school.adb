@@ -18,9 +18,6 @@ with System;
 package body Crossing_System.School
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [school.button]
    package Button_Mailbox is new Ravenchart.Queues
      (Element_Type => Crossing_System.Press,

@@ -11,9 +11,6 @@ with Ravenchart.Traces;
 package body Crossing_System.Street
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Frame_Of_Car_Lamp
      (Item : Crossing_System.Car_Light)
      return Ravenchart.Can.Any_Frames.Any_Frame is

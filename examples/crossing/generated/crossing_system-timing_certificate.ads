@@ -10,9 +10,6 @@ with Ravenchart.Response_Times;
 package Crossing_System.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "550297c9ad319044d77670a4bc57183a53a3bf568f7160286b4ed43fc1e0527d";

@@ -5,9 +5,6 @@
 package body J1939_Node.Codecs
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Bits_Of_Type_Name_Half
      (Item : J1939_Node.Name_Half) return Interfaces.Unsigned_32
    with
@@ -308,7 +305,7 @@ is
         (Item : J1939_Node.Unused_8) return Interfaces.Unsigned_8
       with
         Post =>
-          Bits_Of_Signal_Group_Function'Result >= 255
+          Bits_Of_Signal_Group_Function'Result = 255
           and then Value_Of_Signal_Group_Function
               (Bits_Of_Signal_Group_Function'Result)
             = Item
@@ -326,7 +323,7 @@ is
         (Item : J1939_Node.Unused_16) return Interfaces.Unsigned_16
       with
         Post =>
-          Bits_Of_Signal_Spare'Result >= 65_535
+          Bits_Of_Signal_Spare'Result = 65_535
           and then Value_Of_Signal_Spare (Bits_Of_Signal_Spare'Result)
             = Item
       is
@@ -389,11 +386,11 @@ is
       with
         Ghost,
         Post =>
-          (Raw >= 255)
+          (Raw = 255)
           = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Group_Function)
-             in 255 .. 255)
-          and then (if Raw >= 255
+             = 255)
+          and then (if Raw = 255
                 then Ravenchart.Can.Layouts.Counted
                      (Interfaces.Unsigned_64 (Raw), Signal_Group_Function)
                    = Ravenchart.Number
@@ -424,11 +421,11 @@ is
       with
         Ghost,
         Post =>
-          (Raw >= 65_535)
+          (Raw = 65_535)
           = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Spare)
-             in 65_535 .. 65_535)
-          and then (if Raw >= 65_535
+             = 65_535)
+          and then (if Raw = 65_535
                 then Ravenchart.Can.Layouts.Counted
                      (Interfaces.Unsigned_64 (Raw), Signal_Spare)
                    = Ravenchart.Number (Value_Of_Signal_Spare (Raw)))
@@ -588,8 +585,8 @@ is
          Lemma_Value_Pgn (Local_Pgn);
          Valid :=
            Local_Kind <= 3
-           and then Local_Group_Function >= 255
-           and then Local_Spare >= 65_535
+           and then Local_Group_Function = 255
+           and then Local_Spare = 65_535
            and then Local_Pgn <= 262_143;
          if Valid then
             Item :=
@@ -710,7 +707,7 @@ is
         (Item : J1939_Node.Unused_4) return Interfaces.Unsigned_8
       with
         Post =>
-          Bits_Of_Signal_Spare_4'Result in 15 .. 15
+          Bits_Of_Signal_Spare_4'Result = 15
           and then Value_Of_Signal_Spare_4 (Bits_Of_Signal_Spare_4'Result)
             = Item
       is
@@ -727,7 +724,7 @@ is
         (Item : J1939_Node.Unused_32) return Interfaces.Unsigned_32
       with
         Post =>
-          Bits_Of_Signal_Spare_32'Result >= 4_294_967_295
+          Bits_Of_Signal_Spare_32'Result = 4_294_967_295
           and then Value_Of_Signal_Spare_32 (Bits_Of_Signal_Spare_32'Result)
             = Item
       is
@@ -825,11 +822,11 @@ is
         Ghost,
         Pre => Raw <= 16#F#,
         Post =>
-          (Raw in 15 .. 15)
+          (Raw = 15)
           = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Spare_4)
-             in 15 .. 15)
-          and then (if Raw in 15 .. 15
+             = 15)
+          and then (if Raw = 15
                 then Ravenchart.Can.Layouts.Counted
                      (Interfaces.Unsigned_64 (Raw), Signal_Spare_4)
                    = Ravenchart.Number (Value_Of_Signal_Spare_4 (Raw)))
@@ -893,11 +890,11 @@ is
       with
         Ghost,
         Post =>
-          (Raw >= 4_294_967_295)
+          (Raw = 4_294_967_295)
           = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Spare_32)
-             in 4_294_967_295 .. 4_294_967_295)
-          and then (if Raw >= 4_294_967_295
+             = 4_294_967_295)
+          and then (if Raw = 4_294_967_295
                 then Ravenchart.Can.Layouts.Counted
                      (Interfaces.Unsigned_64 (Raw), Signal_Spare_32)
                    = Ravenchart.Number (Value_Of_Signal_Spare_32 (Raw)))
@@ -991,9 +988,9 @@ is
          Valid :=
            Local_Speed <= 250
            and then Local_State in 0 | 4 | 7
-           and then Local_Spare_4 in 15 .. 15
+           and then Local_Spare_4 = 15
            and then Local_Rpm <= 64_255
-           and then Local_Spare_32 >= 4_294_967_295;
+           and then Local_Spare_32 = 4_294_967_295;
          if Valid then
             Item :=
               (Speed => Value_Of_Type_Fan_Speed (Local_Speed),

@@ -9,9 +9,6 @@ with Ravenchart.Can.Layouts;
 package J1939_Node.Codecs
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Interfaces.Unsigned_16;
    use type Interfaces.Unsigned_32;
    use type Interfaces.Unsigned_64;
@@ -240,12 +237,12 @@ is
       function Value_Of_Signal_Group_Function
         (Raw : Interfaces.Unsigned_8) return J1939_Node.Unused_8 is
         (J1939_Node.Unused_8 (Ravenchart.Number (Raw)))
-      with Pre => Raw >= 255;
+      with Pre => Raw = 255;
 
       function Value_Of_Signal_Spare
         (Raw : Interfaces.Unsigned_16) return J1939_Node.Unused_16 is
         (J1939_Node.Unused_16 (Ravenchart.Number (Raw)))
-      with Pre => Raw >= 65_535;
+      with Pre => Raw = 65_535;
 
       function Pack
         (Item : J1939_Node.Acknowledgement) return Interfaces.Unsigned_64
@@ -278,9 +275,9 @@ is
           = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Kind) in 0 .. 3
              and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Group_Function)
-               in 255 .. 255
+               = 255
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Spare)
-               in 65_535 .. 65_535
+               = 65_535
              and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Addressee)
                in 0 .. 255
@@ -444,12 +441,12 @@ is
       function Value_Of_Signal_Spare_4
         (Raw : Interfaces.Unsigned_8) return J1939_Node.Unused_4 is
         (J1939_Node.Unused_4 (Ravenchart.Number (Raw)))
-      with Pre => Raw in 15 .. 15;
+      with Pre => Raw = 15;
 
       function Value_Of_Signal_Spare_32
         (Raw : Interfaces.Unsigned_32) return J1939_Node.Unused_32 is
         (J1939_Node.Unused_32 (Ravenchart.Number (Raw)))
-      with Pre => Raw >= 4_294_967_295;
+      with Pre => Raw = 4_294_967_295;
 
       function Pack
         (Item : J1939_Node.Fan_Drive) return Interfaces.Unsigned_64
@@ -485,12 +482,12 @@ is
                in 0 | 4 | 7
              and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Spare_4)
-               in 15 .. 15
+               = 15
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Rpm)
                in 0 .. 64_255
              and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Spare_32)
-               in 4_294_967_295 .. 4_294_967_295)
+               = 4_294_967_295)
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Speed)
                    = Ravenchart.Number (Item.Speed)

@@ -20,9 +20,6 @@ with System;
 package body J1939_Node.Fan
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [fan.rival]
    package Rival_Mailbox is new Ravenchart.Queues
      (Element_Type => J1939_Node.Name,

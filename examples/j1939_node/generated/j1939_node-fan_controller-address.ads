@@ -7,9 +7,6 @@ with Ravenchart.Timers;
 package J1939_Node.Fan_Controller.Address
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Address_States.Leaf;
    use type Ravenchart.Timers.Timer;
    use type Ravenchart.Timers.Timer_Array;

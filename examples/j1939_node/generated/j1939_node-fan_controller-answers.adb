@@ -5,9 +5,6 @@
 package body J1939_Node.Fan_Controller.Answers
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Selected
      (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
      return Selection

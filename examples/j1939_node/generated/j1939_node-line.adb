@@ -11,9 +11,6 @@ with Ravenchart.Traces;
 package body J1939_Node.Line
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Frame_Of_Claim
      (Item : J1939_Node.Name) return Ravenchart.Can.Any_Frames.Any_Frame is
    begin

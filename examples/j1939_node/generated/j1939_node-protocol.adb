@@ -12,9 +12,6 @@ with Ravenchart.Traces;
 package body J1939_Node.Protocol
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is

@@ -10,9 +10,6 @@ with Ravenchart.Response_Times;
 package J1939_Node.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "27d9e88d5ba24da307d094a68e26e6985015a9992297e7bac05f313851a2bf00";

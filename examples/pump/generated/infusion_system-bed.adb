@@ -19,9 +19,6 @@ with System;
 package body Infusion_System.Bed
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [bed.line]
    package Line_Mailbox is new Ravenchart.Queues
      (Element_Type => Infusion_System.Line,

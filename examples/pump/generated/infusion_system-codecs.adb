@@ -5,9 +5,6 @@
 package body Infusion_System.Codecs
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Bits_Of_Type_Line
      (Item : Infusion_System.Line) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Infusion_System.Line'Pos (Item)))

@@ -5,9 +5,6 @@
 package body Infusion_System.Pump.Flows
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Number;
 
    procedure Turn

@@ -12,9 +12,6 @@ with Ravenchart.Firing_Lists;
 package Infusion_System.Pump.Infusion
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Infusion_States.Leaf;
    use type Infusion_States.Configuration;
    use type Infusion_States.Motor_Leaf;

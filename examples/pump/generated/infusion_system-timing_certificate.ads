@@ -10,9 +10,6 @@ with Ravenchart.Response_Times;
 package Infusion_System.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "5a0ed89a09932b78672cdf5a241e062c6a9ae8317283a9962bbb64ef62e6ac03";

@@ -11,9 +11,6 @@ with Ravenchart.Traces;
 package body Infusion_System.Ward
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Frame_Of_Motor
      (Item : Infusion_System.Portion)
      return Ravenchart.Can.Any_Frames.Any_Frame is

@@ -12,11 +12,6 @@ with Ravenchart.Traces;
 package body Qhsm_Test.Charts
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is

@@ -5,11 +5,6 @@
 package body Qhsm_Test.Codecs
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    function Bits_Of_Type_Key
      (Item : Qhsm_Test.Key) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Qhsm_Test.Key'Pos (Item)))

@@ -9,11 +9,6 @@ with Ravenchart.Can.Layouts;
 package Qhsm_Test.Codecs
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    use type Interfaces.Unsigned_64;
    use type Interfaces.Unsigned_8;
    use type Ravenchart.Number;

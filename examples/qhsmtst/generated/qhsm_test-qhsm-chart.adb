@@ -5,11 +5,6 @@
 package body Qhsm_Test.Qhsm.Chart
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    function Selected (Self : Region; Now : Occurrence) return Selection
    with Post => Is_Selection (Selected'Result, Self, Now)
    is

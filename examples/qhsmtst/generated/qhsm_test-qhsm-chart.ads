@@ -7,10 +7,7 @@ with Ravenchart.Firing_Lists;
 package Qhsm_Test.Qhsm.Chart
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
+   pragma Warnings (Off, "*explicit membership test*");
 
    use type Chart_States.Leaf;
 

@@ -5,9 +5,6 @@
 package body Qhsm_Test.Qhsm.Keys
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Selected (Self : Region; Now : Occurrence) return Selection
    with Post => Is_Selection (Selected'Result, Self, Now)
    is

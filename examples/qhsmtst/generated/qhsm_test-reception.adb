@@ -11,11 +11,6 @@ with Ravenchart.Traces;
 package body Qhsm_Test.Reception
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is

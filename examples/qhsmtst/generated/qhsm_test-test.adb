@@ -17,11 +17,6 @@ with System;
 package body Qhsm_Test.Test
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  [test.key]
    package Key_Mailbox is new Ravenchart.Queues
      (Element_Type => Qhsm_Test.Key,

@@ -10,11 +10,6 @@ with Ravenchart.Response_Times;
 package Qhsm_Test.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "8b02c33aec34ada9e3f711dc46754f154dfb3555f040889b48aae0da799ea680";

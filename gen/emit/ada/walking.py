@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar, cast
 
 from .declarations import Unit
-from .expressions import COMPARISONS, IntegerLiteral, Membership, OperatorChain
+from .expressions import IntegerLiteral
 from .named import DottedName
 from .statements import Comment
 
@@ -55,15 +55,6 @@ def rewritten(construct: T, change: Callable[[object], object]) -> T:
             return construct
         changed = tuple(made) if type(construct) is tuple else type(construct)(*made)
     return construct if changed is None else cast(T, changed)
-
-
-def compares(construct: object) -> bool:
-    """Is there a comparison or a membership test in it?"""
-    return any(
-        isinstance(node, Membership)
-        or (isinstance(node, OperatorChain) and node.operator in COMPARISONS)
-        for node in nodes_in(construct)
-    )
 
 
 def named_units(unit: Unit) -> set[DottedName]:

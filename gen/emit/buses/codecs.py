@@ -61,7 +61,7 @@ from ravenchart.gen.emit.ada.statements import (
     Stmt,
     do,
 )
-from ravenchart.gen.language.terms import RecordType, default
+from ravenchart.gen.language.terms import RecordType, Type, default, has_one_value
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import RAW_LIMIT, Signal, bits_of, signals_of
 from ravenchart.gen.model.system import System
@@ -84,6 +84,11 @@ WORDS = ref("Ravenchart.Can.Fd_Frames.Fd_Words")
 
 FD_WORDS = 8
 """How many there are."""
+
+
+def _is(of_type: Type, left: Expr, right: Expr) -> Expr | None:
+    """Are two values the same? None where the type has but one: the compiler warns of that."""
+    return None if has_one_value(of_type) else equal(left, right)
 
 
 def codec_name(message: Message) -> str:
@@ -290,14 +295,14 @@ class _Codec:
             same = self.table.stands_for(s, shown, self._item(s, "Item"))
             there = self._there_in(s, ref(self.frame))
             if there is not None:
-                absent = equal(self._item(s, "Item"), self._default(s))
+                absent = _is(s.type, self._item(s, "Item"), self._default(s))
                 holds = TRUE if holds == TRUE else IfExpr(((there, holds),), None)
                 same = IfExpr(((there, same),), absent)
             valid.append(holds)
             taken.append(same)
         if all_of(*valid) == TRUE:
             return all_of(ref("Valid"), *taken)
-        other = equal(ref("Item"), default_value(self.system, self.type))
+        other = _is(self.type, ref("Item"), default_value(self.system, self.type))
         read = IfExpr(((ref("Valid"), all_of(*taken)),), other)
         return all_of(equal(ref("Valid"), all_of(*valid)), read)
 
@@ -484,7 +489,9 @@ class _Codec:
         )
 
     def _lemma(self) -> Subprogram:
-        same: list[Expr] = [equal(ref("Copy"), ref("Item"))]
+        differs = _is(self.type, ref("Copy"), ref("Item"))
+        copy = "Copy" if differs else "Unused_Copy"
+        same: list[Expr] = [differs or TRUE]
         if any(s.pages for s in self.signals):
             same = []
             for s in self.signals:
@@ -494,11 +501,11 @@ class _Codec:
             "Lemma_Survives",
             (Param("Item", "in", self.ada_type),),
             declarations=(
-                Object("Copy", self.ada_type),
+                Object(copy, self.ada_type),
                 Object("Valid", "Boolean"),
             ),
             body=(
-                do("Unpack", call("Pack", ref("Item")), ref("Copy"), ref("Valid")),
+                do("Unpack", call("Pack", ref("Item")), ref(copy), ref("Valid")),
                 Pragma("Assert", (all_of(ref("Valid"), *same),)),
             ),
         )

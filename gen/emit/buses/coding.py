@@ -110,6 +110,8 @@ class Coding:
             patterns = sorted(self._pattern(code) for code in self.signal.codes)
             return member(raw, *map(signed, patterns))
         full = 1 << self.signal.width
+        if low == high:  # the compiler warns of a limit that can only be met
+            return equal(raw, number(low % full))
         if high - low + 1 == full and within_width(raw, self.signal) is None:
             return TRUE
         if low > 0 and high == full - 1 and within_width(raw, self.signal) is None:

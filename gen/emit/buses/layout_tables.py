@@ -23,6 +23,7 @@ from ravenchart.gen.emit.ada.expressions import (
     Indexed,
     OperatorChain,
     Prefix,
+    Range,
     arguments,
     between,
     bits,
@@ -205,7 +206,13 @@ class LayoutTable:
 
     def has_value(self, signal: Signal, raw: Expr) -> Expr:
         """Does a raw value stand for something?"""
-        return TRUE if signal.other is not None else member(raw, *self._raw_values(signal))
+        if signal.other is not None:
+            return TRUE
+        match self._raw_values(signal):
+            case [Range(low, high)] if low == high:
+                return equal(raw, low)
+            case values:
+                return member(raw, *values)
 
     def _raw_values(self, signal: Signal) -> list[Choice]:
         """All raw values that stand for something."""

@@ -25,7 +25,6 @@ from ravenchart.gen.emit.ada.expressions import (
     ForSome,
     IfExpr,
     Indexed,
-    StringLiteral,
     both,
     call,
     chain,
@@ -37,7 +36,7 @@ from ravenchart.gen.emit.ada.expressions import (
 )
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.statements import Comment, Pragma
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.language.compound import PASSED, Firing, FiringKind
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.model.component import Component
@@ -64,7 +63,7 @@ def emit_region(
     withs += [ref("Ravenchart.Deferrals")] if shape.deferring else []
     withs += [ref("Ravenchart.Firing_Lists")] if shape.listed else []
     spec = Package(shape.package, _spec(shape), (SPARK,))
-    body = Package(shape.package, (*_quiet(shape), *body_of(shape)), (SPARK,), is_body=True)
+    body = Package(shape.package, body_of(shape), (SPARK,), is_body=True)
     seen = (ref("Ravenchart.Steps"),) if noted else ()
     return Unit(header, tuple(withs), spec), Unit(header, seen, body)
 
@@ -73,13 +72,7 @@ def _spec(shape: RegionShape) -> tuple[Decl, ...]:
     safe = Safety(shape).declared()
     lists = firing_list(shape) if shape.listed else []
     types = (*region_types(shape), *lists)
-    return (*_quiet(shape), *types, *_declared(shape), *safe, *operations(shape))
-
-
-def _quiet(shape: RegionShape) -> tuple[Pragma, ...]:
-    """Functions of a chart without transitions do not ask for what is active or occurs."""
-    words = () if shape.firings else ("formal parameter * is not referenced", "condition is always")
-    return tuple(Pragma("Warnings", (ref("Off"), StringLiteral(f"*{word}*"))) for word in words)
+    return (*types, *_declared(shape), *safe, *operations(shape))
 
 
 # --- The chart as declared ---------------------------------------------------

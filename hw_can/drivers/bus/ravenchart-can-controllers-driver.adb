@@ -209,7 +209,7 @@ package body Driver is
             when Tcp_Sockets.Refused   =>
                Driver_Hosts.Complain
                  ("no bus server at 127.0.0.1:",
-                  Ports.Image (Port),
+                  Natural (Port),
                   ": trying again");
          end case;
       end if;
@@ -236,14 +236,16 @@ package body Driver is
 
    procedure Say_Hello (Server : Sockets.Socket; Done : out Boolean) is
       Default : constant String := "ravenchart";
-      Name    : constant String :=
-        Driver_Hosts.Setting ("RAVENCHART_BUS_NAME");
+      Text    : String (1 .. 17);
+      --  Room for a name, and for one character more.
+      Last    : Natural;
       Bytes   : Bus_Records.Image;
    begin
-      if Bus_Records.Is_Name (Name) then
-         Bytes := Client_Side.Hello (Name, Setting.Takes_Fd);
+      Driver_Hosts.Read_Setting ("RAVENCHART_BUS_NAME", Text, Last);
+      if Bus_Records.Is_Name (Text (1 .. Last)) then
+         Bytes := Client_Side.Hello (Text (1 .. Last), Setting.Takes_Fd);
       else
-         if Name /= "" then
+         if Last > 0 then
             Driver_Hosts.Complain
               ("RAVENCHART_BUS_NAME must have 1 to 16 characters from ! to ~;",
                " joining as ",
@@ -346,7 +348,7 @@ package body Driver is
                Limit_Wait (Server, To => 0);
                if not Announced then
                   Driver_Hosts.Announce
-                    ("joined the bus at 127.0.0.1:", Ports.Image (Port));
+                    ("joined the bus at 127.0.0.1:", Natural (Port));
                   Announced := True;
                end if;
             when Bus_Members.Take_Frame     =>

@@ -143,14 +143,14 @@ package body Driver is
          case Result is
             when Tcp_Sockets.Opened    =>
                Driver_Hosts.Announce
-                 ("slcan on 127.0.0.1:", Ports.Image (Given));
+                 ("slcan on 127.0.0.1:", Natural (Given));
             when Tcp_Sockets.None_Left =>
                Driver_Hosts.Complain
                  ("no socket: the system has none left");
             when Tcp_Sockets.Refused   =>
                Driver_Hosts.Complain
                  ("port ",
-                  Ports.Image (Asked),
+                  Natural (Asked),
                   " cannot be opened: is it in use? trying again");
          end case;
       end if;
@@ -161,28 +161,35 @@ package body Driver is
    -----------------
 
    procedure Open_Serial (Client : out Sockets.Socket) is
-      Path   : constant String := Driver_Hosts.Setting (Device_Variable);
-      Speed  : constant String :=
-        Driver_Hosts.Setting ("RAVENCHART_CAN_SPEED");
-      Result : Serial_Lines.Outcome;
+      Path       : String (1 .. Serial_Lines.Path_Limit);
+      Path_Last  : Natural;
+      Speed      : String (1 .. 2);
+      Speed_Last : Natural;
+      First      : Slcan.Openings.Opening_Text;
+      First_Last : Natural;
+      Result     : Serial_Lines.Outcome;
    begin
       Client := Sockets.No_Socket;
-      if not Slcan.Openings.Is_Speed (Speed) then
+      Driver_Hosts.Read_Setting ("RAVENCHART_CAN_SPEED", Speed, Speed_Last);
+      if not Slcan.Openings.Is_Speed (Speed (1 .. Speed_Last)) then
          Driver_Hosts.Complain
            ("RAVENCHART_CAN_SPEED must be a digit, 0 to 8");
          return;
       end if;
+      Slcan.Openings.Format
+        (Setting, Speed (1 .. Speed_Last), First, First_Last);
+      Driver_Hosts.Read_Setting (Device_Variable, Path, Path_Last);
       Serial_Lines.Open
-        (Path, Slcan.Openings.Opening (Setting, Speed), Client, Result);
+        (Path (1 .. Path_Last), First (1 .. First_Last), Client, Result);
       case Result is
          when Serial_Lines.Opened    =>
-            Driver_Hosts.Announce ("slcan on ", Path);
+            Driver_Hosts.Announce ("slcan on ", Path (1 .. Path_Last));
          when Serial_Lines.No_Device =>
             Driver_Hosts.Complain
-              (Path, " cannot be opened: trying again");
+              (Path (1 .. Path_Last), " cannot be opened: trying again");
          when Serial_Lines.No_Line   =>
             Driver_Hosts.Complain
-              (Path, " is no serial line: trying again");
+              (Path (1 .. Path_Last), " is no serial line: trying again");
       end case;
    end Open_Serial;
 
@@ -305,11 +312,14 @@ package body Driver is
       Server : Sockets.Socket := Sockets.No_Socket;
       Client : Sockets.Socket;
       Serial : Boolean;
+      Unused : String (1 .. 1);
+      Last   : Natural;
    begin
       delay until Epochs.Start;
       --  A client that came before the processors run would find nobody
       --  to take its frames.
-      Serial := Driver_Hosts.Setting (Device_Variable) /= "";
+      Driver_Hosts.Read_Setting (Device_Variable, Unused, Last);
+      Serial := Last > 0;
       if not Serial then
          loop
             Open_Server (Server);

@@ -22,11 +22,12 @@ is
       Line   : out Sockets.Socket;
       Result : out Outcome)
    is
-      C_Path  : constant String := Path & ASCII.NUL;
-      Modes   : aliased Line_Settings := (others => 0);
-      File    : C_Int;
-      Status  : C_Int;
+      C_Path : String (1 .. Path_Limit + 1) := (others => ASCII.NUL);
+      Modes  : aliased Line_Settings := (others => 0);
+      File   : C_Int;
+      Status : C_Int;
    begin
+      C_Path (1 .. Path'Length) := Path;
       Line   := Sockets.No_Socket;
       Result := No_Device;
       File   := C_Open

@@ -18,11 +18,17 @@ is
 
    Length_Limit : constant := 10;
 
-   function Opening (Bus : Bus_Setting; Speed : String) return String
+   subtype Opening_Text is String (1 .. Length_Limit);
+
+   procedure Format
+     (Bus   : Bus_Setting;
+      Speed : String;
+      Text  : out Opening_Text;
+      Last  : out Natural)
    with
      Global => null,
      Pre    => Is_Speed (Speed),
-     Post   => Opening'Result'Length <= Length_Limit;
+     Post   => Last <= Length_Limit;
    --  The commands C, S, Y and O. S and Y have digits for usual bit rates
    --  alone, and Y is told where CAN FD frames switch to a whole number of
    --  Mbit/s; Speed goes before the bit rate of Bus.

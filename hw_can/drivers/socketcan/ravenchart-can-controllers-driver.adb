@@ -73,10 +73,10 @@ package body Driver is
                    Driver_Hosts.Console, Sockets.Network));
    --  Try to send F once; Sent is False when it must wait.
 
-   function Interface_Name return String
-   with
-     Global => null,
-     Post   => Interface_Name'Result'Length <= Driver_Hosts.Text_Limit;
+   subtype Interface_Name is String (1 .. Raw_Sockets.Name_Limit);
+
+   procedure Read_Name (Name : out Interface_Name; Last : out Positive)
+   with Global => null, Post => Last <= Interface_Name'Last;
    --  What RAVENCHART_CAN_INTERFACE says, or can0.
 
    procedure Open (Bus : out Sockets.Socket)
@@ -84,35 +84,44 @@ package body Driver is
    --  A socket on that interface, announced on standard output; No_Socket,
    --  with one message on standard error, where there is none.
 
-   --------------------
-   -- Interface_Name --
-   --------------------
+   ---------------
+   -- Read_Name --
+   ---------------
 
-   function Interface_Name return String is
-      Named : constant String :=
-        Driver_Hosts.Setting ("RAVENCHART_CAN_INTERFACE");
+   procedure Read_Name (Name : out Interface_Name; Last : out Positive) is
+      Default : constant String := "can0";
+      Length  : Natural;
    begin
-      return (if Named = "" then "can0" else Named);
-   end Interface_Name;
+      Driver_Hosts.Read_Setting ("RAVENCHART_CAN_INTERFACE", Name, Length);
+      if Length = 0 then
+         Length := Default'Length;
+         Name (1 .. Length) := Default;
+      end if;
+      Last := Length;
+   end Read_Name;
 
    ----------
    -- Open --
    ----------
 
    procedure Open (Bus : out Sockets.Socket) is
-      Name   : constant String := Interface_Name;
+      Name   : Interface_Name;
+      Last   : Positive;
       Result : Raw_Sockets.Opening;
    begin
-      Raw_Sockets.Open (Name, Setting.Takes_Fd, Bus, Result);
+      Read_Name (Name, Last);
+      Raw_Sockets.Open (Name (1 .. Last), Setting.Takes_Fd, Bus, Result);
       case Result is
          when Raw_Sockets.Joined       =>
-            Driver_Hosts.Announce ("socketcan on ", Name);
+            Driver_Hosts.Announce ("socketcan on ", Name (1 .. Last));
          when Raw_Sockets.No_Can       =>
             Driver_Hosts.Complain
               ("this system has no SocketCAN; trying again");
          when Raw_Sockets.No_Interface =>
             Driver_Hosts.Complain
-              ("there is no CAN interface ", Name, "; trying again");
+              ("there is no CAN interface ",
+               Name (1 .. Last),
+               "; trying again");
       end case;
    end Open;
 
@@ -177,6 +186,8 @@ package body Driver is
    procedure Put (F : Any_Frames.Any_Frame; Sent : out Boolean) is
       Bus    : Sockets.Socket;
       Result : Raw_Sockets.Outcome := Raw_Sockets.Refused;
+      Name   : Interface_Name;
+      Last   : Positive;
    begin
       Line.Begin_Use (Bus);
       if Bus /= Sockets.No_Socket then
@@ -190,8 +201,9 @@ package body Driver is
             null;
          when Raw_Sockets.Refused                 =>
             Upper.Count (Upper.Lost_Out);
+            Read_Name (Name, Last);
             Driver_Hosts.Complain
-              (Interface_Name, " is not set up for CAN FD (fd on)");
+              (Name (1 .. Last), " is not set up for CAN FD (fd on)");
          when Raw_Sockets.Down | Raw_Sockets.Gone =>
             Upper.Count (Upper.Lost_Out);
             Upper.Note (Stopped);

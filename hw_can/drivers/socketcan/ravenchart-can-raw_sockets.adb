@@ -2,6 +2,7 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 with Interfaces.C;
+with System;
 with Ravenchart.Can.Linux_Calls;
 
 package body Ravenchart.Can.Raw_Sockets
@@ -29,8 +30,7 @@ is
 
    Can_Address_Length : constant C_Int := 24;
 
-   function C_Index
-     (Name : Interfaces.C.char_array) return Interfaces.C.unsigned
+   function C_Index (Name : System.Address) return Interfaces.C.unsigned
    with Import, Convention => C, External_Name => "if_nametoindex";
 
    Raw_Protocol    : constant C_Int := 1;
@@ -63,8 +63,8 @@ is
       Address : aliased Can_Address;
       File    : constant C_Int :=
         C_Socket (Can_Family, Raw_Socket + Close_On_Exec, Raw_Protocol);
-      Index   : constant Interfaces.C.unsigned :=
-        C_Index (Interfaces.C.To_C (Name));
+      C_Name  : String (1 .. Name_Limit + 1) := (others => ASCII.NUL);
+      Index   : Interfaces.C.unsigned;
       Status  : C_Int;
    begin
       Opened := No_Socket;
@@ -72,6 +72,8 @@ is
       if File < 0 then
          return;
       end if;
+      C_Name (1 .. Name'Length) := Name;
+      Index         := C_Index (C_Name'Address);
       Address.Index := C_Int (Index);
       Status := C_Set_Option
         (File, Raw_Level, Error_Filter, All_Of'Address, 4);

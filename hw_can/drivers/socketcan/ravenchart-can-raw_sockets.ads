@@ -24,12 +24,15 @@ is
    type Opening is (Joined, No_Can, No_Interface);
    --  No_Can: the system has none.
 
+   Name_Limit : constant := 64;
+   --  More than Linux allows.
+
    procedure Open
      (Name    : String;
       With_Fd : Boolean;
       Opened  : out Socket;
       Result  : out Opening)
-   with Global => (In_Out => Network);
+   with Global => (In_Out => Network), Pre => Name'Length <= Name_Limit;
    --  A socket on the interface of that name, with all error reports, and with
    --  CAN FD frames if so asked; No_Socket when it has not Joined.
 

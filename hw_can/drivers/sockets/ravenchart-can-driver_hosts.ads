@@ -18,25 +18,45 @@ package Ravenchart.Can.Driver_Hosts
                                  Effective_Reads, Effective_Writes)),
     Initializes    => Console
 is
-   Text_Limit : constant := 4_000;
-   --  The most characters of a setting; others are cut off.
+   Text_Limit : constant := 1_024;
+   --  The most characters of a setting.
 
-   function Setting (Name : String) return String
+   procedure Read_Setting
+     (Name : String; Text : out String; Last : out Natural)
    with
      Global => null,
-     Post   =>
-       Setting'Result'First = 1
-       and then Setting'Result'Length <= Text_Limit;
-   --  What the environment says; nothing when it is not set.
+     Pre    => Text'First = 1 and then Text'Last in 1 .. Text_Limit,
+     Post   => Last <= Text'Last;
+   --  What the environment says, cut off where Text ends; nothing when it is
+   --  not set.
 
    procedure Announce (Text : String; About : String)
-   with Global => (In_Out => Console);
-   --  Print Text and About to standard output.
+   with
+     Global => (In_Out => Console),
+     Pre    =>
+       Text'Length <= Text_Limit and then About'Length <= Text_Limit;
+   --  Print both to standard output.
+
+   procedure Announce (Text : String; Number : Natural)
+   with Global => (In_Out => Console), Pre => Text'Length <= Text_Limit;
+   --  The same of a number.
 
    procedure Complain
      (Reason : String; About : String := ""; Rest : String := "")
-   with Global => (In_Out => Console);
+   with
+     Global => (In_Out => Console),
+     Pre    =>
+       Reason'Length <= Text_Limit
+       and then About'Length <= Text_Limit
+       and then Rest'Length <= Text_Limit;
    --  Say on standard error what is wrong, the three parts in a row: the
    --  first time only, as most is tried again.
+
+   procedure Complain (Reason : String; Number : Natural; Rest : String)
+   with
+     Global => (In_Out => Console),
+     Pre    =>
+       Reason'Length <= Text_Limit and then Rest'Length <= Text_Limit;
+   --  The same about a number.
 
 end Ravenchart.Can.Driver_Hosts;

@@ -4,7 +4,8 @@
 package body Ravenchart.Can.Ports
   with SPARK_Mode
 is
-   use type Interfaces.Unsigned_16;
+   Digit_Limit : constant := 32;
+   --  More characters are no port, with whatever zeros it begins.
 
    ----------
    -- Read --
@@ -16,45 +17,26 @@ is
       Number   : out Port;
       Is_Sound : out Boolean)
    is
-      Text : constant String := Driver_Hosts.Setting (Variable);
+      Text : String (1 .. Digit_Limit + 1);
+      Last : Natural;
       Sum  : Natural := 0;
    begin
-      Number   := Default;
-      Is_Sound := True;
-      if Text /= "" then
-         for C of Text loop
-            if C in '0' .. '9' and then Sum <= 65_535 then
-               Sum := 10 * Sum + Character'Pos (C) - Character'Pos ('0');
-            else
-               Is_Sound := False;
-            end if;
-         end loop;
-         Is_Sound := Is_Sound and then Sum <= 65_535;
-         if Is_Sound then
-            Number := Port (Sum);
+      Number := Default;
+      Driver_Hosts.Read_Setting (Variable, Text, Last);
+      Is_Sound := Last <= Digit_Limit;
+      for C of Text (1 .. Last) loop
+         if C in '0' .. '9' and then Sum <= 65_535 then
+            Sum := 10 * Sum + Character'Pos (C) - Character'Pos ('0');
          else
-            Driver_Hosts.Complain (Variable, " must be a port, 0 to 65535");
-         end if;
-      end if;
-   end Read;
-
-   -----------
-   -- Image --
-   -----------
-
-   function Image (Number : Port) return String is
-      Text : String (1 .. 5) := (others => '0');
-      Rest : Port := Number;
-   begin
-      for Place in reverse Text'Range loop
-         Text (Place) :=
-           Character'Val (Character'Pos ('0') + Integer (Rest mod 10));
-         Rest := Rest / 10;
-         if Rest = 0 then
-            return Text (Place .. Text'Last);
+            Is_Sound := False;
          end if;
       end loop;
-      return Text;
-   end Image;
+      Is_Sound := Is_Sound and then Sum <= 65_535;
+      if not Is_Sound then
+         Driver_Hosts.Complain (Variable, " must be a port, 0 to 65535");
+      elsif Last > 0 then
+         Number := Port (Sum);
+      end if;
+   end Read;
 
 end Ravenchart.Can.Ports;

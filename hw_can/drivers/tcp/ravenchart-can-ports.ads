@@ -1,8 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Numbers of TCP ports, as the environment gives them and as messages name
---  them.
+--  Numbers of TCP ports, as the environment gives them.
 --
 --  Guarantees   a setting that is no port is refused with a message
 --  Tasking      the tasks of a driver; each call is independent
@@ -21,12 +20,10 @@ is
       Default  : Port;
       Number   : out Port;
       Is_Sound : out Boolean)
-   with Global => (In_Out => Driver_Hosts.Console);
+   with
+     Global => (In_Out => Driver_Hosts.Console),
+     Pre    => Variable'Length <= Driver_Hosts.Text_Limit;
    --  The port that Variable names; Default when it is not set. Not Is_Sound
    --  when it names none, which is said on standard error.
-
-   function Image (Number : Port) return String
-   with Global => null, Post => Image'Result'Length <= 5;
-   --  In decimal.
 
 end Ravenchart.Can.Ports;

@@ -5,9 +5,6 @@
 package body Two_Nodes.Codecs
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Bits_Of_Type_Wish
      (Item : Two_Nodes.Wish) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Two_Nodes.Wish'Pos (Item)))

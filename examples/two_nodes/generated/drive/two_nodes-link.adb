@@ -11,9 +11,6 @@ with Two_Nodes.Trace;
 package body Two_Nodes.Link
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Frame_Of_Servo_Report
      (Item : Two_Nodes.Servo_Report)
      return Ravenchart.Can.Any_Frames.Any_Frame is

@@ -11,9 +11,6 @@ with Two_Nodes.Trace;
 package body Two_Nodes.Reception_Drive
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is

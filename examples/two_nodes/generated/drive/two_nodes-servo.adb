@@ -18,9 +18,6 @@ with Two_Nodes.Trace;
 package body Two_Nodes.Servo
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [servo.order]
    package Order_Mailbox is new Ravenchart.Queues
      (Element_Type => Two_Nodes.Servo_Order,

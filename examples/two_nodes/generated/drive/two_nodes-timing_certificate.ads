@@ -10,9 +10,6 @@ with Ravenchart.Response_Times;
 package Two_Nodes.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "5e36900fdff3c011b2622ecf67cf6c8302468247b5bcc356cc99991444eefc3b";

@@ -9,9 +9,6 @@ with Ravenchart.Can.Layouts;
 package Two_Nodes.Codecs
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Interfaces.Unsigned_32;
    use type Interfaces.Unsigned_64;
    use type Interfaces.Unsigned_8;

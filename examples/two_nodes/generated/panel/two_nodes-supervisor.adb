@@ -18,9 +18,6 @@ with Two_Nodes.Traveller.Mission;
 package body Two_Nodes.Supervisor
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [supervisor.report]
    package Report_Mailbox is new Ravenchart.Queues
      (Element_Type => Two_Nodes.Servo_Report,

@@ -5,9 +5,6 @@
 package Two_Nodes.Traveller.Mission
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Mission_States.Leaf;
    use type Ravenchart.Freshness;
 
