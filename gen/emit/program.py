@@ -82,7 +82,7 @@ T = TypeVar("T")
 class MadeUnit:
     """A unit of the program: its context, its item as printed, and what was read in it.
 
-    As a rule the declarations themselves are dropped: there are millions in a large program.
+    The declarations themselves are dropped: there are millions in a large program.
     """
 
     unit: Unit
@@ -93,11 +93,10 @@ class MadeUnit:
 class _Maker:
     """Makes units of one system, with what depends on the whole program."""
 
-    def __init__(self, system: System, *, noted: bool = False, whole: bool = False) -> None:
-        """``whole`` units keep their declarations."""
+    def __init__(self, system: System, *, noted: bool = False) -> None:
         self.system = system
         self.header = HEADER.format(system=system.name)
-        self.noted, self.whole = noted, whole
+        self.noted = noted
         #  without such a type the root has no need of the runtime, and its children
         #  cannot see it through the root
         self.blind = not any(isinstance(t, IntegerType) for t in system.types)
@@ -143,20 +142,16 @@ class _Maker:
             found = [_seeing_runtime(unit) for unit in found]
         texts = [print_item(unit) for unit in found]
         read = readings(found, root_package(self.system))
-        left = [_pruned(unit, root_package(self.system)) for unit in found]
-        left = left if self.whole else [_context(unit) for unit in left]
-        return [MadeUnit(u, t, r) for u, t, r in zip(left, texts, read, strict=True)]
+        context = [_context(_pruned(unit, root_package(self.system))) for unit in found]
+        return [MadeUnit(u, t, r) for u, t, r in zip(context, texts, read, strict=True)]
 
 
-def program(
-    system: System, claims: Claims, whole: System, *, nodes: bool = False
-) -> tuple[MadeUnit, ...]:
+def program(system: System, claims: Claims, whole: System) -> tuple[MadeUnit, ...]:
     """Every Ada unit of a program; ``claims`` are what the certificate of the ``whole`` shows.
 
-    ``whole`` is the system whose part this program is, or this system itself. With ``nodes``
-    the units keep their declarations.
+    ``whole`` is the system whose part this program is, or this system itself.
     """
-    maker, before, after = _without_claims(system, nodes)
+    maker, before, after = _without_claims(system)
     made = [emit_certificate(whole, claims, maker.header)]
     if authenticated(system):  # one spec for all nodes, whose body they share
         made += emit_authentication(whole, maker.header)
@@ -164,14 +159,12 @@ def program(
 
 
 @lru_cache(maxsize=8)
-def _without_claims(
-    system: System, whole: bool = False
-) -> tuple[_Maker, tuple[MadeUnit, ...], tuple[MadeUnit, ...]]:
+def _without_claims(system: System) -> tuple[_Maker, tuple[MadeUnit, ...], tuple[MadeUnit, ...]]:
     """What makes the units, and those before and behind the timing certificate.
 
     Made once, checked and then written.
     """
-    maker = _Maker(system, whole=whole)
+    maker = _Maker(system)
 
     def others() -> tuple[list[MadeUnit], list[MadeUnit]]:
         before = [
@@ -187,15 +180,8 @@ def _without_claims(
 
 def simulation(system: System) -> dict[str, str]:
     """The files of the program that runs in virtual time, project file included."""
-    files = _printed(_in_virtual_time(system))
-    name = ada_case(system.name).lower()
-    files[f"{name}_simulation.gpr"] = simulation_project(system)
-    return files
-
-
-def _in_virtual_time(system: System, *, whole: bool = False) -> list[MadeUnit]:
     reduced = simulated(system)
-    maker = _Maker(reduced, noted=True, whole=whole)
+    maker = _Maker(reduced, noted=True)
 
     def others() -> list[MadeUnit]:
         found = [
@@ -207,26 +193,10 @@ def _in_virtual_time(system: System, *, whole: bool = False) -> list[MadeUnit]:
         return maker.made(found)
 
     logic, besides = maker.logic(others)
-    return [*logic, *besides]
-
-
-def units_of_program(system: System, claims: Claims) -> dict[str, Unit]:
-    """The units whose texts `generate` gives, by their files; those of registers are left out."""
-    found: dict[str, Unit] = {}
-    for part in programs(system):
-        folder = folder_of(part, system)
-        made = _whole(program(part, claims, system, nodes=True))
-        found |= {f"{folder}{name}": unit for name, unit in made.items()}
-    return found
-
-
-def units_of_simulation(system: System) -> dict[str, Unit]:
-    """The units whose texts `simulation` gives, by their files."""
-    return _whole(_in_virtual_time(system, whole=True))
-
-
-def _whole(found: Sequence[MadeUnit]) -> dict[str, Unit]:
-    return {unit.file_name: unit for unit in _without_repeats([made.unit for made in found])}
+    files = _printed([*logic, *besides])
+    name = ada_case(system.name).lower()
+    files[f"{name}_simulation.gpr"] = simulation_project(system)
+    return files
 
 
 def _context(unit: Unit) -> Unit:

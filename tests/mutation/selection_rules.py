@@ -5,235 +5,223 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import pairwise
 
-from ravenchart.gen.emit.ada.declarations import EnumType, RangeConstrained, Unit
-from ravenchart.gen.emit.ada.expressions import (
-    COMPARISONS,
-    TRUE,
-    Call,
-    CaseExpr,
-    ChoiceList,
-    Expr,
-    IfExpr,
-    Membership,
-    OperatorChain,
-    Prefix,
-    both,
-)
-from ravenchart.gen.emit.ada.named import DottedName, ref
-from ravenchart.gen.emit.ada.statements import IfStatement
-
-from .mutants import Broken, Units
-from .nodes import (
-    Body,
-    Put,
-    Spot,
-    bodies,
-    body_of,
+from .mutants import Edit, Files, Found, replaced, swapped
+from .source import (
+    Branch,
+    Span,
+    Subprogram,
+    branches,
+    choices,
     conjuncts,
-    each_following,
-    exchanged,
-    following,
-    names_of,
-    put,
-    whole,
+    declared_rows,
+    subprogram,
+    subprograms,
 )
 
-_SELECTION = ref("Selection")
-_NOW = ref("Now")
-_COMPARED = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "=": "/=", "/=": "="}
+_PLACED = re.compile(r"^(?:Place|Leaf)\b")
+_TRIGGER = re.compile(r"^Now\b")
+_COMPARISONS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "=": "/=", "/=": "="}
 
 
-def selectors(unit: Unit) -> Iterator[tuple[Body, Spot[IfExpr]]]:
-    """The functions that select by the occurrence, with their branches."""
-    for one in bodies(unit):
-        inner = one.inner
-        gives = one.spot.node.result == _SELECTION and isinstance(inner.node, IfExpr)
-        if gives and _asked(inner.node.branches[0][0]) == _NOW:
-            yield one, inner
+def selectors(text: str) -> Iterator[tuple[Subprogram, list[Branch]]]:
+    """The selection functions of states with their branches; of leaves, where they have one."""
+    for one in subprograms(text):
+        if one.is_expression and one.name.startswith(("In_", "Around_")):
+            found = branches(text, one.inner)
+            if found and re.match(r"Now\b", found[0].head.of(text)):
+                yield one, found
 
 
-def selecting(unit: Unit, transition: DottedName) -> list[str]:
-    """The functions with a contract that select a transition by themselves."""
-    return [
-        one.name
-        for one in bodies(unit)
-        if one.is_expression
-        and one.spot.node.result == _SELECTION
-        and one.spot.node.aspects
-        and transition in names_of(one.inner.node)
-    ]
-
-
-def _asked(condition: Expr) -> Expr | None:
-    """What a condition asks for first."""
-    match condition:
-        case OperatorChain("and then", operands):
-            return _asked(operands[0])
-        case OperatorChain("=", (left, _)):
-            return left
-        case Membership(item):
-            return item
-    return None
-
-
-def _heads(chosen: Spot[IfExpr]) -> list[Spot[Expr]]:
-    return [chosen.at("branches", place, 0) for place in range(len(chosen.node.branches))]
-
-
-def _rows(case: Spot[CaseExpr]) -> list[Spot[Expr]]:
-    """The values of the alternatives of a case."""
-    return [case.at("branches", place, 1) for place in range(len(case.node.branches))]
-
-
-def declared_rows(unit: Unit, function: str) -> list[Spot[Expr]]:
-    """The alternatives of the case of an expression function, whatever stands before it."""
-    one = body_of(unit, function)
-    case = next(one.inner.within(CaseExpr), None) if one is not None else None
-    return [] if case is None else _rows(case)
+def _other(text: str, found: re.Match[str], candidates: list[str]) -> str | None:
+    """The candidate after the one that stands there, in a circle."""
+    here = found.group(0)
+    ordered = list(dict.fromkeys(candidates))
+    if here not in ordered or len(ordered) < 2:
+        return None
+    return ordered[(ordered.index(here) + 1) % len(ordered)]
 
 
 # --- source
 
 
-def source_in_code(file: str, units: Units) -> Iterator[Broken]:
+def source_in_code(file: str, files: Files) -> Iterator[Found]:
     """A transition that its leaf forgets, and leaves whose functions are exchanged."""
-    for one, chosen in selectors(units[file]):
-        branches = chosen.node.branches
-        for place in range(len(branches)):
-            left = (*branches[:place], *branches[place + 1 :])
-            rest = replace(chosen.node, branches=left) if left else chosen.node.otherwise
-            yield one.name, "forget", put(chosen, rest)
-    for one in bodies(units[file]):
-        if one.is_expression and one.spot.node.result == _SELECTION:
-            for case in one.inner.within(CaseExpr):
-                for first, second in pairwise(_rows(case)):
-                    yield one.name, "exchange", exchanged(first, second)
+    text = files[file]
+    for one, found in selectors(text):
+        for index, branch in enumerate(found[:-1]):
+            if len(found) == 2:
+                yield one.name, "forget", replaced(one.inner, "None")
+            elif index == 0:
+                span = Span(branch.head.start, found[1].head.start)
+                yield one.name, "forget", replaced(span, "")
+            else:
+                span = Span(found[index - 1].body.end, branch.body.end)
+                yield one.name, "forget", replaced(span, "")
+    for one in subprograms(text):
+        if not one.is_expression or not one.name.startswith(("In_", "Select_")):
+            continue
+        case = re.compile(r"\(?case ").search(text, one.inner.start, one.inner.end)
+        rows = _dispatch(text, one) if case else []
+        for first, second in pairwise(rows):
+            yield one.name, "exchange", swapped(text, first.body, second.body)
 
 
-def source_declared(file: str, units: Units) -> Iterator[Broken]:
+def _dispatch(text: str, one: Subprogram) -> list[Branch]:
+    whole = one.inner
+    nested = branches(text, whole)
+    if nested:
+        whole = nested[0].body
+    inside = whole.of(text)
+    if inside.startswith("("):
+        whole = Span(whole.start + 1, whole.end - 1)
+    return choices(text, whole)
+
+
+def source_declared(file: str, files: Files) -> Iterator[Found]:
     """Another state as the source of a declared transition; none that is asked for."""
-    for _, puts in each_following(_compared(units[file], "In_Source")):
-        yield "In_Source", "source", puts
-    one = body_of(units[file], "Enabled")
-    for asked in one.inner.within(Call) if one is not None else ():
-        if asked.node.name == ref("In_Source"):
-            yield "Enabled", "source", put(asked, TRUE)
+    yield from _declared(file, files, "In_Source", "source", _PLACED)
+    text = files[file]
+    one = subprogram(text, "Enabled")
+    asked = one and re.compile(r"\bIn_Source \([^()]*\)").search(text, one.inner.start)
+    if one is not None and asked and asked.end() < one.inner.end:
+        yield "Enabled", "source", replaced(Span(*asked.span()), "True")
 
 
-def _compared(unit: Unit, function: str) -> list[tuple[object, Spot[DottedName]]]:
-    """The literals that the alternatives of a function compare, with what is alike in them."""
-    found: list[tuple[object, Spot[DottedName]]] = []
-    for row in declared_rows(unit, function):
-        for part in conjuncts(row):
-            match part.node:
-                case OperatorChain("=", (DottedName() as left, DottedName())):
-                    found.append((left, part.at("operands", 1)))
-                case Membership(item, ChoiceList((*others, DottedName()))):
-                    last = part.at("among", "choices", len(others))
-                    found.append(((item, *others), last))
-    return found
+def _declared(
+    file: str, files: Files, function: str, rule: str, part: re.Pattern[str]
+) -> Iterator[Found]:
+    text = files[file]
+    parts = [
+        span
+        for row in declared_rows(text, function)
+        for span in conjuncts(text, row.body)
+        if part.match(span.of(text))
+    ]
+    literal = re.compile(r"(?<=[=|] )[\w.]+$" if part is _TRIGGER else r"\w+\.\w+$")
+    stems: dict[str, list[str]] = {}
+    for span in parts:
+        match = literal.search(span.of(text))
+        if match:
+            stems.setdefault(span.of(text)[: match.start()], []).append(match.group(0))
+    for span in parts:
+        match = literal.search(span.of(text))
+        if match is None:
+            continue
+        stem = span.of(text)[: match.start()]
+        new = _other(text, match, stems[stem])
+        if new is not None:
+            at = Span(span.start + match.start(), span.start + match.end())
+            yield function, rule, replaced(at, new)
 
 
 # --- trigger and guard
 
 
-def trigger_in_code(file: str, units: Units) -> Iterator[Broken]:
+def trigger_in_code(file: str, files: Files) -> Iterator[Found]:
     """Another occurrence in the condition of a selected transition."""
-    found = [
-        (one.name, first.at("operands", 1))
-        for one, chosen in selectors(units[file])
-        for head in _heads(chosen)
-        for first in conjuncts(head)[:1]
-        if isinstance(first.node, OperatorChain)
-    ]
-    for name, spot in found:
-        other = following(spot.node, [each.node for _, each in found])
-        if other is not None:
-            yield name, "trigger", put(spot, other)
+    text = files[file]
+    found = [(one.name, row.head) for one, rows in selectors(text) for row in rows[:-1]]
+    names = re.findall(r"\bNow = (\w+)", "\n".join(h.of(text) for _, h in found))
+    for name, head in found:
+        match = re.match(r"Now = (\w+)", head.of(text))
+        if match is None:
+            continue
+        new = _after(match.group(1), names)
+        if new is not None:
+            at = Span(head.start + match.start(1), head.start + match.end(1))
+            yield name, "trigger", replaced(at, new)
 
 
-def trigger_declared(file: str, units: Units) -> Iterator[Broken]:
+def _after(here: str, names: list[str]) -> str | None:
+    ordered = list(dict.fromkeys(names))
+    if len(ordered) < 2:
+        return None
+    return ordered[(ordered.index(here) + 1) % len(ordered)]
+
+
+def trigger_declared(file: str, files: Files) -> Iterator[Found]:
     """Another occurrence as the trigger of a declared transition."""
-    asked = [
-        (key, spot)
-        for key, spot in _compared(units[file], "Enabled")
-        if _NOW in (key, *(key if isinstance(key, tuple) else ()))
-    ]
-    for _, puts in each_following(asked):
-        yield "Enabled", "trigger", puts
+    yield from _declared(file, files, "Enabled", "trigger", _TRIGGER)
 
 
-def guard_in_code(file: str, units: Units) -> Iterator[Broken]:
+def guard_in_code(file: str, files: Files) -> Iterator[Found]:
     """A guard that is dropped, denied or shifted by one comparison, in a leaf's function."""
-    for one, chosen in selectors(units[file]):
-        for head in _heads(chosen):
-            for rule, puts in _guards(head):
-                yield one.name, rule, puts
+    text = files[file]
+    for one, rows in selectors(text):
+        for row in rows[:-1]:
+            parts = conjuncts(text, row.head)
+            for before, part in pairwise(parts):
+                for rule, edits in _guards(text, before, part):
+                    yield one.name, rule, edits
 
 
-def guard_declared(file: str, units: Units) -> Iterator[Broken]:
+def guard_declared(file: str, files: Files) -> Iterator[Found]:
     """A guard that is dropped, denied or shifted by one comparison."""
-    for row in declared_rows(units[file], "Enabled"):
-        for rule, puts in _guards(row):
-            yield "Enabled", rule, puts
+    text = files[file]
+    for row in declared_rows(text, "Enabled"):
+        parts = conjuncts(text, row.body)
+        for before, part in pairwise(parts):
+            for rule, edits in _guards(text, before, part):
+                yield "Enabled", rule, edits
 
 
-def _guards(condition: Spot[Expr]) -> Iterator[tuple[str, tuple[Put, ...]]]:
-    parts = conjuncts(condition)
-    for place, part in enumerate(parts[1:], 1):
-        others = [one.node for one in (*parts[:place], *parts[place + 1 :])]
-        yield "drop guard", put(condition, both(*others))
-        yield "deny guard", put(part, Prefix("not", part.node))
-        for chain in part.within(OperatorChain):
-            if chain.node.operator in COMPARISONS:
-                other = replace(chain.node, operator=_COMPARED[chain.node.operator])
-                yield "shift guard", put(chain, other)
+def _guards(text: str, before: Span, part: Span) -> Iterator[tuple[str, tuple[Edit, ...]]]:
+    yield "drop guard", replaced(Span(before.end, part.end), "")
+    yield "deny guard", replaced(part, f"not ({part.of(text)})")
+    for match in re.finditer(r"(?<= )(<=|>=|/=|<|>|=)(?= )", part.of(text)):
+        at = Span(part.start + match.start(), part.start + match.end())
+        yield "shift guard", replaced(at, _COMPARISONS[match.group(0)])
 
 
 # --- precedence
 
 
-def priority_in_code(file: str, units: Units) -> Iterator[Broken]:
+def priority_in_code(file: str, files: Files) -> Iterator[Found]:
     """Two transitions of one trigger that are looked at in the other order; an outer lane that
     selects although an inner one does."""
-    for one, chosen in selectors(units[file]):
-        for place in _same_trigger(chosen):
-            first, second = (chosen.at("branches", n) for n in (place, place + 1))
-            yield one.name, "precede", exchanged(first, second)
-    choose = body_of(units[file], "Choose")
-    for asks in choose.inner.within(IfStatement) if choose is not None else ():
-        if all(name.first != "C" for name in names_of(asks.node.branches[0][0])):
-            continue
-        yield "Choose", "outer lane", put(asks.at("branches", 0, 0), TRUE)
+    text = files[file]
+    for one, rows in selectors(text):
+        for first, second in _same_trigger(text, rows):
+            edits = (
+                *swapped(text, first.head, second.head),
+                *swapped(text, first.body, second.body),
+            )
+            yield one.name, "precede", edits
+    choose = subprogram(text, "Choose")
+    if choose is not None:
+        for match in re.compile(r"\bif (C\.[^;]*?)\s+then\b").finditer(
+            text, choose.inner.start, choose.inner.end
+        ):
+            yield "Choose", "outer lane", replaced(Span(*match.span(1)), "True")
 
 
-def _same_trigger(chosen: Spot[IfExpr]) -> Iterator[int]:
-    """The positions of branches that the next one has the trigger of."""
-    triggers = [conjuncts(head)[0].node for head in _heads(chosen)]
-    for place, (first, second) in enumerate(pairwise(triggers)):
-        if first == second:
-            yield place
+def _same_trigger(text: str, rows: list[Branch]) -> Iterator[tuple[Branch, Branch]]:
+    for first, second in pairwise(rows[:-1]):
+        heads = [conjuncts(text, r.head)[0].of(text) for r in (first, second)]
+        if heads[0] == heads[1]:
+            yield first, second
 
 
-def priority_declared(file: str, units: Units) -> Iterator[Broken]:
+def priority_declared(file: str, files: Files) -> Iterator[Found]:
     """Two transitions of one trigger that are declared in the other order."""
-    body = units.get(f"{units[file].name.file_stem}.adb")
-    every = whole(units[file])
-    listed = next((t for t in every.within(EnumType) if t.node.name == "Selection"), None)
-    if listed is None or body is None:
+    text = files[file]
+    body = files.get(file.removesuffix("s") + "b", "")
+    listed = re.search(r"type Selection is\s*\(([^)]*)\)", text)
+    if listed is None:
         return
-    at = {name: listed.at("literals", n) for n, name in enumerate(listed.node.literals)}
-    bounds = {name for one in every.within(RangeConstrained) for name in names_of(one.node.bounds)}
-    done: set[tuple[str, str]] = set()
-    for _, chosen in selectors(body):
-        for place in _same_trigger(chosen):
-            pair = [value for _, value in chosen.node.branches[place : place + 2]]
-            names = [value.text for value in pair if isinstance(value, DottedName)]
-            first, second = names
-            if (first, second) not in done and not bounds & set(pair):
-                done.add((first, second))
-                yield "Selection", "precede", exchanged(at[first], at[second])
+    at = {m.group(0): m for m in re.compile(r"\w+").finditer(text, *listed.span(1))}
+    bounds = set(re.findall(r"range (\w+) \.\. (\w+)", text))
+    kept = {name for pair in bounds for name in pair}
+    done = set()
+    for _, rows in selectors(body):
+        for first, second in _same_trigger(body, rows):
+            one, other = first.body.of(body), second.body.of(body)
+            if (one, other) in done or {one, other} & kept:
+                continue
+            done.add((one, other))
+            spans = [Span(*at[name].span()) for name in (one, other)]
+            yield "Selection", "precede", swapped(text, *spans)

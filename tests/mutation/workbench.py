@@ -19,20 +19,14 @@ import yaml
 
 from ravenchart.building import checking, generation, programs
 from ravenchart.failures import Refused, ToolFailed
-from ravenchart.gen.emit.ada.declarations import GenericInstance, Unit
-from ravenchart.gen.emit.ada.expressions import CaseExpr
-from ravenchart.gen.emit.ada.named import DottedName, ref
-from ravenchart.gen.emit.ada.walking import names_in
-from ravenchart.gen.emit.buses.layout_tables import LAYOUTS
-from ravenchart.gen.emit.program import generate, units_of_program, user_units
+from ravenchart.gen.emit.program import generate, user_units
 from ravenchart.paths import ROOT
 from ravenchart.proof import ages
 from ravenchart.tools.toolchain import ToolMissing, have
 
-from .mutants import Files, Mutant, text_of
-from .nodes import bodies, body_of, whole
+from .mutants import Files, Mutant
 from .observing import Observer, Simulated
-from .selection_rules import selecting
+from .source import declared_rows, subprogram, subprograms
 
 LONGEST = 1200
 """Seconds after which a tool is given up: the mutant counts as not caught by it."""
@@ -67,22 +61,16 @@ class Workbench:
         checked = checking.check(model)
         self.folder = folder
         self.driver = programs.default_driver(checked)
-        claims = generation.claims(checked)
+        files = dict(generate(checked.system, generation.claims(checked)))
         home = f"{node}/" if node else ""
-        texts = {
-            name.removeprefix(home): text
-            for name, text in generate(checked.system, claims).items()
-            if name.startswith(home)
-        }
-        self.units = {
-            name.removeprefix(home): unit
-            for name, unit in units_of_program(checked.system, claims).items()
-            if name.startswith(home)
-        }
+        files = {n.removeprefix(home): t for n, t in files.items() if n.startswith(home)}
         self.model = checked.path
-        self.files: Files = {**self.units, **_model_files(checked.path)}
+        self.files: Files = {
+            **{n: t for n, t in files.items() if n.endswith((".ads", ".adb"))},
+            **_model_files(checked.path),
+        }
         self.source = folder / "model" / "generated"
-        self._copy(checked, texts)
+        self._copy(checked, files)
         self.project = f"{checked.stem}.gpr"
         self.main = f"{checked.stem}_main"
         self.observer = observer(checked, folder)
@@ -129,14 +117,14 @@ class Workbench:
 
     @contextmanager
     def _broken(self, mutant: Mutant) -> Iterator[str]:
-        sound = self.files[mutant.file]
-        broken = mutant.applied(sound)
+        text = self.files[mutant.file]
+        broken = mutant.applied(text)
         path = self.source / mutant.file
         path.write_text(broken)
         try:
             yield broken
         finally:
-            path.write_text(text_of(sound))
+            path.write_text(text)
 
     def run_broken(self, mutant: Mutant) -> str:
         """How the program differs with a break that the compiler lets pass; "" if it does not."""
@@ -175,50 +163,42 @@ class Workbench:
     def _is_modular(self, mutant: Mutant) -> bool:
         """Is all that the mutant can falsify in the subprograms of its focus? Each has a
         contract, and callers know no more."""
-        unit = self.units[mutant.file]
-        in_body = unit.is_body and unit.name.last != "Codecs"
-        return mutant.part == "code" and in_body and body_of(unit, mutant.place) is not None
+        body = subprogram(self.files[mutant.file], mutant.place)
+        in_body = mutant.file.endswith(".adb") and "-codecs" not in mutant.file
+        return mutant.part == "code" and body is not None and in_body
 
     def _focus(self, mutant: Mutant) -> list[str]:
         """The subprograms that are asked first."""
-        unit = self.units.get(_body(mutant.file))
-        if unit is None:
-            return []
+        text = self.files.get(_body(mutant.file), "")
         if mutant.part == "code":
             #  some have no contract: gnatprove sees their work where they are called
             names = [mutant.place]
             if mutant.place.startswith(("Enter_", "Exit_", "Leave_")):
-                names = _firing(unit)
+                names = _firing(text)
             elif mutant.place.startswith("Around_"):
-                names = [
-                    one.name for one in bodies(unit) if one.name.startswith(("In_", "Select_"))
-                ]
-            return [n for n in names if body_of(unit, n) is not None]
-        for literal in self._enabled(mutant):
-            if found := selecting(unit, literal):
-                return found[:1]
-        return _firing(unit)
-
-    def _enabled(self, mutant: Mutant) -> list[DottedName]:
-        """The transitions whose trigger or guard a mutant declares in another way."""
-        one = body_of(self.units[mutant.file], "Enabled") if mutant.place == "Enabled" else None
-        found: list[DottedName] = []
-        for case in one.inner.within(CaseExpr) if one is not None else ():
-            for place, (choices, _) in enumerate(case.node.branches):
-                row = (*case.path, "branches", place)
-                if mutant.puts[0].path[: len(row)] == row:
-                    found += [c for c in choices.choices if isinstance(c, DottedName)]
-        return found
+                names = re.findall(r"function ((?:In|Select)_\w+)", text)
+            return [n for n in names if subprogram(text, n) is not None]
+        spec = self.files[mutant.file]
+        if mutant.place == "Enabled":
+            at = mutant.edits[0].span.start
+            found = [c for c in declared_rows(spec, "Enabled") if c.body.start <= at < c.body.end]
+            name = found[0].head.of(spec) if found else ""
+            using = re.compile(rf"(?:then|\() *{name}\b")
+            for match in re.finditer(r"function (In_\w+|Select_\w+)", text):
+                one = subprogram(text, match.group(1))
+                if one is not None and using.search(one.inner.of(text)):
+                    return [one.name]
+        return _firing(text)
 
     def _place(self, name: str, mutant: Mutant, broken: str) -> str:
         """Where a subprogram is declared, as gnatprove wants it."""
         body = _body(mutant.file)
         spec = body.removesuffix("b") + "s"
+        texts = {**self.files, mutant.file: broken}
         for file in (spec, body):
-            text = broken if file == mutant.file else text_of(self.files.get(file, ""))
-            match = re.search(rf"^ *(?:procedure|function) {name}\b", text, re.M)
+            match = re.search(rf"^ *(?:procedure|function) {name}\b", texts.get(file, ""), re.M)
             if match is not None:
-                return f"{file}:{text.count(chr(10), 0, match.start()) + 1}"
+                return f"{file}:{texts[file].count(chr(10), 0, match.start()) + 1}"
         raise ValueError(name)
 
     def units_of(self, mutant: Mutant) -> list[str]:
@@ -226,16 +206,15 @@ class Workbench:
         if mutant.part == "model":
             return []
         if mutant.kind == "ceiling":
-            tasks = [_body(n) for n, unit in sorted(self.units.items()) if _has_processor(unit)]
+            tasks = [_body(n) for n, t in sorted(self.files.items()) if "_Processors\n" in t]
             return [*tasks, f"{self.main}.adb"]
-        if mutant.kind == "frame" and not self._in_body(mutant):
-            return [n for n, unit in sorted(self.units.items()) if _carries(unit)]
+        if mutant.kind == "frame" and mutant.place not in self._bodies(mutant.file):
+            return [n for n, t in sorted(self.files.items()) if _carries(n, t)]
         body = _body(mutant.file)
-        return [body if body in self.units else mutant.file]
+        return [body if body in self.files else mutant.file]
 
-    def _in_body(self, mutant: Mutant) -> bool:
-        unit = self.units[mutant.file]
-        return unit.is_body and body_of(unit, mutant.place) is not None
+    def _bodies(self, file: str) -> set[str]:
+        return {one.name for one in subprograms(self.files[file])} if file.endswith("b") else set()
 
     # --- tools
 
@@ -290,21 +269,14 @@ class Workbench:
             raise ToolFailed(done.stdout)
 
 
-def _has_processor(unit: Unit) -> bool:
-    return any(one.node.generic in _PROCESSORS for one in whole(unit).within(GenericInstance))
-
-
-_PROCESSORS = ref("Ravenchart.Periodic_Processors"), ref("Ravenchart.Sporadic_Processors")
-
-
-def _carries(unit: Unit) -> bool:
+def _carries(name: str, text: str) -> bool:
     """Does it send frames, or receive them?"""
-    return unit.is_body and ref(LAYOUTS, "Is_Framed") in names_in(unit.item)
+    return name.endswith(".adb") and "Layouts.Is_Framed" in text
 
 
-def _firing(unit: Unit) -> list[str]:
+def _firing(text: str) -> list[str]:
     """Fire, and the procedures for parts of it where there are many transitions."""
-    return [one.name for one in bodies(unit) if one.fires]
+    return [one.name for one in subprograms(text) if one.fires]
 
 
 def _model_files(model: Path) -> dict[str, str]:

@@ -24,8 +24,6 @@ CALLED_BY_OTHERS = {
     "error_counters": "what users of python-can read",
     "kinetic_energy": "a law of physics that the plant has to keep: its tests read it",
     "row_names": "what the test of growth counts",
-    "units_of_program": "tests/mutation breaks the nodes of units",
-    "units_of_simulation": "tests/mutation breaks the nodes of units",
     "of_frame": "the worst case that tests build for the simulation",
     "of_task": "the worst case that tests build for the simulation",
     "chance_scenario": "random releases, which tests build for the simulation",

@@ -27,15 +27,12 @@ def _node(given: T | str) -> T | DottedName:
 # --- Names of several parts ----------------------------------------------------------
 
 
-@built
+@frozen
 class Selected:
     """``prefix.selector``, where the prefix is more than identifiers."""
 
     prefix: Holder
     selector: str
-
-    def __init__(self, prefix: Holder, selector: str) -> None:
-        self.prefix, self.selector = prefix, identifier(selector)
 
 
 @built

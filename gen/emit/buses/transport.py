@@ -110,7 +110,7 @@ def _board(system: System, message: str, bus: str) -> GenericInstance:
         f"Flow_Board_{ada_case(message)}",
         BOARDS,
         arguments(
-            Element_Type=NOTICE,
+            Element_Type=ref(NOTICE),
             Initial=all_else(BOX),
             Ceiling=priority(ceiling),
         ),

@@ -254,7 +254,7 @@ def _active(shape: RegionShape, memory: HistoryMemory) -> Expr:
     passed = {p.name for p in shape.region.pseudostates}
     leaf = shape.at(shape.place, shape.lane_of(memory.place))
     not_left = [
-        OperatorChain("/=", (leaf, shape.literal(v)))
+        OperatorChain("/=", (ref(leaf), shape.literal(v)))
         for v in shape.literals_in(memory.place)
         if v in passed
     ]
