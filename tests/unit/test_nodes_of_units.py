@@ -95,7 +95,7 @@ from ravenchart.gen.emit.ada.statements import (
     do,
 )
 from ravenchart.gen.emit.ada.text import print_item, print_unit
-from ravenchart.gen.emit.ada.walking import compares, named_units, names_in, rewritten
+from ravenchart.gen.emit.ada.walking import named_units, names_in, rewritten
 
 A, B, I = ref("A"), ref("B"), ref("I")  # noqa: E741
 
@@ -315,12 +315,6 @@ def test_static_functions_and_delta_aggregates_ask_for_the_newer_language() -> N
     changed = Object("X", "T", Aggregate((Arg("C", A),), base=B))
     for item, pragmas in ((static, 1), (changed, 2), (Object("Static", "T", A), 0)):
         assert print_unit(Unit("", (), Package("P", (item,)))).count("pragma ") == pragmas
-
-
-def test_a_comparison_is_found_wherever_it_stands() -> None:
-    assert compares(Subprogram("P", body=(IfStatement(((equal(A, B), (NULL,)),)),)))
-    assert compares(Aspect("Pre", member(A, "T")))
-    assert not compares(Aspect("Pre", OperatorChain("and then", (A, B))))
 
 
 def test_a_node_is_written_anew_where_something_in_it_changes() -> None:

@@ -227,16 +227,14 @@ def _apart(shape: RegionShape, lane: Lane) -> Iterator[Expr]:
 
 def _unmoved(shape: RegionShape, done: Sequence[Lane]) -> Iterator[Expr]:
     """Where something is chosen for a lane still to come, and no state around it has been
-    left, it is as it was."""
+    left, it is as it was: of a lane with one leaf the compiler knows that."""
     for lane in () if shape.passes else shape.busy_lanes[len(done) :]:
         around = [ada_case(s) for s in shape.watched if lane in shape.lanes_in(s)]
-        if around:
+        moving = [n for n in shape.lanes_around(lane) if len(shape.literals(n)) > 1]
+        if around and moving:
             stays = [Prefix("not", call(f"Has_Left_{s}", _FIRED)) for s in around]
             asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), ref("None"))), *stays]
-            same = [
-                equal(shape.at(shape.held, n), shape.at(BEFORE, n))
-                for n in shape.lanes_around(lane)
-            ]
+            same = [equal(shape.at(shape.held, n), shape.at(BEFORE, n)) for n in moving]
             yield IfExpr(((both(*asked), both(*same)),), None)
 
 
