@@ -18,3 +18,9 @@ def frozen(cls: type[T]) -> type[T]:
     One that guards itself at run time too takes twice as long to make.
     """
     return dataclass(slots=True, unsafe_hash=True)(cls)
+
+
+@dataclass_transform()
+def built(cls: type[T]) -> type[T]:
+    """The same for a record with a constructor of its own: that alone sets its fields."""
+    return dataclass(slots=True, unsafe_hash=True)(cls)

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Busy periods of plain tasks under fixed priorities: what makes the
 --  analysis of large sets fast. Plain: one cost, no jitter.
 --

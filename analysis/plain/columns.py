@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
 
@@ -41,11 +41,15 @@ class Form(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column; what is ``required`` has no default. Numbers and times are at least ``least``."""
+    """A column; what is ``required`` has no default. Numbers and times are at least ``least``.
+
+    Files of earlier versions have it under the name ``former``.
+    """
 
     form: Form
     required: bool = False
     least: int = 0
+    former: str = ""
 
 
 _TEXT = Column(Form.WORD)
@@ -75,7 +79,7 @@ KINDS: Kinds = {
         "priority": Column(Form.NUMBER, required=True, least=_ANY),
         "period": _PERIOD,
         "deadline": _DEADLINE,
-        "wcet": Column(Form.TIME_UP, least=1),
+        "wcet": Column(Form.TIME_UP, least=1, former="cost"),
         "jitter": _LATE,
         "best": _BEST,
         "blocking": _LATE,
@@ -87,7 +91,7 @@ KINDS: Kinds = {
     },
     "row": {
         "task": NEEDED,
-        "wcet": LONG,
+        "wcet": replace(LONG, former="cost"),
         "every": _COUNT,
         "phase": Column(Form.NUMBER),
     },
@@ -204,6 +208,7 @@ def _owner(entry: Entry) -> str:
 def _split(title: str, columns: Mapping[str, Column]) -> tuple[str, int]:
     """The column that a title names, and what its unit is in ns."""
     name, _, unit = title.rpartition("_")
+    name = next((n for n, c in columns.items() if c.former and c.former == name), name)
     if unit in UNITS and name in columns and columns[name].form.timed:
         return name, UNITS[unit]
     if title in columns and not columns[title].form.timed:

@@ -5,16 +5,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.tasks import Task
 
 from .columns import LONG, NEEDED, Kinds, values
 from .entries import Problem, read_rows
 
+SEEN = replace(LONG, former="cost")
 KINDS: Kinds = {
-    "task": {"observed": LONG},
-    "row": {"task": NEEDED, "observed": LONG},
-    "message": {"observed": LONG},
+    "task": {"observed": SEEN},
+    "row": {"task": NEEDED, "observed": SEEN},
+    "message": {"observed": SEEN},
 }
 """What the rows may be; a row of a table needs its task."""
 

@@ -12,15 +12,17 @@ unit. The elements that gave the name are reported.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ravenchart.gen.derive.calls import device_types
 from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.emit.ada.named import DottedName
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.text import WIDTH, print_unit
+from ravenchart.gen.emit.commands.devices import states_package
+from ravenchart.gen.emit.commands.registers import registers_package, units_package
 from ravenchart.gen.language.names import LONG_NAME, identifier
 from ravenchart.gen.language.terms import EnumerationType
 from ravenchart.gen.model.claims import Claims
@@ -29,9 +31,6 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
 from .program import MadeUnit, program, simulated_units
-
-OF_DEVICE_TYPE = re.compile("_(states|units|registers)$")
-"""Endings of the units that belong to a device type."""
 
 PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"})
 """Words that no GNAT project can have as its name, beside those of Ada."""
@@ -42,20 +41,19 @@ def _units(system: System) -> tuple[MadeUnit, ...]:
     return (*program(system, Claims(), system), *simulated_units(system))
 
 
-def _clashing(system: System) -> Iterator[tuple[str, str]]:
+def _clashing(system: System) -> Iterator[tuple[str, DottedName]]:
     """(Ada name, unit) of whatever clashes in the program of one node."""
-    specs: dict[str, frozenset[str]] = {}
+    specs: dict[DottedName, frozenset[str]] = {}
     for made in _units(system):
         name = made.reading.name
         if name in specs and not made.reading.is_body:
-            yield name.rpartition(".")[2], name
+            yield name.last, name
         yield from ((text, name) for text in made.reading.barred)
         if not made.reading.is_body:
             specs[name] = made.reading.declared
     for name in specs:
-        parent, _, own_name = name.rpartition(".")
-        if own_name.lower() in specs.get(parent, ()):
-            yield own_name, parent
+        if name.last.lower() in specs.get(name.parent, ()):
+            yield name.last, name.parent
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,14 +125,16 @@ def _members(component: Component) -> Iterator[_Element]:
     yield from (_Element("parameter", p.name, p.origin, own) for p in component.parameters)
 
 
-def _culprits(system: System, text: str, unit: str) -> list[_Element]:
+def _culprits(system: System, text: str, unit: DottedName) -> list[_Element]:
     """The elements that gave a name: it is theirs, or theirs is part of it."""
     words = f"_{text.lower()}_"
     near = [e for e in _elements(system) if f"_{e.unit}_" in words]
-    parts = unit.lower().split(".")
     kinds = {identifier(i.name).lower(): i.component.name.lower() for i in system.instances}
     kinds |= {d.name.lower(): d.type.name.lower() for d in system.devices if d.type is not None}
-    owners = {kinds.get(part, OF_DEVICE_TYPE.sub("", part)) for part in parts}
+    for kind in device_types(system):
+        own = states_package(system, kind).last, units_package(kind), registers_package(kind)
+        kinds |= {package.lower(): kind.name.lower() for package in own}
+    owners = {kinds.get(part, part) for part in map(str.lower, unit.parts)}
     apt = [e for e in near if e.owner.lower() in owners or not e.owner]
     apt = apt or near
     longest = max((len(e.name) for e in apt), default=0)
@@ -148,7 +148,7 @@ def _too_long(system: System) -> Iterator[Diagnostic]:
         return
     reported: set[Origin] = set()
     for made in (made for part in programs(system) for made in _units(part)):
-        text = print_unit(made.unit, made.text)
+        text = print_unit(made.unit, made.item)
         for line in text.splitlines():
             if len(line) <= WIDTH:
                 continue
@@ -160,7 +160,7 @@ def _too_long(system: System) -> Iterator[Diagnostic]:
                 continue
             reported.add(found.origin)
             message = (
-                f"the {found.kind} `{found.name}` makes a line of {made.unit.item.name} too long"
+                f"the {found.kind} `{found.name}` makes a line of {made.unit.name.text} too long"
             )
             hint = f"lines have {WIDTH} columns, and names stand joined in them: shorten it"
             yield error("RV-0304", found.origin, message, hint=hint)
@@ -179,9 +179,8 @@ def clashes(system: System) -> Iterator[Diagnostic]:
             continue
         first = found[0]
         reported.add((first.name.lower(), first.owner))
-        message = (
-            f"the {first.kind} `{first.name}` clashes with another `{ada_case(text)}` in {unit}"
-        )
+        where = f"another `{ada_case(text)}` in {unit.text}"
+        message = f"the {first.kind} `{first.name}` clashes with {where}"
         notes = [(e.origin, f"the {e.kind} `{e.name}` is here") for e in found[1:4]]
-        hint = f"{unit} is a unit of the generated program: choose another name"
+        hint = f"{unit.text} is a unit of the generated program: choose another name"
         yield error("RV-0304", first.origin, message, notes=notes, hint=hint)

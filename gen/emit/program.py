@@ -5,17 +5,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
+from itertools import chain
 from typing import TypeVar
 
 from ravenchart.gen.derive.calls import device_types
 from ravenchart.gen.derive.completion import programs
-from ravenchart.gen.emit.ada.naming import ada_case, root_package
+from ravenchart.gen.emit.ada.declarations import Package, Unit
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import RUNTIME, ada_case, root_package
 from ravenchart.gen.emit.ada.readings import UnitReading, readings
-from ravenchart.gen.emit.ada.syntax import Package, Unit, units_named_in
-from ravenchart.gen.emit.ada.text import print_item, print_unit
+from ravenchart.gen.emit.ada.text import PrintedItem, print_item, print_unit
+from ravenchart.gen.emit.ada.walking import named_units
 from ravenchart.gen.emit.buses.authentication import (
     authenticated,
     emit_authentication,
@@ -35,15 +38,20 @@ from ravenchart.gen.emit.commands.registers import (
 )
 from ravenchart.gen.emit.components.first_bodies import first_bodies
 from ravenchart.gen.emit.components.packages import (
+    ACTIVITIES,
     emit_activities,
     emit_component,
 )
 from ravenchart.gen.emit.instances.glue import emit_instances
 from ravenchart.gen.emit.language.quiet import (
-    OfComponent,
+    DecidedStates,
+    declared_in,
+    done_in,
+    promised_in,
     quiet,
-    words_of_system,
-    words_of_types,
+    words_of,
+    words_of_idle,
+    worked_in,
 )
 from ravenchart.gen.emit.language.types import emit_root
 from ravenchart.gen.emit.nodes.deployment import emit_deployment, emit_without_tasks
@@ -77,29 +85,30 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class MadeUnit:
-    """A unit of the program: its context, the text of its item, and what was read in it.
+    """A unit of the program: its context, its item as printed, and what was read in it.
 
-    The declarations themselves are dropped: there are millions in a large program.
+    As a rule the declarations themselves are dropped: there are millions in a large program.
     """
 
     unit: Unit
-    text: str
+    item: PrintedItem
     reading: UnitReading
 
 
 class _Maker:
     """Makes units of one system, with what depends on the whole program."""
 
-    def __init__(self, system: System, *, noted: bool = False) -> None:
+    def __init__(self, system: System, *, noted: bool = False, whole: bool = False) -> None:
+        """``whole`` units keep their declarations."""
         self.system = system
         self.header = HEADER.format(system=system.name)
-        self.noted = noted
+        self.noted, self.whole = noted, whole
         #  without such a type the root has no need of the runtime, and its children
         #  cannot see it through the root
         self.blind = not any(isinstance(t, IntegerType) for t in system.types)
-        self.words_of_types = words_of_types(system)
         used = {i.component.name for i in system.instances}
         self.components = [c for c in system.components if c.name in used]
+        self.decided = DecidedStates(self.components)
 
     def logic(self, meanwhile: Callable[[], T]) -> tuple[list[MadeUnit], T]:
         """The root and the components (no state, no tasks), and what is made ``meanwhile``."""
@@ -114,41 +123,46 @@ class _Maker:
 
     def _of_component(self, component: Component) -> list[MadeUnit]:
         system, header = self.system, self.header
-        words = OfComponent(component, self.words_of_types)
-        required = any(activity.requires for activity in component.activities)
-        whole = emit_component(system, component, header)
-        found = [quiet(whole, words.activities() if required else ())]
+        promised = [*words_of(promised_in(component), by_name=True)]
+        worked = [*words_of(worked_in(component), by_name=True)]
+        found = [self._quiet(emit_component(system, component, header), component, promised)]
         for region in component.regions:
-            own = emit_region(system, component, region, header, noted=self.noted)
-            found += [quiet(unit, words.region(region)) for unit in own]
-        own = emit_activities(system, component, header)
-        found += [quiet(unit, words.activities()) for unit in own]
+            spec, body = emit_region(system, component, region, header, noted=self.noted)
+            declared = chain(words_of(declared_in(component, region)), words_of_idle(region))
+            found.append(self._quiet(spec, component, declared))
+            found.append(self._quiet(body, component, words_of(done_in(region))))
+        for unit in emit_activities(system, component, header):
+            is_body = isinstance(unit.item, Package) and unit.item.is_body
+            found.append(self._quiet(unit, component, worked if is_body else promised))
         return self._read(found)
 
-    @cached_property
-    def words(self) -> tuple[str, ...]:
-        """What the compiler says in the units that belong to no component."""
-        return words_of_system(self.system)
+    def _quiet(self, unit: Unit, component: Component, words: Iterable[str]) -> Unit:
+        """A unit of a component, without the warnings of these words and of states."""
+        return quiet(unit, chain(words, self.decided.words(unit, component)))
 
     def made(self, found: Sequence[Unit]) -> list[MadeUnit]:
         """Units that belong to no component, with their texts and readings."""
-        return self._read([quiet(unit, self.words) for unit in found])
+        return self._read([quiet(unit, self.decided.words(unit, None)) for unit in found])
 
     def _read(self, found: Sequence[Unit]) -> list[MadeUnit]:
         if self.blind:
             found = [_seeing_runtime(unit) for unit in found]
         texts = [print_item(unit) for unit in found]
         read = readings(found, root_package(self.system))
-        context = [_context(_pruned(unit, root_package(self.system))) for unit in found]
-        return [MadeUnit(u, t, r) for u, t, r in zip(context, texts, read, strict=True)]
+        left = [_pruned(unit, root_package(self.system)) for unit in found]
+        left = left if self.whole else [_context(unit) for unit in left]
+        return [MadeUnit(u, t, r) for u, t, r in zip(left, texts, read, strict=True)]
 
 
-def program(system: System, claims: Claims, whole: System) -> tuple[MadeUnit, ...]:
+def program(
+    system: System, claims: Claims, whole: System, *, nodes: bool = False
+) -> tuple[MadeUnit, ...]:
     """Every Ada unit of a program; ``claims`` are what the certificate of the ``whole`` shows.
 
-    ``whole`` is the system whose part this program is, or this system itself.
+    ``whole`` is the system whose part this program is, or this system itself. With ``nodes``
+    the units keep their declarations.
     """
-    maker, before, after = _without_claims(system)
+    maker, before, after = _without_claims(system, nodes)
     made = [emit_certificate(whole, claims, maker.header)]
     if authenticated(system):  # one spec for all nodes, whose body they share
         made += emit_authentication(whole, maker.header)
@@ -156,12 +170,14 @@ def program(system: System, claims: Claims, whole: System) -> tuple[MadeUnit, ..
 
 
 @lru_cache(maxsize=8)
-def _without_claims(system: System) -> tuple[_Maker, tuple[MadeUnit, ...], tuple[MadeUnit, ...]]:
+def _without_claims(
+    system: System, whole: bool = False
+) -> tuple[_Maker, tuple[MadeUnit, ...], tuple[MadeUnit, ...]]:
     """What makes the units, and those before and behind the timing certificate.
 
     Made once, checked and then written.
     """
-    maker = _Maker(system)
+    maker = _Maker(system, whole=whole)
 
     def others() -> tuple[list[MadeUnit], list[MadeUnit]]:
         before = [
@@ -177,8 +193,15 @@ def _without_claims(system: System) -> tuple[_Maker, tuple[MadeUnit, ...], tuple
 
 def simulation(system: System) -> dict[str, str]:
     """The files of the program that runs in virtual time, project file included."""
+    files = _printed(_in_virtual_time(system))
+    name = ada_case(system.name).lower()
+    files[f"{name}_simulation.gpr"] = simulation_project(system)
+    return files
+
+
+def _in_virtual_time(system: System, *, whole: bool = False) -> list[MadeUnit]:
     reduced = simulated(system)
-    maker = _Maker(reduced, noted=True)
+    maker = _Maker(reduced, noted=True, whole=whole)
 
     def others() -> list[MadeUnit]:
         found = [
@@ -190,10 +213,26 @@ def simulation(system: System) -> dict[str, str]:
         return maker.made(found)
 
     logic, besides = maker.logic(others)
-    files = _printed([*logic, *besides])
-    name = ada_case(system.name).lower()
-    files[f"{name}_simulation.gpr"] = simulation_project(system)
-    return files
+    return [*logic, *besides]
+
+
+def units_of_program(system: System, claims: Claims) -> dict[str, Unit]:
+    """The units whose texts `generate` gives, by their files; those of registers are left out."""
+    found: dict[str, Unit] = {}
+    for part in programs(system):
+        folder = folder_of(part, system)
+        made = _whole(program(part, claims, system, nodes=True))
+        found |= {f"{folder}{name}": unit for name, unit in made.items()}
+    return found
+
+
+def units_of_simulation(system: System) -> dict[str, Unit]:
+    """The units whose texts `simulation` gives, by their files."""
+    return _whole(_in_virtual_time(system, whole=True))
+
+
+def _whole(found: Sequence[MadeUnit]) -> dict[str, Unit]:
+    return {unit.file_name: unit for unit in _without_repeats([made.unit for made in found])}
 
 
 def _context(unit: Unit) -> Unit:
@@ -203,28 +242,34 @@ def _context(unit: Unit) -> Unit:
     return unit
 
 
+def _of_runtime(name: DottedName) -> bool:
+    return name.first == RUNTIME.first
+
+
 def _seeing_runtime(unit: Unit) -> Unit:
-    sees = any(name.startswith("Ravenchart") for name in unit.withs)
-    return unit if sees else replace(unit, withs=("Ravenchart", *unit.withs))
+    sees = any(map(_of_runtime, unit.withs))
+    return unit if sees else replace(unit, withs=(RUNTIME, *unit.withs))
 
 
 def _pruned(unit: Unit, root: str) -> Unit:
-    """The unit without the context that nothing in it names."""
-    named = units_named_in(unit.item)
-    kept = (n for n in unit.withs if n in named or n.removeprefix(f"{root}.") in named)
-    return replace(unit, withs=tuple(kept))
+    """The unit without the context that nothing in it names, below the root without that."""
+    if not unit.withs:
+        return unit
+    named = named_units(unit)
+    named |= {ref(root, name) for name in named}
+    return replace(unit, withs=tuple(name for name in unit.withs if name in named))
 
 
 def _without_repeats(found: list[Unit]) -> list[Unit]:
     """The units; no body names the runtime when its spec does."""
-    seeing: set[str] = set()
+    seeing: set[DottedName] = set()
     out: list[Unit] = []
     for unit in found:
         withs = unit.withs
-        if unit.item.name in seeing:
-            withs = tuple(name for name in withs if name != "Ravenchart")
-        if any(name.startswith("Ravenchart") for name in withs):
-            seeing.add(unit.item.name)
+        if unit.name in seeing:
+            withs = tuple(name for name in withs if name != RUNTIME)
+        if any(map(_of_runtime, withs)):
+            seeing.add(unit.name)
         out.append(replace(unit, withs=withs))
     return out
 
@@ -232,7 +277,7 @@ def _without_repeats(found: list[Unit]) -> list[Unit]:
 def _printed(found: Sequence[MadeUnit]) -> dict[str, str]:
     pruned = _without_repeats([made.unit for made in found])
     pairs = zip(pruned, found, strict=True)
-    return {unit.file_name: print_unit(unit, made.text) for unit, made in pairs}
+    return {unit.file_name: print_unit(unit, made.item) for unit, made in pairs}
 
 
 def generate(system: System, claims: Claims) -> dict[str, str]:
@@ -289,8 +334,8 @@ def _users(system: System) -> Iterator[tuple[str, Unit]]:
     header = FIRST.format(system=system.name)
     for c in system.components:
         for unit in first_bodies(system, c, header) if c.name in used else ():
-            home = unit.item.name.rpartition(".")[2]
-            folder = "user" if home == "Activities" else f"user/{c.name}-{home}".lower()
+            home = unit.name.last
+            folder = "user" if home == ACTIVITIES else f"user/{c.name}-{home}".lower()
             yield f"{folder}/{unit.file_name}", unit
     for unit in first_authentication(system, header):
         yield f"user/{unit.file_name}", unit

@@ -252,6 +252,17 @@ def always(flow: Flow) -> set[str]:
     return sure
 
 
+def has_one_value(of_type: Type) -> bool:
+    """Has a scalar type a single value?"""
+    match of_type:
+        case IntegerType():
+            return of_type.first == of_type.last
+        case EnumerationType():
+            return len(of_type.literals) == 1
+        case _:
+            return False
+
+
 def default(of_type: Type) -> Value:
     """The value before any is known: nearest to zero, first literal, field by field."""
     if isinstance(of_type, RecordType):

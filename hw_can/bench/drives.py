@@ -12,16 +12,15 @@ from __future__ import annotations
 import math
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from .axis import STEP, UM, Drive, DriveMode, Push
+from .forms import DriveForm
 from .peer import BenchError, FrameValues, Peer
-from .plant import STEP, UM, Drive, DriveMode, Push
+from .plant_stations import PlantStation
+from .quantities import PERIOD
 from .replay import Timed
-from .scenario_forms import DriveForm
-
-PERIOD = 0.005
-"""Time between two feedback frames of a drive, in s."""
 
 FEEDBACK_FIELDS = ("count", "speed", "limit", "condition")
 SET_POINT_FIELDS = ("mode", "speed")
@@ -55,7 +54,7 @@ class Station:
 
 
 class Bench:
-    """All drives of a scenario on one peer."""
+    """All drives and plants of a scenario on one peer."""
 
     def __init__(
         self,
@@ -64,9 +63,12 @@ class Bench:
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
         *,
+        plants: Sequence[PlantStation] = (),
         tracks: bool = True,
     ) -> None:
         """Power on: every axis at its start. BenchError when a message does not fit.
+
+        ``plants`` are at time 0, and closed by whoever made them.
 
         Without ``tracks`` no motion is kept, so the bench may go on for days.
         """
@@ -75,6 +77,7 @@ class Bench:
             _check_fields(peer, form.set_point, SET_POINT_FIELDS)
         self.peer = peer
         self.stations = {name: Station(form, Drive(form.axis())) for name, form in forms.items()}
+        self.plants = {one.name: one for one in plants}
         self.replayed: deque[Timed] = deque()
         """Frames of a log that are still to be sent, with their times from power-on in s."""
         self.latest: dict[str, FrameValues] = {}
@@ -116,8 +119,19 @@ class Bench:
             for station in self.stations.values():
                 if not station.silent:
                     self.peer.send(station.form.feedback, _feedback(station.drive))
+            for plant in self.plants.values():
+                plant.send(self.peer, due * PERIOD, PERIOD)
         for station in self.stations.values() if self._tracks else ():
             _record(station, due * PERIOD)
+        for plant in self.plants.values() if self._tracks else ():
+            plant.record(due * PERIOD)
+
+    def silence(self, name: str) -> None:
+        """A drive or plant, or every one (``all``), sends no more."""
+        for drive, station in self.stations.items():
+            station.silent |= name in ("all", drive)
+        for plant in self.plants.values():
+            plant.silent |= name in ("all", plant.name)
 
     def order(self, message: str, values: Mapping[str, object]) -> None:
         """Remember the positions that a sent message orders."""
@@ -136,10 +150,12 @@ class Bench:
         for station in self.stations.values():
             if station.form.set_point == name:
                 station.drive.command(*_set_point(name, values))
+        for plant in self.plants.values():
+            plant.take(name, values)
         self.on_message(name, values)
 
     def _advance(self, until: float) -> None:
-        """Move all axes on to that time, in whole steps."""
+        """Go on to that time: axes in whole steps."""
         steps = math.floor(until / STEP)
         for _ in range(steps - self._steps):
             for station in self.stations.values():
@@ -149,6 +165,8 @@ class Bench:
                 if pressed and not drive.on_low_switch:
                     station.zero = drive.position
         self._steps = max(self._steps, steps)
+        for plant in self.plants.values():
+            plant.advance(until)
 
 
 def press(station: Station, switch: str) -> None:

@@ -14,6 +14,9 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
+PERIOD = 0.005
+"""The bench's period in s: between two feedback frames of a drive."""
+
 _QUANTITY = re.compile(r"(-?\d+(?:\.\d+)?) ?([a-z/]+)")
 _LENGTHS = {"um": 1e-6, "mm": 1e-3, "m": 1.0}
 _SPEEDS = {"um/s": 1e-6, "mm/s": 1e-3, "m/s": 1.0}

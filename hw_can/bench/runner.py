@@ -6,16 +6,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 
+from .axis import UM
 from .drives import AxisTrack, Bench, press
 from .peer import BenchError, FrameValues, Peer, Value
-from .plant import UM
+from .plant_stations import PlantStation, PlantTrack, plant_of
+from .plants import PlantFaultError
 from .replay import from_outside, read_log
 from .scenario import Scenario
-from .scenario_forms import (
+from .steps import (
     Expect,
+    ExpectOutput,
     ExpectStop,
     KillBench,
     Pull,
@@ -23,6 +25,7 @@ from .scenario_forms import (
     Replay,
     ScenarioStep,
     SendStep,
+    SetInput,
     StopFeedback,
     Wait,
     WaitFor,
@@ -56,8 +59,8 @@ class Sending:
 class ScenarioResult:
     """What the bench saw, up to and with the first step that failed.
 
-    ``tracks`` by drive; ``zeros`` are the true positions in um where the axes left
-    their low switches; ``started`` is a time of `time.monotonic`.
+    ``tracks`` by drive, ``plants`` by plant; ``zeros`` are the true positions in um where
+    the axes left their low switches; ``started`` is a time of `time.monotonic`.
     """
 
     title: str
@@ -66,6 +69,7 @@ class ScenarioResult:
     not_run: int
     tracks: Mapping[str, AxisTrack]
     zeros: Mapping[str, float | None]
+    plants: Mapping[str, PlantTrack]
     sendings: tuple[Sending, ...]
     sent: Mapping[str, int]
     received: Mapping[str, int]
@@ -96,10 +100,13 @@ def run_scenario(
     go on until ``ended`` says so: it is asked after every tick, and may end the
     controller. Raises BenchError only when a message does not fit the DBC.
     """
+    stations: list[PlantStation] = []
     try:
         for step in scenario.steps:
             _check(step, peer)
-        bench = Bench(peer, scenario.drives, peer.clock, peer.sleep)
+        for name, form in scenario.plants.items():
+            stations.append(PlantStation(name, form, plant_of(form, scenario.folder)))
+        bench = Bench(peer, scenario.drives, peer.clock, peer.sleep, plants=stations)
         runner = _Runner(bench, limit, scenario)
         results: list[StepResult] = []
         for step, line in zip(scenario.steps, scenario.lines, strict=True):
@@ -114,11 +121,18 @@ def run_scenario(
             results.append(StepResult(str(step), line, passed, outcome, began, bench.now))
             if not passed:
                 break
-        with suppress(BenchError):
+        try:
             while not ended():
                 bench.tick()
+        except PlantFaultError as fault:
+            line, now = scenario.lines[-1], bench.now
+            results.append(StepResult("after the last step", line, False, str(fault), now, now))
+        except BenchError:  # the controller left the bus, which it may
+            pass
     finally:
         peer.close()
+        for one in stations:
+            one.close()
     return ScenarioResult(
         title=scenario.title,
         started=bench.start,
@@ -126,6 +140,7 @@ def run_scenario(
         not_run=len(scenario.steps) - len(results),
         tracks={name: s.track for name, s in bench.stations.items()},
         zeros={name: None if s.zero is None else s.zero * UM for name, s in bench.stations.items()},
+        plants={one.name: one.track for one in stations},
         sendings=tuple(runner.sendings),
         sent=dict(peer.sent),
         received=dict(peer.received),
@@ -167,6 +182,11 @@ class _Runner:
                 return self._until(lambda: self._in_place(step), step.within)
             case ExpectStop():
                 return self._stop(step)
+            case SetInput():
+                self._bench.plants[step.plant].set(step.name, step.to)
+                return True, "done"
+            case ExpectOutput():
+                return self._until(lambda: self._has_come(step), step.within)
             case Wait():
                 self._pass(step.wait)
                 return True, "done"
@@ -177,8 +197,7 @@ class _Runner:
                 press(self._bench.stations[step.release], "none")
                 return True, "done"
             case StopFeedback():
-                for name, station in self._bench.stations.items():
-                    station.silent |= step.stop_feedback in ("all", name)
+                self._bench.silence(step.stop_feedback)
                 return True, "done"
             case KillBench():
                 self._bench.peer.drop()
@@ -198,8 +217,8 @@ class _Runner:
         """All frames of the log that come from outside, each at its time."""
         bench = self._bench
         log = read_log(self._scenario.file_of(step))
-        drives = frozenset(station.form.feedback for station in bench.stations.values())
-        frames, began = from_outside(log, bench.peer.codec, drives), bench.now
+        simulated = self._scenario.simulated()
+        frames, began = from_outside(log, bench.peer.codec, simulated), bench.now
         bench.replayed.extend((began + at, frame) for at, frame in frames)
         while bench.replayed:
             if not bench.peer.is_open:
@@ -238,6 +257,11 @@ class _Runner:
             passed &= abs(error) <= step.tolerance
             found.append(f"{name} {error * UM:+.0f}")
         return passed, f"{', '.join(found)} um off, {step.tolerance * UM:g} allowed"
+
+    def _has_come(self, step: ExpectOutput) -> tuple[bool, str]:
+        value = self._bench.plants[step.plant].value(step.name)
+        shown = f"{value:g}" if isinstance(value, float) else f"{value}"
+        return step.accepts(value), f"{step.expect_output} is {shown}"
 
     def _stop(self, step: ExpectStop) -> tuple[bool, str]:
         """Passes when the axis was slow in the last look, and tells since when."""

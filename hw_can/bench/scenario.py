@@ -3,13 +3,14 @@
 
 """A scenario: the drives on the bench, and what the operator does, step by step.
 
-Read from YAML and checked as a whole before anything runs.
+Read from YAML and checked as a whole before anything runs. Quantities carry their
+unit (``430 mm``, ``1 mm/s``, ``8 s``); inside they are m, m/s and s.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 from typing import TypeVar
@@ -20,25 +21,35 @@ from ravenchart.gen.diagnostics import error, render
 from ravenchart.gen.files.located import FormPath, grow
 from ravenchart.gen.origins import Origin
 
-from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, rendered
-from .replay import fault_of_log
-from .scenario_forms import (
+from .forms import (
     BUS_EVENTS,
     EXPECTED,
-    STEPS,
     BusEvent,
     DriveForm,
-    Expect,
     Expected,
+    PlantForm,
+    TraceCheck,
+    WholeForm,
+)
+from .plant_stations import outgoing
+from .quantities import PERIOD
+from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, rendered
+from .replay import fault_of_log
+from .steps import (
+    STEPS,
+    Expect,
+    ExpectOutput,
     ExpectStop,
     Pull,
     Release,
     Replay,
     ScenarioStep,
+    SetInput,
     StopFeedback,
-    TraceCheck,
-    WholeForm,
 )
+
+TINY = 1e-6
+"""Rounding of a ratio of times."""
 
 
 class ScenarioError(Exception):
@@ -58,13 +69,24 @@ class Scenario:
     """What happens on the bus between several nodes; times in s since it was started."""
     expected: tuple[Expected, ...] = ()
     """Faults that the run shall or may show; any other one fails it."""
+    plants: Mapping[str, PlantForm] = field(default_factory=dict)
     source: Source | None = None
     """The file, to say where something stands."""
 
     def file_of(self, step: Replay) -> Path:
         """The log that a step replays."""
+        return self.folder / step.replay
+
+    def simulated(self) -> frozenset[str]:
+        """The messages that drives and plants send."""
+        drives = {one.feedback for one in self.drives.values()}
+        return frozenset(drives.union(*(outgoing(one) for one in self.plants.values())))
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the file, which the files that it names are looked for in."""
         assert self.source is not None
-        return Path(self.source.file).parent / step.replay
+        return Path(self.source.file).parent
 
 
 def load_scenario(path: Path) -> Scenario:
@@ -96,6 +118,7 @@ def parse_scenario(text: str, file: str = "scenario.yaml") -> Scenario:
     if form is None:
         raise ScenarioError(source.told())
     drives = {name: source.read(DriveForm, v, ("drives", name)) for name, v in form.drives.items()}
+    plants = {name: source.read(PlantForm, v, ("plants", name)) for name, v in form.plants.items()}
     steps = [_one_of(source, STEPS, raw, ("steps", n)) for n, raw in enumerate(form.steps)]
     bus = [_one_of(source, BUS_EVENTS, raw, ("bus", n)) for n, raw in enumerate(form.bus)]
     checks = [
@@ -110,6 +133,7 @@ def parse_scenario(text: str, file: str = "scenario.yaml") -> Scenario:
         tuple(one for one in checks if one is not None),
         tuple(one for one in bus if one is not None),
         tuple(one for one in expected if one is not None),
+        {name: one for name, one in plants.items() if one is not None},
         source,
     )
     if not source.found:
@@ -146,15 +170,9 @@ def _fit_together(scenario: Scenario, source: Source) -> None:
             drive.axis()
         except ValueError as fault:
             source.wrong(MISFIT, ("drives", name), f"the drive {name} cannot be: {fault}", key=True)
-    known = ", ".join(scenario.drives)
-    hint = f"the drives are {known}" if known else "the scenario has no `drives`"
-    for index, step in enumerate(scenario.steps):
-        if isinstance(step, Replay) and (told := fault_of_log(scenario.file_of(step))):
-            source.wrong(VALUES, ("steps", index, "replay"), told)
-        for path, name in _drives_of(step):
-            if name not in scenario.drives:
-                message = f"there is no drive `{name}`"
-                source.wrong(UNKNOWN, ("steps", index, *path), message, hint, key=len(path) > 1)
+    for name, plant in scenario.plants.items():
+        _check_plant(name, plant, scenario, source)
+    _check_steps(scenario, source)
     for index, check in enumerate(scenario.trace_checks):
         place = ("expect_trace", index)
         if (check.within is None) != (check.port is None):
@@ -172,16 +190,63 @@ def _fit_together(scenario: Scenario, source: Source) -> None:
             source.wrong(MISFIT, ("bus", index, "at"), message, hint)
 
 
-def _drives_of(step: ScenarioStep) -> Iterator[tuple[FormPath, str]]:
-    """The drives that a step names, and where."""
+def _check_steps(scenario: Scenario, source: Source) -> None:
+    """Logs that can be read, drives and plants that are there, ranges that are not empty."""
+    for index, step in enumerate(scenario.steps):
+        if isinstance(step, Replay) and (told := fault_of_log(scenario.file_of(step))):
+            source.wrong(VALUES, ("steps", index, "replay"), told)
+        for path, name, kinds in _named_in(step):
+            known = [one for kind in kinds for one in getattr(scenario, kind)]
+            if name not in known:
+                both = " or ".join(kind[:-1] for kind in kinds)
+                message = f"there is no {both} `{name}`"
+                none = f"the scenario has no `{kinds[0]}`"
+                hint = f"the {kinds[0]} are {', '.join(known)}" if known else none
+                source.wrong(UNKNOWN, ("steps", index, *path), message, hint, key=len(path) > 1)
+        if isinstance(step, ExpectOutput):
+            _check_range(step, ("steps", index), source)
+
+
+def _check_plant(name: str, plant: PlantForm, scenario: Scenario, source: Source) -> None:
+    """One source of the plant, a period on the grid of the bench, a name of its own."""
+    place = ("plants", name)
+    if (plant.plant_class is None) == (plant.fmu is None):
+        source.wrong(KEYS, place, "must have exactly one of `class` and `fmu`", key=True)
+    ticks = plant.period / PERIOD
+    if round(ticks) < 1 or abs(ticks - round(ticks)) > TINY:
+        told = (
+            f"{plant.period * 1e3:g} ms is no multiple of {PERIOD * 1e3:g} ms, the bench's period"
+        )
+        source.wrong(VALUES, (*place, "period"), told)
+    if name in scenario.drives:
+        source.wrong(MISFIT, place, f"`{name}` is a drive too", "choose another name", key=True)
+
+
+def _check_range(step: ExpectOutput, place: FormPath, source: Source) -> None:
+    """A value or a range, not empty."""
+    bounds = (step.at_least, step.at_most)
+    if (step.value is None) == (bounds == (None, None)):
+        told = "give `is`, or `at_least` or `at_most` or both"
+        source.wrong(MISFIT, place, told)
+    elif None not in bounds and bounds[0] > bounds[1]:  # type: ignore[operator]
+        source.wrong(MISFIT, place, f"no value is at least {bounds[0]:g} and at most {bounds[1]:g}")
+
+
+def _named_in(step: ScenarioStep) -> Iterator[tuple[FormPath, str, tuple[str, ...]]]:
+    """The drives and plants that a step names, where, and which of the two they may be."""
+    drives, plants = ("drives",), ("plants",)
     match step:
         case Expect():
-            yield from ((("expect", name), name) for name in step.expect)
+            yield from ((("expect", name), name, drives) for name in step.expect)
         case ExpectStop():
-            yield ("expect_stop",), step.expect_stop
+            yield ("expect_stop",), step.expect_stop, drives
         case Pull():
-            yield ("pull",), step.pull
+            yield ("pull",), step.pull, drives
         case Release():
-            yield ("release",), step.release
+            yield ("release",), step.release, drives
         case StopFeedback() if step.stop_feedback != "all":
-            yield ("stop_feedback",), step.stop_feedback
+            yield ("stop_feedback",), step.stop_feedback, (*drives, *plants)
+        case SetInput():
+            yield ("set",), step.plant, plants
+        case ExpectOutput():
+            yield ("expect_output",), step.plant, plants

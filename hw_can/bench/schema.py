@@ -11,7 +11,8 @@ from pydantic import TypeAdapter
 
 from ravenchart.described import untitled
 
-from .scenario_forms import BUS_EVENTS, EXPECTED, STEPS, DriveForm, TraceCheck, WholeForm
+from .forms import BUS_EVENTS, EXPECTED, DriveForm, PlantForm, TraceCheck, WholeForm
+from .steps import STEPS
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 TITLE = "Ravenchart: a scenario"
@@ -20,7 +21,14 @@ TITLE = "Ravenchart: a scenario"
 def scenario_schema() -> dict[str, Any]:
     """The schema; names of messages, regions and the like are checked with the model alone."""
     whole = WholeForm.model_json_schema()
-    kinds = [*STEPS.values(), *BUS_EVENTS.values(), *EXPECTED.values(), TraceCheck, DriveForm]
+    kinds = [
+        *STEPS.values(),
+        *BUS_EVENTS.values(),
+        *EXPECTED.values(),
+        TraceCheck,
+        DriveForm,
+        PlantForm,
+    ]
     _, shared = TypeAdapter.json_schemas(
         [(kind.__name__, "validation", TypeAdapter(kind)) for kind in kinds]
     )
@@ -34,6 +42,7 @@ def scenario_schema() -> dict[str, Any]:
     properties["expect"]["items"] = items(EXPECTED.values())
     properties["expect_trace"]["items"] = {"$ref": "#/$defs/TraceCheck"}
     properties["drives"]["additionalProperties"] = {"$ref": "#/$defs/DriveForm"}
+    properties["plants"]["additionalProperties"] = {"$ref": "#/$defs/PlantForm"}
     made = untitled({"$schema": DRAFT, **whole, "title": TITLE, **shared})
     assert isinstance(made, dict)
     return made

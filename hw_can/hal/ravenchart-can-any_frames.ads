@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A frame of a bus: a classic one or a CAN FD one.
 --
 --  Guarantees   those of Can and of Fd_Frames; what only frames of the other

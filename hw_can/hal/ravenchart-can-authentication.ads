@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Authentication of messages on CAN FD: at the end of the frame stand the
 --  low bytes of a freshness value and the first bytes of a message
 --  authentication code (MAC) over the data identifier, the data and the

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Two halves, as drivers commonly have them: the upper one is the same for
 --  all drivers; the lower one is the driver, a subunit that the project file
 --  chooses.

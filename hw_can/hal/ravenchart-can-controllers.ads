@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A CAN controller. The subunit Driver of its body is a driver, chosen by the
 --  project file.
 --

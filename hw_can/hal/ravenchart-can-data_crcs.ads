@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Cyclic redundancy checks over the data of a frame, for the protection of
 --  messages from end to end.
 --

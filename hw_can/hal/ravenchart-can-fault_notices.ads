@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Fault confinement as a node's model is notified of it: a log that the
 --  driver keeps of its controller, and the notices between two looks at it.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  CAN FD frames as values: up to 64 bytes, no remote frames.
 --
 --  Guarantees   the identifier of an Fd_Frame fits its format, its length is

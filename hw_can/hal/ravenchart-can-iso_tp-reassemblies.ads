@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A value that comes in segments, between the reception of its bus, which
 --  takes them, and the port region of its port, which sends flow control and
 --  ends a transfer that falls silent.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The receiver of values in segments (ISO 15765-2), segment by segment.
 --
 --  Guarantees   a value is Complete only when all its bytes have come, in

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The sender of values in segments (ISO 15765-2): one segment at the most at
 --  the end of each execution of the row that sends.
 --

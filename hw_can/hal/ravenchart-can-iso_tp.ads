@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  ISO-TP: values longer than a frame, as segments on classic CAN buses (ISO
 --  15765-2, normal addressing). The segments as values; the two ends of a
 --  transfer are child packages.

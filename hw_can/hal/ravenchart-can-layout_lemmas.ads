@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What the bits of a signal of a longer frame are, by the words where they
 --  stand: proved here for all rows, so that of one row only its numbers are
 --  left to compute.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Layout tables: where a signal stands in the data of a frame, how its bits
 --  count, and which frame carries the data, in the terms of CAN databases
 --  (DBC). Contracts of generated code are stated by these tables; the bodies

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  End-to-end protection of messages: a counter and a CRC over the data and
 --  an identifier of the message, which is not in the frame as a whole. The
 --  receiver finds corrupted, repeated, lost, inserted and masqueraded frames.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The way into a driver: frames with the time at which they came, and one
 --  task that waits for them.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Transmission modes of messages besides the periodic one: when a frame goes
 --  at the end of an execution of the row that sends it.
 --

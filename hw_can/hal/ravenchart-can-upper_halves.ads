@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The upper half of a CAN driver, the same for every driver: the queues
 --  between the program and the tasks of the driver, the state and the
 --  counters of the controller, and the request for recovery.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Classic CAN frames, and the words that every controller shares.
 --
 --  Guarantees   the identifier of a Frame fits its format; Payload is 0 in

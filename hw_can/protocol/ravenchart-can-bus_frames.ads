@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What a node of the simulated bus hands to its controller, and how long it
 --  takes on the wire.
 --

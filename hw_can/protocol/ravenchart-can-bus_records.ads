@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The records of the bus protocol (docs/bus-protocol.md): 88 bytes each, in
 --  both directions.
 --

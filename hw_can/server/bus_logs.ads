@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What is on the bus, written to a file as records of docs/bus-protocol.md.
 
 package Bus_Logs is

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What the bus server is told on its command line: words NAME=VALUE.
 --
 --     port=29536       0 for a free one

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The bus server: one simulated CAN bus behind a TCP port of this machine,
 --  as docs/bus-protocol.md says. `ravenchart bus` starts it.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 package body Ravenchart.Can.Bus_Clients
   with SPARK_Mode
 is

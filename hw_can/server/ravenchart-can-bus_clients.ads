@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  One client of the bus server: how far it has come, and what it is told.
 --
 --  Guarantees   the latest time that it was told never goes back; a client

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What can go wrong with one frame of the simulated bus, on demand.
 --
 --  Guarantees   without a fault, a frame arrives as it was sent, once and

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What a bus is called.
 --
 --  Guarantees   a name is one that a welcome can carry

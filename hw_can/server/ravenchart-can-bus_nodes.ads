@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  One controller on the simulated bus, without its buffers: its error
 --  counters, and when it may send.
 --

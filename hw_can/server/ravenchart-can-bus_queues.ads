@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What is still to be handed over to one client of the bus server.
 --
 --  Guarantees   first in, first out; nothing else moves or is lost

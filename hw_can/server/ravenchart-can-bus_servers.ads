@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The bus server without its sockets: what each client has said, what comes
 --  of it on the bus, and what is to be said to whom, and when.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The sockets, the clock and the signals of the bus server.
 --
 --  Guarantees   nothing here waits but Await, and that not for longer than

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The rulings on one frame: who sends it, what happens to it first, and
 --  what that does to everyone's error counters.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A bus in virtual time: who is on it, what becomes of the frames that are
 --  offered at one instant, and what it does to everyone's error counters.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Which frame of a run meets which fault: as a list says, or by chance from
 --  a seed, so that the same run comes again.
 --

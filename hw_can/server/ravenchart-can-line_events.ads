@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What is done to the line of a network at given times.
 --
 --  Guarantees   time goes on where the bus is cut or mended

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Controllers with their transmit buffers on one simulated bus: what is
 --  asked for, and what comes of it.
 --

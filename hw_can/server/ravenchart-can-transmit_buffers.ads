@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The transmit buffer of one controller: what is still to be sent.
 --
 --  Guarantees   a FIFO buffer keeps the order of the requests; in one by

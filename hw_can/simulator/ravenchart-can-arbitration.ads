@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Arbitration: of the frames that start together, which one stays.
 --
 --  Guarantees   bit by bit on the bus, the frame that is first in the order

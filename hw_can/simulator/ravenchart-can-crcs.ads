@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The check sequences of CAN: CRC-15 for classic frames, CRC-17 for CAN FD
 --  frames up to 16 bytes, CRC-21 for longer ones.
 --

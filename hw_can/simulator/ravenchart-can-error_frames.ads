@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Error frames as values: what a node saw, and the flag that it sends.
 --
 --  Guarantees   only an error-active node's flag can be seen by the others

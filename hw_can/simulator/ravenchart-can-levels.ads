@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What one bit time on the bus can carry.
 --
 --  Guarantees   the order of the levels is that of a wired AND: what the bus

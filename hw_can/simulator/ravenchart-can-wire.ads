@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Frames as the bits that a transmitter puts on the bus, from the start of
 --  frame to the end of the intermission.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Lengths of time in ticks of four clocks: of 1 ns and of 10 ns, and of two
 --  whose ticks are no whole number of nanoseconds (STM32F4, Zynq-7000).
 

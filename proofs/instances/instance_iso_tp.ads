@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  ISO-TP: what is no generic is proved as it is, the object of a reassembly
 --  as an instance.
 

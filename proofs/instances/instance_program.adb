@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The environment task of a host: writes the trace out until a signal ends
 --  the run, and the summary then.
 

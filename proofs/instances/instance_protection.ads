@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  End-to-end protection: what is no generic is proved as it is.
 
 with Ravenchart.Can.Data_Crcs;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The core of the bus simulator: what is no generic is proved as it is.
 
 with Ravenchart.Can.Arbitration;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Fd_Frames;
 with Ravenchart.Health;

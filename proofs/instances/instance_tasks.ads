@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  One periodic and one sporadic processor, and what supervises them: together
 --  with Instance_Store and Instance_Bus a small controller, as a model would
 --  generate it.

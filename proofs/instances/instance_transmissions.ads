@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Transmission modes: what is no generic is proved as it is.
 
 with Ravenchart.Can.Transmissions;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Provers see only instances: one of the buffer of recorded values. What
 --  writes its values out is proved with the runtime.
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from ravenchart.analysis.core import allocation
 from ravenchart.analysis.core.allocation import Movable, Strategy, Table
@@ -27,7 +28,7 @@ from ravenchart.gen.derive.sharing import too_long
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Processor, Slot, System
 
-from .search import SET, Judged, searched
+from .search import SET, Judged, Rank, Ranked, rank, searched
 
 STRATEGIES = {
     "period": Strategy.BY_PERIOD,
@@ -71,14 +72,54 @@ class WantedTable:
     """By the key that says when: the events that it raises."""
 
 
+class Judge:
+    """The periodic rows of a model in other tables, and the analysis of that model."""
+
+    def __init__(self, system: System) -> None:
+        """Of the model whose rows are to move."""
+        self.system = system
+        self.kept = [one for one in system.processors if one.released_by is not None]
+        """Sporadic processors."""
+        self.moved = [one for one in system.processors if one.released_by is None]
+        """Periodic ones."""
+        self.home = {slot.element: (one, slot) for one in self.moved for slot in one.slots}
+        """Where each row of theirs is."""
+
+    def __call__(self, tables: list[Table]) -> Judged:
+        """Judge these tables."""
+        made: list[Processor] = []
+        for table in tables:
+            names = {activity.name for activity in table}
+            rows = [row for name, row in self.home.items() if name in names]
+            made.append(_processor(rows, [one.name for one in (*made, *self.kept)]))
+        processors = tuple(_unranked(one) for one in (*self.kept, *made))
+        told = completed(replace(self.system, processors=processors))
+        short = sum(one.wcet < self.system.node(one.node).critical_section for one in made)
+        short += len(list(too_long(told)))
+        return Judged(tables, None, short) if short else Judged(tables, analyse(told))
+
+
+RankOf = Callable[[list[Table]], Rank]
+"""How good tables are."""
+
+
+def _rank(judge: Judge, strategy: Strategy, tables: list[Table]) -> Rank:
+    return rank(judge(tables), strategy)
+
+
 def propose(
-    analysis: Analysis, strategy: str, better: Callable[[Proposal], None] = lambda _: None
+    analysis: Analysis,
+    strategy: str,
+    better: Callable[[Proposal], None] = lambda _: None,
+    helpers: Callable[[RankOf], Ranked] | None = None,
 ) -> Proposal:
-    """The model's periodic rows put together by that strategy; ``better`` hears the best so far."""
+    """The model's periodic rows put together by that strategy; ``better`` hears the best so far.
+
+    ``helpers`` makes of a function of tables one of many tables, which work at the same time.
+    """
     system = analysis.system
-    kept = [processor for processor in system.processors if processor.released_by is not None]
-    moved = [processor for processor in system.processors if processor.released_by is None]
-    home = {slot.element: (processor, slot) for processor in moved for slot in processor.slots}
+    judge = Judge(system)
+    kept, moved, home = judge.kept, judge.moved, judge.home
     activities = [
         Movable(
             slot.element,
@@ -106,20 +147,6 @@ def propose(
     )
     known = {activity.name: activity for activity in activities}
 
-    def judge(tables: list[Table]) -> Judged:
-        made: list[Processor] = []
-        for table in tables:
-            names = {activity.name for activity in table}
-            rows = [row for name, row in home.items() if name in names]
-            taken = [processor.name for processor in (*made, *kept)]
-            made.append(_processor(rows, taken))
-        told = completed(replace(system, processors=tuple(_unranked(p) for p in (*kept, *made))))
-        short = sum(p.wcet < system.node(p.node).critical_section for p in made)
-        short += len(list(too_long(told)))
-        if short:
-            return Judged(tables, None, short)
-        return Judged(tables, analyse(told))
-
     starts = [list(found.tables)]
     own = [tuple(known[slot.element] for slot in processor.slots) for processor in moved]
     if STRATEGIES[strategy] not in SET:
@@ -130,7 +157,8 @@ def propose(
         if now.analysis is not None:
             better(Proposal(now.analysis.system, now.analysis, names))
 
-    best = searched(starts, STRATEGIES[strategy], judge, heard)
+    rank_of = partial(_rank, judge, STRATEGIES[strategy])
+    best = searched(starts, STRATEGIES[strategy], judge, heard, helpers and helpers(rank_of))
     if best.analysis is None:
         best = judge(own)
     assert best.analysis is not None  # `check` refuses a model with such tables

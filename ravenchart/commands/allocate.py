@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table as Printed
 from rich.text import Text
 
+from ravenchart.allocation.helpers import helped
 from ravenchart.allocation.proposals import STRATEGIES, Proposal, propose, yaml
 from ravenchart.analysis.present.sentences import verdict_line
 from ravenchart.analysis.units import microseconds
@@ -96,14 +97,15 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         help="period: a processor for each period; locality: for each instance where "
         "rates fit; fewest: as few as possible; slack: as much slack as possible",
     )  # fmt: skip
+    common.add_scheduler(sub)
     sub.add_argument("--yaml", action="store_true", help="print the result in the form of a model")
 
 
 def execute(options: argparse.Namespace) -> int:
     """Propose it; the exit status."""
     checked = common.checked(options, deadlines=False)
-    with progress("allocate"):
-        proposal = propose(checked.analysis, options.strategy)
+    with helped(options.scheduler) as helpers, progress("allocate"):
+        proposal = propose(checked.analysis, options.strategy, helpers=helpers)
     options.answer.result = _answer(proposal, options.strategy)
     if options.yaml:
         print(yaml(proposal), end="")

@@ -117,6 +117,15 @@ def add_port(sub: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def add_scheduler(sub: argparse.ArgumentParser) -> None:
+    """Who helps a search for tables."""
+    sub.add_argument(
+        "--scheduler", metavar="ADDRESS",
+        help="search with the workers of a Dask scheduler, such as tcp://host:8786; needs the "
+        "package distributed",
+    )  # fmt: skip
+
+
 def _port(text: str) -> int:
     if not (text.isascii() and text.isdigit() and int(text[:6]) <= 65_535):
         raise argparse.ArgumentTypeError(f"{text!r} is not 0 .. 65535")

@@ -18,8 +18,8 @@ from ravenchart import terminal
 from ravenchart.building import programs
 from ravenchart.building.checking import Checked
 from ravenchart.failures import OK, WRONG, Refused
+from ravenchart.hw_can.bench.forms import DriveForm
 from ravenchart.hw_can.bench.peer import BenchError
-from ravenchart.hw_can.bench.scenario_forms import DriveForm
 from ravenchart.running import judge, scenarios
 from ravenchart.running.attaching import spoken_bus
 from ravenchart.running.process import Ended, StartError

@@ -23,6 +23,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         help="show a recorded run in place of running controllers: trace.txt; once for each of "
         "several nodes, trace-NODE.txt",
     )  # fmt: skip
+    common.add_scheduler(sub)
     sub.add_argument("--no-open", action="store_true", help="print the address, open no browser")
 
 
@@ -37,7 +38,7 @@ def execute(options: argparse.Namespace) -> int:
         with progress(f"read and analyse {options.model}"):
             session = Session(options.model)
         if not options.replay:
-            return WorkbenchPages(Hub(session))
+            return WorkbenchPages(Hub(session, scheduler=options.scheduler))
         with progress("read the trace"):
             return WorkbenchPages(Hub(session, ReplayView(options.model, options.replay)))
 

@@ -13,13 +13,14 @@ import hashlib
 from collections.abc import Iterator
 
 from ravenchart.behaviour.limits import ON_MODEL, UNFINISHED
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import (
     component_package,
     instance_package,
     region_package,
     root_package,
 )
-from ravenchart.gen.emit.components.packages import activity_package
+from ravenchart.gen.emit.components.packages import ACTIVITIES, FLOWS, activity_package
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region
 
@@ -179,7 +180,7 @@ def _charts(facts: Facts) -> Iterator[Claim]:
     for component in system.components:
         for node, suffix in _homes(facts, component):
             for region in component.regions:
-                unit = region_package(system, component, region)
+                unit = region_package(system, component, region).text
                 verdict, problems, told = _proved_unit(node, unit)
                 yield Claim(
                     f"chart-{component.name}.{region.name}{suffix}",
@@ -208,7 +209,7 @@ def _invariants(
     for safe in system.safe_regions:
         if safe.component != component.name:
             continue
-        unit = region_package(system, component, component.region(safe.region))
+        unit = region_package(system, component, component.region(safe.region)).text
         verdict, problems, told = _proved_unit(node, unit)
         for name in safe.invariants:
             yield Claim(
@@ -239,11 +240,11 @@ def _theorem(region: Region) -> str:
 def _bodies(facts: Facts, component: Component, node: NodeFacts, suffix: str) -> Iterator[Claim]:
     """Activities: flows that are generated, and bodies of the user."""
     package = component_package(facts.checked.system, component)
-    for child, mine in (("Flows", False), ("Activities", True)):
+    for child, mine in ((FLOWS, False), (ACTIVITIES, True)):
         names = [a.name for a in component.activities if (a.flow is None) == mine]
         if not names:
             continue
-        unit = f"{package}.{child}"
+        unit = ref(package, child).text
         verdict, problems, told = _proved_unit(node, unit, may_be_simple=True)
         unstated = [a.name for a in component.activities if a.flow is None and not a.ensures]
         if mine and unstated and verdict is Shown.MET:
@@ -271,9 +272,10 @@ def _contracts(facts: Facts, component: Component, node: NodeFacts, suffix: str)
     """What activities require is shown at each call, and what they ensure of their bodies."""
     system, part = facts.checked.system, node.program.part
     for activity in component.activities:
-        home = f"{component_package(system, component)}.{activity_package(component, activity)}"
+        own = component_package(system, component)
+        home = ref(own, activity_package(component, activity)).text
         callers = [
-            instance_package(system, one)
+            instance_package(system, one).text
             for one in part.instances
             if any(slot.name == activity.name for slot in part.slots_of(one.name))
             and one.component.name == component.name

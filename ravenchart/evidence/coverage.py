@@ -29,7 +29,7 @@ def coverage(facts: Facts) -> Iterator[Claim]:
     texts = simulation(system)
     for component in system.components:
         for region in component.regions:
-            file = f"{region_package(system, component, region).lower().replace('.', '-')}.adb"
+            file = f"{region_package(system, component, region).file_stem}.adb"
             name = f"{component.name}.{region.name}"
             text = texts[file].encode("utf-8")
             yield _claim(facts, f"coverage-{name}", (name,), file, text, counted.get(file))

@@ -10,12 +10,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ravenchart.gen.diagnostics import Diagnostic, error, in_order
+from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import (
+    ada_case,
     component_package,
     instance_package,
     region_package,
     root_package,
 )
+from ravenchart.gen.emit.certificate.certified import CERTIFICATE
+from ravenchart.gen.emit.components.packages import ACTIVITIES, FLOWS
 from ravenchart.gen.files.links import Link
 from ravenchart.gen.files.located import Map, Seq, grow
 from ravenchart.gen.model.instances import Instance
@@ -156,11 +160,9 @@ def code_of(facts: Facts, link: Link) -> tuple[str, ...]:
     system = facts.checked.system
     inside = [instance_package(system, one) for one in instances_inside(system, link)]
     if inside:
-        return tuple(
-            n for unit in inside for n in unit_files(facts, unit.lower().replace(".", "-"))
-        )
+        return tuple(n for unit in inside for n in unit_files(facts, unit.file_stem))
     for unit in _units(system, link):
-        files = unit_files(facts, unit.lower().replace(".", "-"))
+        files = unit_files(facts, unit.file_stem)
         if files:
             return files
     return ()
@@ -181,7 +183,7 @@ def instances_inside(system: System, link: Link) -> tuple[Instance, ...]:
     )
 
 
-def _units(system: System, link: Link) -> Iterator[str]:
+def _units(system: System, link: Link) -> Iterator[DottedName]:
     """The Ada units of an element, the nearest first."""
     root = root_package(system)
     name = str(link.path[1]) if len(link.path) > 1 else ""
@@ -196,19 +198,19 @@ def _units(system: System, link: Link) -> Iterator[str]:
                     yield region_package(system, component, region)
             elif link.path[2:3] == ("activities",):
                 flows = {a.name for a in component.activities if a.flow is not None}
-                yield f"{package}.{'Flows' if inside in flows else 'Activities'}"
+                yield ref(package, FLOWS if inside in flows else ACTIVITIES)
             yield package
     elif link.section == "instances":
         instance = next((i for i in system.instances if i.name == name), None)
         if instance is not None:
             yield instance_package(system, instance)
     elif link.section in ("processors", "buses", "devices", "device_types"):
-        yield f"{root}.{name}"
+        yield ref(root, ada_case(name))
     elif link.section == "messages":
-        yield f"{root}.Codecs"
+        yield ref(root, "Codecs")
     elif link.section in ("chains", "nodes"):
-        yield f"{root}.Timing_Certificate"
-    yield root
+        yield ref(root, CERTIFICATE)
+    yield ref(root)
 
 
 # --- Tests -----------------------------------------------------------------------

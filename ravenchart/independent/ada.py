@@ -376,27 +376,47 @@ def alternatives(
     items: Sequence[Token], function: str
 ) -> tuple[list[Token], dict[str, tuple[Token, list[Token]]]]:
     """What stands before the case of an expression function, and its alternatives by choice."""
+    given = _given(items, function)
+    at = _place(given, "(", "case")
+    if at is None:
+        return [], {}
+    found: dict[str, tuple[Token, list[Token]]] = {}
+    for part in split(given[at + 4 : closing(given, at)], ","):
+        if len(part) > 3 and part[0].low == "when":
+            arrow = next(n for n, t in enumerate(part) if t.text == "=>")
+            for choice in split(part[1:arrow], "|"):
+                again = " again" if choice[0].low in found else ""
+                found[f"{choice[0].low}{again}"] = choice[0], part[arrow + 1 :]
+    return given[:at], found
+
+
+def elements(
+    items: Sequence[Token], function: str
+) -> tuple[list[Token], dict[str, tuple[Token, list[Token]]]]:
+    """What stands before the array that an expression function gives, and its elements by place."""
+    given = _given(items, function)
+    at = _place(given, "(", "1", "=>")
+    if at is None:
+        return [], {}
+    parts = split(given[at + 1 : closing(given, at)], ",")
+    return given[1:at], {part[0].text: (part[0], part[2:]) for part in parts}
+
+
+def _given(items: Sequence[Token], function: str) -> list[Token]:
+    """What an expression function gives, with its parentheses; empty where it is not declared."""
     for place, token in enumerate(items):
-        if token.low != "function" or items[place + 1].low != function.lower():
-            continue
-        at = place + 2
-        if items[at].text == "(":
-            at = closing(items, at)
-        while items[at].low != "is":
-            at += 1
-        begin, last = at + 1, closing(items, at + 1)
-        while at < last and [t.low for t in items[at + 1 : at + 3]] != ["(", "case"]:
-            at += 1
-        if at == last:
-            return [], {}
-        before = list(items[begin : at + 1])
-        body = items[at + 5 : closing(items, at + 1)]
-        found: dict[str, tuple[Token, list[Token]]] = {}
-        for part in split(body, ","):
-            if len(part) > 3 and part[0].low == "when":
-                arrow = next(n for n, t in enumerate(part) if t.text == "=>")
-                for choice in split(part[1:arrow], "|"):
-                    again = " again" if choice[0].low in found else ""
-                    found[f"{choice[0].low}{again}"] = choice[0], part[arrow + 1 :]
-        return before, found
-    return [], {}
+        if token.low == "function" and items[place + 1].low == function.lower():
+            at = place + 2
+            if items[at].text == "(":
+                at = closing(items, at)
+            while items[at].low != "is":
+                at += 1
+            return list(items[at + 1 : closing(items, at + 1) + 1])
+    return []
+
+
+def _place(items: Sequence[Token], *words_: str) -> int | None:
+    """Where these words stand first."""
+    size = len(words_)
+    places = range(len(items) - size)
+    return next((n for n in places if tuple(t.low for t in items[n : n + size]) == words_), None)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from . import ada
-from .ada import Token, alternatives, cases, enumeration, split, words
+from .ada import Token, alternatives, cases, elements, enumeration, split, words
 from .chart import TOP, Chart, Line, Region, domain_of, key_of
 from .findings import Report, UnusableError
 from .model import Model
@@ -22,6 +22,8 @@ KEYWORDS = frozenset(OTHERS.split())
 """Words of the expression language that have other forms in Ada."""
 NUMBER = re.compile(r"\b0[xX][0-9A-Fa-f_]+\b")
 """A number of the expression language that is not decimal."""
+STOPS = words("if D = Ending then (others => Ravenchart.Timers.Stopped) else")
+"""What is asked before the elements of time-outs."""
 SIGNS = ("<", "<=", ">", ">=", "/=")
 
 
@@ -318,9 +320,12 @@ class _Comparison:
 
     def _timers(self) -> None:
         """Each time-out: its executions, and the state that it belongs to."""
-        table = cases(self.items, "Timer_After")
+        first, table = elements(self.items, "Timers_After")
         wanted = self.chart.timers()
         domains = {token.low for token in enumeration(self.items, "Domain")}
+        if wanted and "ending" in domains:
+            text = "time-outs do not stop where the region ends"
+            self.agree("timers", self._line_of(table), tuple(t.low for t in first) == STOPS, text)
         for number, (one, counts) in enumerate(wanted, 1):
             found = table.pop(str(number), None)
             if found is None:
@@ -333,6 +338,9 @@ class _Comparison:
             clean = tuple(word.replace("_", "") if word[0].isdigit() else word for word in started)
             wanted_words = words(f"Ravenchart.Timers.Started ({listed})")
             self.agree("timers", found[0].line, clean == wanted_words, text)
+            text = f"the time-out of {one.name} goes on from another one"
+            own = tuple(t.low for t in parts[0])
+            self.agree("timers", found[0].line, own == words(f"Timers ({number})"), text)
             after = set(_conjuncts(parts[3])) if len(parts) == 5 else set()
             states = set(self.active("After", one.source))
             text = f"the time-out of {one.name} does not start with {one.source}"
@@ -345,9 +353,8 @@ class _Comparison:
             text = f"the time-out of {one.name} does not end with {one.source}: wanted "
             text += ", ".join(sorted(wanted_ends))
             self.agree("timers", found[0].line, before == states and said == wanted_ends, text)
-        for choice, (token, _) in table.items():
-            if choice != "others":
-                self.agree("timers", token.line, False, "a time-out that the model does not have")
+        for token, _ in table.values():
+            self.agree("timers", token.line, False, "a time-out that the model does not have")
 
 
 def _type_of(lane: Region) -> str:

@@ -15,8 +15,8 @@ from ravenchart.analysis.present.report import Comparison, Execution
 from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.system.observed import TRACE, VALUES, Observation
 from ravenchart.gen.model.system import System
+from ravenchart.hw_can.bench.forms import EXPECTED, Expected
 from ravenchart.hw_can.bench.scenario import Scenario
-from ravenchart.hw_can.bench.scenario_forms import EXPECTED, Expected
 
 from .process import Ended
 

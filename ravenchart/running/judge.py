@@ -14,8 +14,8 @@ from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.system.observed import Observation
 from ravenchart.analysis.units import microseconds
 from ravenchart.gen.model.system import Processor, System
+from ravenchart.hw_can.bench.forms import TraceCheck
 from ravenchart.hw_can.bench.runner import ScenarioResult
-from ravenchart.hw_can.bench.scenario_forms import TraceCheck
 
 from .expected import longest_withheld
 from .process import Ended

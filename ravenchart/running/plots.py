@@ -16,6 +16,7 @@ from matplotlib.patches import Patch
 
 from ravenchart.analysis.present.plots import INK
 from ravenchart.hw_can.bench.drives import AxisTrack
+from ravenchart.hw_can.bench.plant_stations import PlantTrack
 
 PALETTE = (
     "#8aa4bf",
@@ -85,6 +86,23 @@ def positions(
     return figure
 
 
+def plant_values(tracks: Mapping[str, PlantTrack]) -> Figure:
+    """Each value of each plant over time, in the unit of its field."""
+    curves = [
+        (f"{name}.{output}", track.time, values)
+        for name, track in tracks.items()
+        for output, values in track.values.items()
+    ]
+    figure = Figure(figsize=(11, 0.6 + 1.5 * len(curves)), layout="constrained")
+    panels = figure.subplots(len(curves), 1, sharex=True, squeeze=False)[:, 0]
+    for panel, (name, times, values) in zip(panels, curves, strict=True):
+        panel.plot(times, values, color=TRUE_COLOUR, linewidth=1.6)
+        panel.set_ylabel(name, color=INK)
+        _quiet(panel)
+    panels[-1].set_xlabel("time in s", color=INK)
+    return figure
+
+
 def png(figure: Figure) -> bytes:
     """The picture on white, at 130 dots an inch."""
     out = io.BytesIO()
@@ -111,6 +129,11 @@ def _panel(panel: Axes, name: str, track: AxisTrack) -> None:
     low, high = min(values), max(values)
     room = max(high - low, 1.0)
     panel.set_ylim(low - 0.06 * room, high + (0.08 + 2 * BAND) * room)
+    _quiet(panel)
+
+
+def _quiet(panel: Axes) -> None:
+    """Faint lines, and no frame at the top and the right."""
     panel.tick_params(colors=INK, labelsize=9)
     panel.grid(color=INK, alpha=0.13, linewidth=0.6)
     for side, spine in panel.spines.items():

@@ -31,10 +31,10 @@ from typing import Literal, TypeVar
 from ravenchart.building import checking
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.drives import Bench, Station, press
+from ravenchart.hw_can.bench.forms import DriveForm
 from ravenchart.hw_can.bench.interfaces import BusEnd
 from ravenchart.hw_can.bench.peer import BenchError, FrameValues, MalformedFrameError, Peer, Value
 from ravenchart.hw_can.bench.replay import from_outside, read_log
-from ravenchart.hw_can.bench.scenario_forms import DriveForm
 
 from . import bus_log, scenarios
 from .attaching import attached, interface_of

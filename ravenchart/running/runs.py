@@ -33,10 +33,10 @@ from ravenchart.building.targets import Board
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
+from ravenchart.hw_can.bench.forms import Cut, Hold, Mend
 from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer
 from ravenchart.hw_can.bench.runner import Progress, ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
-from ravenchart.hw_can.bench.scenario_forms import Cut, Hold, Mend
 from ravenchart.stacks.report import Memory
 
 from . import bus_log, expected, judge, plots, result, server, summary, value_plots
@@ -233,6 +233,9 @@ def write_report(
         written.append(picture)
         caption = "Target and true position of each axis, its states in the band above."
         pictures.append((caption, figure_svg(figure)))
+    if played is not None and any(track.values for track in played.plants.values()):
+        caption = "Values that each plant gave to the controller."
+        pictures.append((caption, figure_svg(plots.plant_values(played.plants))))
     pictures += value_plots.pictures(outcome.observation)
     run = RunReport(
         title=outcome.title,

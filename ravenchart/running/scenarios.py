@@ -23,22 +23,14 @@ from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
+from ravenchart.hw_can.bench.forms import Cut, Expected, Lost, Missed, Overran, TraceCheck
 from ravenchart.hw_can.bench.peer import BenchError, Value
 from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
 from ravenchart.hw_can.bench.replay import from_outside, read_log
 from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
-from ravenchart.hw_can.bench.scenario_forms import (
-    Cut,
-    Expected,
-    Lost,
-    Missed,
-    Overran,
-    Replay,
-    SendStep,
-    TraceCheck,
-    WaitFor,
-)
+from ravenchart.hw_can.bench.steps import Replay, SendStep, WaitFor
 
+from .scenario_plants import check_plants
 from .vocabulary import BusVocabulary
 
 LOSSES = ("lost_out", "lost_in", "rejected_lines")
@@ -77,6 +69,7 @@ def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
         return [error(UNKNOWN, source.tree.origin, message, hint="run it without `--scenario`")]
     check = _Check(source, system, BusVocabulary.of(system))
     check.drives(scenario)
+    check_plants(scenario, source, check.signal, tuple(check.vocabulary.outside()))
     for index, step in enumerate(scenario.steps):
         if isinstance(step, SendStep):
             check.send(step, ("steps", index))
@@ -143,7 +136,7 @@ class _Check:
 
     def replay(self, step: Replay, scenario: Scenario, path: FormPath) -> None:
         """A log with a frame that the bench can send."""
-        drives = frozenset(drive.feedback for drive in scenario.drives.values())
+        drives = scenario.simulated()
         if not from_outside(read_log(scenario.file_of(step)), self.codec, drives):
             told = f"no frame of {step.replay} is a message that comes from outside the model"
             outside = self.vocabulary.outside()

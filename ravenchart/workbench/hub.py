@@ -49,8 +49,14 @@ PAUSE = 0.4
 class Hub(Publisher):
     """Publishes a session, looks at its files; processes aside find advice and tables."""
 
-    def __init__(self, session: Session, replay: ReplayView | None = None) -> None:
-        """For one session; to be made before the event loop runs."""
+    def __init__(
+        self, session: Session, replay: ReplayView | None = None, *, scheduler: str | None = None
+    ) -> None:
+        """For one session; to be made before the event loop runs.
+
+        ``scheduler``: the address of a Dask scheduler whose workers rank tables.
+        """
+        self._scheduler = scheduler
         self.session = session
         self.replay = replay
         self._room: tuple[int, list[str]] = (-1, [])
@@ -150,9 +156,10 @@ class Hub(Publisher):
     async def _seek(self, search: Search) -> None:
         """Follow a search to its end, and show the best so far."""
         self._tables = self._tables or Aside()
-        more = {"strategy": search.strategy}
+        more = {"strategy": search.strategy, "scheduler": self._scheduler}
         async for best in self._tables.answers(self.session.path, search.texts, **more):
-            search.best = best or None
+            search.fault = best.pop("fault", None)
+            search.best = best or (search.best if search.fault else None)
             await self._publish(await self._run(self._dumped))
         search.running = False
         await self._publish(await self._run(self._dumped))

@@ -19,6 +19,7 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
+from ravenchart.allocation.helpers import helped
 from ravenchart.allocation.proposals import Proposal, propose, tables
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.findings.growth import largest_wcet
@@ -28,6 +29,7 @@ from ravenchart.analysis.units import duration
 from ravenchart.editing.evaluation import evaluate
 from ravenchart.editing.places import ModelPlaces
 from ravenchart.editing.tables import processors_for
+from ravenchart.failures import Unusable
 
 PAUSE = 0.2
 """Seconds that lie at least between two answers to one question."""
@@ -50,7 +52,7 @@ def answer(question: dict[str, Any], say: Say) -> None:
     elif "rows" in question:
         say(grown(found.analysis, question["rows"]))
     elif "strategy" in question:
-        say(allocated(found.analysis, found.places, question["strategy"], say))
+        say(allocated(found.analysis, found.places, question, say))
     else:
         say({"lines": list(room_lines(found.analysis))})
 
@@ -68,8 +70,13 @@ def grown(analysis: Analysis, rows: list[str]) -> dict[str, Any]:
     return {"wcet": largest, "text": text}
 
 
-def allocated(analysis: Analysis, places: ModelPlaces, strategy: str, say: Say) -> dict[str, Any]:
-    """The best tables that a strategy finds; says the best so far meanwhile."""
+def allocated(
+    analysis: Analysis, places: ModelPlaces, question: dict[str, Any], say: Say
+) -> dict[str, Any]:
+    """The best tables that a strategy finds; says the best so far meanwhile.
+
+    ``fault`` says why the workers of ``scheduler`` cannot help.
+    """
     last = -PAUSE
 
     def better(proposal: Proposal) -> None:
@@ -78,7 +85,11 @@ def allocated(analysis: Analysis, places: ModelPlaces, strategy: str, say: Say) 
             last = monotonic()
             say(outcome(proposal, places) | {"more": True})
 
-    return outcome(propose(analysis, strategy, better), places)
+    try:
+        with helped(question.get("scheduler")) as helpers:
+            return outcome(propose(analysis, question["strategy"], better, helpers), places)
+    except Unusable as fault:
+        return {"fault": str(fault)}
 
 
 def outcome(proposal: Proposal, places: ModelPlaces) -> dict[str, Any]:

@@ -24,6 +24,8 @@ class Search:
     running: bool = True
     best: dict[str, Any] | None = None
     """As `room.outcome` says it; None until there is one."""
+    fault: str | None = None
+    """Why the search ended before it was at its end."""
 
     def told(self, session: Session) -> dict[str, Any]:
         """What the page gets; ``old``: the model has changed since the search began."""
@@ -32,6 +34,7 @@ class Search:
             "running": self.running,
             "old": self.texts != session.now.texts,
             "best": self.best,
+            "fault": self.fault,
         }
 
     def adopt(self, session: Session) -> None:

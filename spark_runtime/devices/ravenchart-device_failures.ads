@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What keeps a controller from starting: a device that fails its start.
 --  Programs whose devices have such operations have this unit.
 --

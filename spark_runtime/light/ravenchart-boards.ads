@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What a board does for a controller, beside its run-time library: the one
 --  unit of a port that each board has a body of.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 with Ada.Task_Identification;
 with Ada.Task_Termination;
 with Ravenchart.Boards;

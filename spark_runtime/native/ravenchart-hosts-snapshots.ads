@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Snapshots of a running controller for `ravenchart monitor`: what its report
 --  would say now, written ten times a second into one file, over and over.
 --

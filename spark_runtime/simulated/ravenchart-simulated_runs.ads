@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A program in virtual time, without tasks: each release of each processor in
 --  order of time and, at one instant, of the array; stimuli of an instant come
 --  before its releases. Standard input holds the last instant, then for each

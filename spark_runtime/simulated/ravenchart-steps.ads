@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What a simulated program has executed, step by step, on standard output.
 --
 --  Guarantees   one line for each step that executed a behaviour:

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 package body Ravenchart.Blackboards
   with SPARK_Mode, Refined_State => (State => Board)
 is

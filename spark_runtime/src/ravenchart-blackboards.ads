@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Last value of a sampled datum: one writer, any number of readers.
 --
 --  Guarantees   readers get a copy of one whole value, never a mixture

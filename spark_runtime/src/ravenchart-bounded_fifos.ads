@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  First-in first-out buffer of fixed capacity: the store behind every queue.
 --
 --  Guarantees   no heap, no overrun, strict order; all stated on Nth below

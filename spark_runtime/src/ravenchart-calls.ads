@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Calls of a command on another node, told apart by their numbers: of its
 --  caller the one that waits for a reply, of its provider the last one heard.
 --  And what is read there: how long its reader waits for it, and when its

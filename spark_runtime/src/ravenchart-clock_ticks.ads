@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Lengths of time in ticks of a clock, for clocks of every rate: a tick need
 --  not be a whole number of nanoseconds.
 --

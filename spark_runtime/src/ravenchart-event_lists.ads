@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The events raised in one step of a region, in the order they were raised.
 --
 --  Guarantees   strict order, no heap, total operations
@@ -49,15 +52,23 @@ is
      Post   => Is_Appended (L'Old, Item, L);
    --  Add Item as the last event; a full list ignores it.
 
+   function Is_Removed
+     (Before : List; Index : Positive; After : List) return Boolean
+   is (Index <= Count (Before)
+       and then Count (After) = Count (Before) - 1
+       and then (for all I in 1 .. Count (After) =>
+                   Element (After, I) =
+                     Element (Before, (if I < Index then I else I + 1))))
+   with
+     Ghost,
+     Global => null;
+   --  After is Before without the event that was added as number Index.
+
    procedure Remove (L : in out List; Index : Positive)
    with
      Global => null,
      Pre    => Index <= Count (L),
-     Post   =>
-       Count (L) = Count (L'Old) - 1
-       and then (for all I in 1 .. Count (L) =>
-                   Element (L, I) =
-                     Element (L'Old, (if I < Index then I else I + 1)));
+     Post   => Is_Removed (L'Old, Index, L);
    --  Take the event that was added as number Index out of the list.
 
    procedure Clear (L : out List)

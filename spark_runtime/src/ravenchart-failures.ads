@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What ends a controller for good: a task that has ended, and a processor
 --  that is silent.
 --

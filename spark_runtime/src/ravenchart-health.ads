@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What can go wrong at run time, as typed faults that a chart can react to.
 --
 --  Guarantees   no state

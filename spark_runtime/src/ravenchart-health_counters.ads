@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The health record of one node.
 --
 --  Guarantees   counts stay at their last value instead of wrapping

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  How long the host withholds the processor: one task above all others that
 --  wakes once per Period and notes how late it is.
 --

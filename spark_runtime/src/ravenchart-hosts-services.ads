@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What a target does for the report of a controller and for its end: the one
 --  part of Hosts that each target has a body of.
 --

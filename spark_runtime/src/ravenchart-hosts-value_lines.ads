@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Recorded values in the report of a controller: V time element value.
 --
 --  Guarantees   as those of Hosts

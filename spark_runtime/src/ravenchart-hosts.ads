@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What is around a controller: requests to stop, its report, and its end.
 --
 --  Guarantees   a report that cannot be written never disturbs the controller:
@@ -11,7 +14,8 @@
 --  RAVENCHART_TRACE names, and nowhere when it is not set; on a board to its
 --  serial line. Lines: E clock, the time of the real-time clock of the machine
 --  at Start of Epochs; M digest, of the model from which the program was
---  generated; T time kind element value; P processor releases misses
+--  generated; T time kind element value; V time element value, of a value
+--  that is recorded (Value_Lines); P processor releases misses
 --  worst_response; A activity worst_execution; H kind count; L what count;
 --  W host_latency; N now, the time at which the statistics were read; F feeds
 --  of the watchdog; END last. Times are in nanoseconds.

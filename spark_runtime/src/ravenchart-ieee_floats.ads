@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Floating-point numbers of IEEE 754 as the raw bits that frames carry, for
 --  the bodies of users: 32 bits are one number of the model, 64 bits are two,
 --  the more significant half first.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  When a processor is silent: the judgement of its supervisor, as pure
 --  functions of what the processor has completed and of the time.
 --

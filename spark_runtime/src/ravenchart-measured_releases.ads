@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  One release of a processor: run its activities, first to last, measure
 --  each one, and judge the deadline. Periodic and sporadic processors share
 --  it.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What was observed of one processor: releases, misses and worst times.
 --
 --  Guarantees   worst values only grow; one Read sees one instant

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Periodic command processor: one task that runs its activity table once in
 --  every Period.
 --
@@ -7,7 +10,7 @@
 --  Tasking      Observe and Observe_Progress by any task up to Ceiling
 --  Timing       each release, the activities whose slot names it
 --  Analysis     one task: T = Period, D = Deadline, O = Offset,
---               P = Task_Priority, C = the largest sum of budgets over the
+--               P = Task_Priority, C = the largest sum of WCETs over the
 --               releases of one Cycle
 --  Assumptions  ASM-003, the clock stays within the range of Time
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Processor time of the calling task.
 --
 --  Guarantees   does not count time in which the task was preempted

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Bounded queue between tasks: a mailbox of a queued port, an event queue of
 --  a region.
 --

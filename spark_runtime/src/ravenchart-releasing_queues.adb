@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 with Ada.Synchronous_Task_Control;
 with Ravenchart.Bounded_Fifos;
 
@@ -22,7 +25,9 @@ is
      with Priority => Ceiling
    is
       procedure Put
-        (Item : Element_Type; Status : out Queueing.Put_Status);
+        (Item      : Element_Type;
+         When_Full : Queueing.Overflow_Policy;
+         Status    : out Queueing.Put_Status);
 
       procedure Take
         (Item : out Element_Type; Status : out Queueing.Take_Status);
@@ -41,12 +46,15 @@ is
 
    protected body Queue is
 
-      procedure Put (Item : Element_Type; Status : out Queueing.Put_Status) is
+      procedure Put
+        (Item      : Element_Type;
+         When_Full : Queueing.Overflow_Policy;
+         Status    : out Queueing.Put_Status) is
       begin
          if Fifos.Length (Store) < Capacity then
             Fifos.Put (Store, Item);
             Status := Queueing.Queued;
-         elsif Policy = Queueing.Drop_Oldest then
+         elsif When_Full = Queueing.Drop_Oldest then
             Fifos.Replace_Oldest (Store, Item);
             Given_Up := Next (Given_Up);
             Status   := Queueing.Dropped_Oldest;
@@ -76,11 +84,14 @@ is
 
    end Queue;
 
-   procedure Put (Item : Element_Type; Status : out Queueing.Put_Status)
+   procedure Put
+     (Item      : Element_Type;
+      Status    : out Queueing.Put_Status;
+      When_Full : Queueing.Overflow_Policy := Policy)
    with Refined_Global => (In_Out => (Queue, Filled))
    is
    begin
-      Queue.Put (Item, Status);
+      Queue.Put (Item, When_Full, Status);
       Set_True (Filled);
    end Put;
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Bounded queue whose elements release a sporadic processor: the mailbox of a
 --  queued port that releases one.
 --
@@ -24,6 +27,7 @@ generic
    Ceiling : System.Any_Priority;
    --  At least the priority of every caller.
    Policy : Queueing.Overflow_Policy;
+   --  For elements that are put without another.
 package Ravenchart.Releasing_Queues
   with
     SPARK_Mode,
@@ -32,7 +36,10 @@ package Ravenchart.Releasing_Queues
        (Wake_Up with Synchronous, External)),
     Initializes    => (State, Wake_Up)
 is
-   procedure Put (Item : Element_Type; Status : out Queueing.Put_Status)
+   procedure Put
+     (Item      : Element_Type;
+      Status    : out Queueing.Put_Status;
+      When_Full : Queueing.Overflow_Policy := Policy)
    with Global => (In_Out => (State, Wake_Up));
    --  Queue Item and wake the caller of Wait; a full queue gives up an element
    --  and counts it.

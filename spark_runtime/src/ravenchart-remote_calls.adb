@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 package body Ravenchart.Remote_Calls
   with SPARK_Mode, Refined_State => (State => Waiting)
 is

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A command of another node as its caller sees it: at most one call waits
 --  for its reply, for Limit executions of the caller.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What an instance on another node publishes, as its readers see it: the
 --  value that came last, while one comes in every Limit executions of the
 --  reader that looks after it.

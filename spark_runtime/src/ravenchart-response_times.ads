@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Sums of the response-time analysis, as timing certificates state them:
 --  static functions, which the compiler evaluates.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The places of a ring buffer, without its elements: where the next element
 --  goes, and where the oldest one is. Proved once here, so that each instance
 --  of a buffer has little left to prove.

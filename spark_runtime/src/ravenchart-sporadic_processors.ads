@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Sporadic command processor: one task that runs its activities once for
 --  each release it is given.
 --
@@ -6,7 +9,7 @@
 --  Tasking      Observe and Observe_Progress by any task up to Ceiling
 --  Timing       each release, all activities
 --  Analysis     one task: T = Minimum_Separation, D = Deadline,
---               P = Task_Priority, C = sum of the budgets. A response counts
+--               P = Task_Priority, C = sum of the WCETs. A response counts
 --               from the return of Wait or from the end of the separation
 --  Assumptions  ASM-003, the clock stays within the range of Time
 

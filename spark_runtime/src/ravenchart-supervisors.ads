@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Liveness supervision of the processors of a node: one task, more urgent
 --  than all that it supervises, looks once per Period whether each of them
 --  has completed what it should have completed by then.

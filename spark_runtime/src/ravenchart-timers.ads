@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The time-outs of one region, counted in executions of its activity.
 --
 --  Guarantees   the earliest expiry is taken first, ties in model order; all

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The trace of one node, kept until the environment task writes it out.
 --
 --  Guarantees   records in the order in which they entered the lock; what

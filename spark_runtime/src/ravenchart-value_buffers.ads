@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The recorded values of one node, kept until the environment task writes
 --  them out. They are beside its trace: no value takes the place of a record
 --  there.

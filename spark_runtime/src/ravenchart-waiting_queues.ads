@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Bounded queue that one task waits on: the way into and out of a driver.
 --
 --  Guarantees   strict order; what does not fit is rejected and counted; an

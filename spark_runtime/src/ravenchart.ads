@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Root of the Ravenchart runtime: the few scalar types that the runtime, the
 --  HAL and generated code share.
 --

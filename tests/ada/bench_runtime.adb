@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What the runtime's operations cost: each beside the same work without the
 --  protected object, in one run. Prints nanoseconds per operation, the median
 --  of several rounds. The locking policy is that of the Ravenscar profile

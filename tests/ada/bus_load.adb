@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Messages on the simulated bus, at full load and with disturbed bits: the
 --  worst response of each.
 --

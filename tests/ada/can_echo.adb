@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A node of a bus, as a process: it does what package Echoes says, under
 --  the number on its command line, and prints how it stands whenever that
 --  has changed. It ends when nobody reads that any more. It takes CAN FD

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Two cores of a card with CTU CAN FD, on one bus: the one that the
 --  environment names, and the one behind it.
 

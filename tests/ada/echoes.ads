@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What a test program does on the bus: each frame whose identifier leaves
 --  the rest Number when divided by 4 is sent back with its identifier plus
 --  one, so that programs of other numbers can take it further. The standard

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Conversions of floating-point numbers, line by line. Read: RAW of 32 bits,
 --  or HIGH LOW of 64. Shown: STATUS, CLASS, SIGN, EXPONENT and FRACTION of the
 --  fields; then, where there is a value, MANTISSA and SCALE, with value =

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Both ends of ISO-TP on a line: the interoperation test gives it frames and
 --  time, and it answers with frames and values.
 --

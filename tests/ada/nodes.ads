@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The CAN controller under test, with the driver of this build.
 
 with Ada.Environment_Variables;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 package body Random_Numbers is
 
    Seed : Interfaces.Unsigned_64 := 1;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Random numbers that are the same in each run: a linear congruential
 --  generator of 64 bits.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The object of a reassembly, outside any stack: values of 19 bytes, asked
 --  for segment by segment.
 

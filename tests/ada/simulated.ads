@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A simulated bus for tests, outside any stack, for its buffers are large.
 
 with Interfaces;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Random byte strings through the slcan parser: a number of them, and how
 --  many of the first lines are to be shown, are the two arguments. A quarter
 --  are any bytes, a quarter bytes that lines are made of, a quarter lines of

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Processors that fall silent, each in its own way, and one that does not;
 --  their supervisor and what it has found.
 

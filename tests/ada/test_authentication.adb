@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Authentication: what stands where in a frame, and attacks between sender
 --  and receiver.
 --

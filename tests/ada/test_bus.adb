@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The bus in virtual time: order, lengths, acknowledgement, errors, and the
 --  way back from bus-off.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The bus in virtual time: faults of the line and of nodes, and faults on
 --  demand.
 

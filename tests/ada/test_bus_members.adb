@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A node of a served bus: what it says is what the server reads, what the
 --  server says is what it hears, and what follows from that.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Calls of another node: one waits, late and repeated frames are told apart.
 --  What is read there is the last that came, and told to be old once.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Lengths of time in ticks, for clocks whose tick is 1 ns, 10 ns and no
 --  whole number of nanoseconds; and in those of the clock of this machine.
 

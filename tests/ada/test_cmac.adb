@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  AES-CMAC, which the tests of authentication use: the examples of RFC 4493.
 
 with Aes_Cmac;

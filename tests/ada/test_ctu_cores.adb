@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Frames from one CTU CAN FD core to another on the same bus, by their
 --  registers: every length, format and bit rate, each sent once the one
 --  before has come. Both cores are free: no driver has them.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Frames between the driver "ctucanfd", on the core that the environment
 --  names, and the core behind it, which is served by its registers: CAN FD
 --  and classic ones, of every length, both ways.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Frames as a CTU CAN FD keeps them, there and back and out of any words;
 --  and what the words of its registers mean.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The CRCs of end-to-end protection: the check values that are published
 --  with them (AUTOSAR CP SWS_CRCLibrary).
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Error counters, the states they lead to, the way back from bus-off, and
 --  the error frames that a node may send.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The log of a controller's faults, and the notices of it: every sequence
 --  of states up to a length, looked at as often as one likes, against a
 --  count of its own.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The end of a frame (ISO 11898-1 (2015), end of frame, overload frame and
 --  intermission): when a receiver takes it, when its transmitter does, and
 --  what a disturbance there does; and when the bit rate is switched.

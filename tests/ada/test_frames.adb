@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  CAN frames: payloads, bytes, and the way through slcan lines and back;
 --  CAN FD frames and their lengths.
 

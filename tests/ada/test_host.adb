@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The process around a controller. Without RAVENCHART_TRACE the report goes
 --  to a full disk; with it, a reader can check the file.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  ISO-TP: transfers of all lengths between the two ends, with each way of
 --  flow control; what a transfer of wrong, lost and late segments comes to;
 --  and any bytes at all.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Periodic and sporadic processors in real time. The machine may be busy:
 --  what is checked holds however late a task is run.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  End-to-end protection: error patterns one by one, and faults of the way
 --  between sender and receiver.
 --

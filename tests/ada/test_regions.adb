@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The pure parts of regions: ports, timers, schedule slots and event lists.
 
 with Facts;

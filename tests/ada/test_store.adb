@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Queues, blackboards and the buffer behind them: order and overflow.
 
 with Facts;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  When a processor is silent, by all small cases and in real time. The
 --  machine may be busy: what is checked holds however late a task is run.
 --  With the argument "wait" the main program never ends the process.

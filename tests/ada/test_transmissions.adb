@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Transmission modes: every sequence of values up to a length, in each mode,
 --  with each minimum delay and period, against what the definitions say of
 --  the frames that have gone before.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Frames as bits on the bus: check sequences, stuff bits, and lengths.
 --
 --  The check values of the CRCs are those of the CRC catalogue of G. Cook

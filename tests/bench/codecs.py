@@ -263,7 +263,7 @@ def ada_main(system: System) -> str:
             IMPORTS.format(
                 name=name,
                 c=message.name,
-                type=type_name(system, message.type),
+                type=type_name(system, message.type).text,
                 codec=codec_name(message),
             )
         )

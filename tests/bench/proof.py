@@ -23,6 +23,8 @@ from typing import Any
 from ravenchart.failures import ToolFailed
 from ravenchart.proof.spark_results import entity_of
 from ravenchart.tools.toolchain import ToolMissing
+from tests.mutation.mutants import text_of
+from tests.mutation.nodes import body_of
 from tests.mutation.observing import Observer
 from tests.mutation.workbench import Workbench
 
@@ -71,7 +73,8 @@ def measure(leaves: int, seed: int) -> Figures:
         model = Path(place) / "model.yaml"
         model.write_text(random_model(leaves, seed), encoding="utf-8")
         bench = Workbench(model, Path(place), Observer)
-        unit, text = next((n, t) for n, t in bench.files.items() if "procedure Fire" in t)
+        unit = next(n for n, one in bench.units.items() if body_of(one, "Fire") is not None)
+        text = text_of(bench.units[unit])
         processor, wall = _processor_time(), time.perf_counter()
         bench.prove([unit], jobs=JOBS)
         processor, wall = _processor_time() - processor, time.perf_counter() - wall

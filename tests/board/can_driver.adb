@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The driver of CAN0 against a peer, which is the registers of CAN1. One line
 --  for each fact.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  CAN0 and CAN1 of Zynq UltraScale+ on one bus: every kind of frame, and a
 --  receive FIFO over its brim. One line for each fact.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Codecs of a robot, and lengths of time in ticks: the lines are the same on
 --  every machine. Contracts are executed.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Stands for gcc where the tests build: a unit that was compiled before, from
 --  the same text and with the same options, is copied from a store.
 --

@@ -6,35 +6,43 @@
 from __future__ import annotations
 
 import difflib
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from random import Random
-from typing import Literal
+from typing import Literal, TypeVar
 
-from .source import Span
+from ravenchart.gen.emit.ada.declarations import Unit
+from ravenchart.gen.emit.ada.text import print_unit
+
+from .nodes import Put, written
+from .texts import Edit, edited
 
 Part = Literal["code", "declared", "model"]
 """What is broken: generated code, the chart as it is declared there, or the model."""
 
-Files = Mapping[str, str]
-"""File name to text: the generated program."""
+Source = Unit | str
+"""A generated unit, or the text of a file that people wrote."""
+Files = Mapping[str, Source]
+"""A program: its units and the files of its model, by their names."""
+Units = Mapping[str, Unit]
 
-NOTE = "Ravenchart.Steps.Note"
-"""Only programs for simulation say what they execute; no rule changes that."""
+T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True)
-class Edit:
-    """Text in place of a span."""
+@lru_cache(maxsize=256)
+def _printed(unit: Unit) -> str:
+    return print_unit(unit)
 
-    span: Span
-    text: str
+
+def text_of(source: Source) -> str:
+    """The text of a file."""
+    return source if isinstance(source, str) else _printed(source)
 
 
 @dataclass(frozen=True, slots=True)
 class Mutant:
-    """One small break: its kind, its part, and the edits of one file.
+    """One small break: its kind, its part, and what is another in one file.
 
     ``place`` names the subprogram or declaration; ``ordinal`` counts the mutants that
     one rule makes of one place, so that the same break is found in the program for
@@ -47,7 +55,7 @@ class Mutant:
     place: str
     rule: str
     ordinal: int
-    edits: tuple[Edit, ...]
+    changes: tuple[Put, ...] | tuple[Edit, ...]
 
     @property
     def key(self) -> tuple[str, str, str, str, int]:
@@ -64,34 +72,50 @@ class Mutant:
         """For people."""
         return f"{self.place}: {self.rule} {self.ordinal}"
 
-    def applied(self, text: str) -> str:
-        """The broken text."""
-        for edit in sorted(self.edits, key=lambda e: -e.span.start):
-            text = text[: edit.span.start] + edit.text + text[edit.span.end :]
-        return text
+    @property
+    def puts(self) -> tuple[Put, ...]:
+        """The other nodes of a unit."""
+        return tuple(one for one in self.changes if isinstance(one, Put))
 
-    def diff(self, text: str) -> str:
+    def broken(self, source: Source) -> Source:
+        """The broken file."""
+        if isinstance(source, str):
+            return edited(source, tuple(one for one in self.changes if isinstance(one, Edit)))
+        return written(source, self.puts)
+
+    def applied(self, source: Source) -> str:
+        """Its text."""
+        found = self.broken(source)
+        return found if isinstance(found, str) else print_unit(found)
+
+    def diff(self, source: Source) -> str:
         """What changed, without line numbers."""
         rows = difflib.unified_diff(
-            text.splitlines(), self.applied(text).splitlines(), n=2, lineterm=""
+            text_of(source).splitlines(), self.applied(source).splitlines(), n=2, lineterm=""
         )
         return "\n".join(r for r in rows if not r.startswith(("---", "+++", "@@")))
 
 
+Broken = tuple[str, str, tuple[Put, ...]]
+"""What a rule over nodes yields: place, rule and changes."""
+UnitRule = Callable[[str, Units], Iterator[Broken]]
+"""Finds its places in the unit of that name; same unit, same order."""
 Found = tuple[str, str, tuple[Edit, ...]]
-"""What a rule yields: place, rule and edits."""
-Rule = Callable[[str, Files], Iterator[Found]]
-"""Finds its places in the file of that name; same text, same order."""
+"""What a rule over texts yields."""
+TextRule = Callable[[str, Mapping[str, str]], Iterator[Found]]
+"""Finds its places in the file of that name."""
 
 
-def numbered(kind: str, part: Part, file: str, found: Iterator[Found]) -> list[Mutant]:
+def numbered(
+    kind: str, part: Part, file: str, found: Iterator[Broken] | Iterator[Found]
+) -> list[Mutant]:
     """Mutants of what a rule found, counted by place and rule."""
     counts: dict[tuple[str, str], int] = {}
     made = []
-    for place, rule, edits in found:
+    for place, rule, changes in found:
         ordinal = counts.get((place, rule), 0) + 1
         counts[(place, rule)] = ordinal
-        made.append(Mutant(kind, part, file, place, rule, ordinal, edits))
+        made.append(Mutant(kind, part, file, place, rule, ordinal, changes))
     return made
 
 
@@ -107,18 +131,3 @@ def sampled(mutants: Sequence[Mutant], limit: int | None, seed: int) -> list[Mut
         rng = Random(f"{seed} {row}")
         chosen += rng.sample(group, min(limit, len(group)))
     return [mutants[i] for i in sorted(chosen)]
-
-
-def matches(text: str, pattern: str) -> Iterator[re.Match[str]]:
-    """Where a pattern is in a text; ^ and $ are the ends of lines."""
-    return re.compile(pattern, re.M).finditer(text)
-
-
-def replaced(span: Span, text: str) -> tuple[Edit, ...]:
-    """One edit."""
-    return (Edit(span, text),)
-
-
-def swapped(text: str, one: Span, other: Span) -> tuple[Edit, ...]:
-    """Two spans that change places."""
-    return Edit(one, other.of(text)), Edit(other, one.of(text))

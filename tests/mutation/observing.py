@@ -24,7 +24,7 @@ from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.building import checking, generation, programs
 from ravenchart.commands import simulate
 from ravenchart.failures import ToolFailed
-from ravenchart.gen.emit.program import simulation
+from ravenchart.gen.emit.program import units_of_simulation
 from ravenchart.gen.language.terms import (
     IntegerType,
     Ns,
@@ -41,7 +41,7 @@ from ravenchart.paths import ROOT
 from ravenchart.running.runs import controller, run_controller, run_nodes
 
 from .catalogue import mutants_of
-from .mutants import Mutant
+from .mutants import Mutant, text_of
 
 SEEDS = range(4)
 """The first run gets no stimuli, the others random ones."""
@@ -114,7 +114,7 @@ class Simulated(Observer):
         self.system = checked.system
         self.stimuli = [random_stimuli(self.system, seed) for seed in SEEDS]
         self.expected = [_records(Machine(self.system).run(s)) for s in self.stimuli]
-        self.files = dict(simulation(self.system))
+        self.files = units_of_simulation(self.system)
         self.mutants = {m.key: m for m in mutants_of(self.files)}
         self.home = folder / "simulation"
         self.real = Real(checked, folder)
@@ -139,7 +139,7 @@ class Simulated(Observer):
         except ToolFailed as failed:
             return str(failed).strip().splitlines()[-1]
         finally:
-            path.write_text(self.files[mutant.file])
+            path.write_text(text_of(self.files[mutant.file]))
 
     def _build(self) -> None:
         project = f"{self.program.name}.gpr"

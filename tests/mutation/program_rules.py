@@ -5,144 +5,226 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
+from ravenchart.gen.emit.ada.declarations import GenericInstance, Object, Unit
+from ravenchart.gen.emit.ada.expressions import (
+    Arg,
+    Call,
+    Expr,
+    IntegerLiteral,
+    Membership,
+    OperatorChain,
+    bits,
+    number,
+)
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.certificate.certified import CERTIFICATE
 from ravenchart.gen.model.signals import FD_SIZES
 
-from .mutants import Files, Found, matches, replaced
-from .source import Span, Subprogram, subprograms
+from .mutants import Broken, Units
+from .nodes import Body, Spot, bodies, following, put, whole
+
+_CEILINGS = ("Ceiling", "Transmit_Ceiling", "Receive_Ceiling")
+_SHIFTS = ref("Interfaces.Shift_Left"), ref("Interfaces.Shift_Right")
+_OTHERS = (
+    ("format", ref("Ravenchart.Can.Standard"), ref("Ravenchart.Can.Extended")),
+    *(
+        ("family", ref("Ravenchart.Can.Any_Frames", one), ref("Ravenchart.Can.Any_Frames", other))
+        for one, other in (("Classic", "Flexible"),)
+    ),
+    (
+        "rate",
+        ref("Ravenchart.Can.Fd_Frames.Constant_Rate"),
+        ref("Ravenchart.Can.Fd_Frames.Switched_Rate"),
+    ),
+)
+"""What is said of a frame besides its identifier and its length."""
 
 
-def ceiling(file: str, files: Files) -> Iterator[Found]:
+def args_named(inside: Spot[object], *names: str) -> Iterator[Spot[Arg]]:
+    """The associations with a parameter or component of one of these names."""
+    return (one for one in inside.within(Arg) if one.node.name in names)
+
+
+def ceiling(file: str, units: Units) -> Iterator[Broken]:
     """A protected object whose ceiling is one too low."""
-    text = files[file]
-    for match in matches(text, r"Ceiling => System\.Default_Priority \+ (\d+)"):
-        package = re.findall(r"package (\w+) is new", text[: match.start()])[-1]
-        lower = int(match.group(1)) - 1
-        yield package, "lower", replaced(Span(*match.span(1)), str(lower))
+    for instance in whole(units[file]).within(GenericInstance):
+        for arg in args_named(instance, *_CEILINGS):
+            match arg.node.value:
+                case OperatorChain("+", (_, IntegerLiteral(level))):
+                    lower = number(level - 1)
+                    yield instance.node.name, "lower", put(arg.at("value", "operands", 1), lower)
 
 
-def certificate(file: str, files: Files) -> Iterator[Found]:
+def certificates(units: Units) -> list[Unit]:
+    """The certificates of a program: each of its nodes has one."""
+    return [unit for unit in units.values() if unit.name.last == CERTIFICATE]
+
+
+def stated(units: Units) -> dict[str, int]:
+    """The numbers that certificates state as they are, by their names."""
+    return {
+        one.node.name: one.node.value.value
+        for unit in certificates(units)
+        for one in whole(unit).within(Object)
+        if isinstance(one.node.value, IntegerLiteral)
+    }
+
+
+def certificate(file: str, units: Units) -> Iterator[Broken]:
     """A claimed response time, a budget or a deadline that does not hold."""
-    text = files[file]
-    for match in matches(text, r"^   (\w+)_(R|D|Budget) : constant :=\s+([\d_]+);"):
-        name, what, value = match.group(1), match.group(2), int(match.group(3).replace("_", ""))
-        if what == "R":
-            yield name, "bound", replaced(Span(*match.span(3)), str(value - 1))
-        elif what == "D":
-            claimed = re.search(rf"^   {name}_R : constant :=\s+([\d_]+);", text, re.M)
-            if claimed:
-                least = int(claimed.group(1).replace("_", ""))
-                yield name, "deadline", replaced(Span(*match.span(3)), str(least - 1))
-        else:
-            yield name, "budget", replaced(Span(*match.span(3)), str(value + 1))
-
-
-def codec_in_code(file: str, files: Files) -> Iterator[Found]:
-    """A field at another bit, a value by another offset, one field for another."""
-    text = files[file]
-    for one in subprograms(text):
-        if one.is_expression:
-            for match in re.compile(r"Shift_Left \([^;]*?, (\d+)\)").finditer(
-                text, one.inner.start, one.inner.end
-            ):
-                new = str(int(match.group(1)) + 1)
-                yield one.name, "bit", replaced(Span(*match.span(1)), new)
-        if one.name.startswith("Bits_Of_"):
-            yield from _offsets(text, one)
-
-
-def _offsets(text: str, one: Subprogram) -> Iterator[Found]:
-    """What is added to or taken from a value is one more."""
-    offset = re.compile(r" [-+] (\d[\d_]*)")
-    for match in offset.finditer(text, one.whole.start, one.whole.end):
-        more = int(match.group(1).replace("_", "")) + 1
-        yield one.name, "offset", replaced(Span(*match.span(1)), str(more))
-
-
-def codec_declared(file: str, files: Files) -> Iterator[Found]:
-    """A field that is declared at another bit or of another width."""
-    text = files[file]
-    for one in subprograms(text):
-        if not one.is_expression:
+    known = stated({file: units[file]})
+    for one in whole(units[file]).within(Object):
+        own, _, what = one.node.name.rpartition("_")
+        if one.node.name not in known:
             continue
-        if one.name.endswith("_Of_Bits"):
-            yield from _offsets(text, one)
-        inner = one.inner
-        for match in re.compile(r"Shift_Right \(Word, (\d+)\)").finditer(
-            text, inner.start, inner.end
-        ):
-            new = str(int(match.group(1)) + 1)
-            yield one.name, "bit", replaced(Span(*match.span(1)), new)
-        for match in re.compile(r"and 16#([0-9A-F_]+)#").finditer(text, inner.start, inner.end):
-            new = f"{int(match.group(1).replace('_', ''), 16) >> 1:X}"
-            yield one.name, "width", replaced(Span(*match.span(1)), new)
+        value = one.at("value")
+        if what == "R":
+            yield own, "bound", put(value, number(known[one.node.name] - 1))
+        elif what == "D" and f"{own}_R" in known:
+            yield own, "deadline", put(value, number(known[f"{own}_R"] - 1))
+        elif what == "Budget":
+            yield own, "budget", put(value, number(known[one.node.name] + 1))
 
 
-def frame_in_code(file: str, files: Files) -> Iterator[Found]:
+# --- codecs
+
+
+def codec_in_code(file: str, units: Units) -> Iterator[Broken]:
+    """A field at another bit, a value by another offset."""
+    for one in bodies(units[file]):
+        if one.is_expression:
+            yield from _places(one)
+        if one.name.startswith("Bits_Of_"):
+            yield from _offsets(one)
+
+
+def codec_declared(file: str, units: Units) -> Iterator[Broken]:
+    """A field that is declared at another bit or of another width."""
+    for one in bodies(units[file]):
+        if one.is_expression:
+            yield from _places(one)
+            for chain in one.inner.within(OperatorChain):
+                match chain.node:
+                    case OperatorChain("and", (_, IntegerLiteral(value, 16))):
+                        yield one.name, "width", put(chain.at("operands", 1), bits(value >> 1))
+
+
+def _places(one: Body) -> Iterator[Broken]:
+    """The bit where something stands is the next one."""
+    for call in one.inner.within(Call):
+        match call.node:
+            case Call(name, (_, Arg(None, IntegerLiteral(by)))) if name in _SHIFTS:
+                yield one.name, "bit", put(call.at("args", 1, "value"), number(by + 1))
+
+
+def _offsets(one: Body) -> Iterator[Broken]:
+    """What is added to or taken from a value is one more."""
+    for chain in one.spot.within(OperatorChain):
+        if chain.node.operator in ("+", "-"):
+            for place, operand in enumerate(chain.node.operands[1:], 1):
+                if isinstance(operand, IntegerLiteral):
+                    more = number(operand.value + 1)
+                    yield one.name, "offset", put(chain.at("operands", place), more)
+
+
+# --- frames
+
+
+def frame_in_code(file: str, units: Units) -> Iterator[Broken]:
     """A frame that is sent or expected with another identifier, format, length or bit rate."""
-    text = files[file]
-    made = [s.name for s in subprograms(text) if s.name.startswith("Frame_Of_")]
-    for one in subprograms(text):
-        if one.name.startswith("Send_") and len(made) > 1:
-            for match in re.compile(r"\bFrame_Of_\w+").finditer(
-                text, one.whole.start, one.whole.end
-            ):
-                new = made[(made.index(match.group()) + 1) % len(made)]
-                yield one.name, "message", replaced(Span(*match.span()), new)
-        if re.search(r"\w+_Frame\s+\(Id =>", one.inner.of(text)):
-            yield from _frames(files, file, one.name, one.inner, *_IN_AGGREGATE)
+    own = bodies(units[file])
+    made = [ref(one.name) for one in own if one.name.startswith("Frame_Of_")]
+    for one in own:
+        if one.name.startswith("Send_"):
+            for call in one.spot.within(Call):
+                if (other := following(call.node.name, made)) is not None:
+                    yield one.name, "message", put(call.at("name"), other)
+        whole_frames = [
+            call for call in one.inner.within(Call) if _last(call.node) == "Whole_Frame"
+        ]
+        if whole_frames:
+            yield from _frames(units, one.name, one.inner, *_by_name(one.inner))
         elif one.name == "Run_Receive":
-            expected = r"\.Id \(Frame\)\s+= ([\w.]+)", r"Carries\s+\(Frame,\s+[\w.]+,\s+([\w.]+)\)"
-            yield from _frames(files, file, one.name, one.inner, *expected)
+            yield from _frames(units, one.name, one.inner, _asked(one), _carried(one))
         elif one.name == "Accepts":
-            yield from _identifiers(files, file, one.name, one.inner, r"\bId\s+in\s+([\w.]+)")
+            yield from _identifiers(units, one.name, _accepted(one))
 
 
-_IN_AGGREGATE = r"\bId => ([\w.]+)", r"\bLength => ([\w.]+)"
-
-
-def frame_declared(file: str, files: Files) -> Iterator[Found]:
+def frame_declared(file: str, units: Units) -> Iterator[Broken]:
     """A row of the layout table that says so of a frame."""
-    for match in matches(files[file], r"^   (Frame_\w+) : constant Row_Of_Frame :=[^;]*;"):
-        yield from _frames(files, file, match.group(1), Span(*match.span()), *_IN_AGGREGATE)
+    for one in whole(units[file]).within(Object):
+        if one.node.type == ref("Row_Of_Frame"):
+            yield from _frames(units, one.node.name, one, *_by_name(one))
 
 
-def _number(files: Files, shown: str) -> int:
+def _last(call: Call) -> str:
+    return call.name.last if isinstance(call.name, DottedName) else ""
+
+
+def _by_name(where: Spot[object]) -> tuple[list[Spot[Expr]], list[Spot[Expr]]]:
+    """The identifiers and the lengths that are given by the names of components."""
+    ids, lengths = (
+        [arg.at("value") for arg in args_named(where, name)] for name in ("Id", "Length")
+    )
+    return ids, lengths
+
+
+def _asked(one: Body) -> list[Spot[Expr]]:
+    """The identifiers with which that of a frame is compared."""
+    return [
+        chain.at("operands", 1)
+        for chain in one.inner.within(OperatorChain)
+        if chain.node.operator == "="
+        and isinstance(left := chain.node.operands[0], Call)
+        and _last(left) == "Id"
+    ]
+
+
+def _carried(one: Body) -> list[Spot[Expr]]:
+    """The lengths that a frame must have."""
+    return [
+        call.at("args", 2, "value")
+        for call in one.inner.within(Call)
+        if _last(call.node) == "Carries"
+    ]
+
+
+def _accepted(one: Body) -> list[Spot[Expr]]:
+    """The identifiers that a filter lets in, of which each test has some."""
+    tests = one.inner.within(Membership)
+    return [test.at("among", "choices", 0) for test in tests if test.node.item == ref("Id")]
+
+
+def _number(units: Units, shown: Expr) -> int:
     """A literal's value, or that of a fact of the certificate."""
-    if not shown[0].isdigit():
-        named = rf"\b{shown.rpartition('.')[2]} : constant := ([\w#]+);"
-        stated = (re.search(named, text) for text in files.values())
-        shown = next(found.group(1) for found in stated if found is not None)
-    plain = shown.replace("_", "")
-    return int(plain[3:-1], 16) if plain.startswith("16#") else int(plain)
+    if isinstance(shown, IntegerLiteral):
+        return shown.value
+    assert isinstance(shown, DottedName)
+    return stated(units)[shown.last]
 
 
 def _frames(
-    files: Files, file: str, place: str, where: Span, identifier: str, length: str
-) -> Iterator[Found]:
-    text = files[file]
-    yield from _identifiers(files, file, place, where, identifier)
-    for match in re.compile(length).finditer(text, where.start, where.end):
-        at = FD_SIZES.index(_number(files, match.group(1)))
+    units: Units,
+    place: str,
+    where: Spot[object],
+    identifiers: list[Spot[Expr]],
+    lengths: list[Spot[Expr]],
+) -> Iterator[Broken]:
+    yield from _identifiers(units, place, identifiers)
+    for length in lengths:
+        at = FD_SIZES.index(_number(units, length.node))
         if at > 0:
-            yield place, "short", replaced(Span(*match.span(1)), str(FD_SIZES[at - 1]))
+            yield place, "short", put(length, number(FD_SIZES[at - 1]))
         if at + 1 < len(FD_SIZES):
-            yield place, "long", replaced(Span(*match.span(1)), str(FD_SIZES[at + 1]))
-    for what, one, other in (
-        ("format", "Can.Standard", "Can.Extended"),
-        ("family", "Any_Frames.Classic", "Any_Frames.Flexible"),
-        ("rate", "Fd_Frames.Constant_Rate", "Fd_Frames.Switched_Rate"),
-    ):
-        both = re.compile(rf"\b(?:{re.escape(one)}|{re.escape(other)})\b")
-        for match in both.finditer(text, where.start, where.end):
-            new = other if match.group() == one else one
-            yield place, what, replaced(Span(*match.span()), new)
+            yield place, "long", put(length, number(FD_SIZES[at + 1]))
+    for what, *both in _OTHERS:
+        for name in where.within(DottedName):
+            if (other := following(name.node, both)) is not None:
+                yield place, what, put(name, other)
 
 
-def _identifiers(files: Files, file: str, place: str, where: Span, pattern: str) -> Iterator[Found]:
-    text = files[file]
-    for match in re.compile(pattern).finditer(text, where.start, where.end):
-        other = _number(files, match.group(1)) ^ 1
-        yield place, "identifier", replaced(Span(*match.span(1)), str(other))
+def _identifiers(units: Units, place: str, found: list[Spot[Expr]]) -> Iterator[Broken]:
+    for spot in found:
+        yield place, "identifier", put(spot, number(_number(units, spot.node) ^ 1))

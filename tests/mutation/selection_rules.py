@@ -5,223 +5,201 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
-from .mutants import Edit, Files, Found, replaced, swapped
-from .source import (
-    Branch,
-    Span,
-    Subprogram,
-    branches,
-    choices,
+from ravenchart.gen.emit.ada.declarations import EnumType, Unit
+from ravenchart.gen.emit.ada.expressions import (
+    COMPARISONS,
+    TRUE,
+    Arg,
+    Attribute,
+    Call,
+    CaseExpr,
+    ChoiceList,
+    Expr,
+    Membership,
+    OperatorChain,
+    Prefix,
+    RangeConstrained,
+    both,
+)
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.statements import Assign, IfStatement, Return
+from ravenchart.gen.emit.charts.shape import PASSING
+
+from .mutants import Broken, Units
+from .nodes import (
+    Put,
+    Spot,
+    body_of,
     conjuncts,
-    declared_rows,
-    subprogram,
-    subprograms,
+    each_following,
+    exchanged,
+    following,
+    names_of,
+    put,
+    statements,
+    whole,
 )
 
-_PLACED = re.compile(r"^(?:Place|Leaf)\b")
-_TRIGGER = re.compile(r"^Now\b")
-_COMPARISONS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "=": "/=", "/=": "="}
+_IN_SOURCE, _ENABLED, _SELECTED = ref("In_Source"), ref("Enabled"), ref("Selected")
+_NOW, _NONE = ref("Now"), ref("None")
+_COMPARED = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "=": "/=", "/=": "="}
 
 
-def selectors(text: str) -> Iterator[tuple[Subprogram, list[Branch]]]:
-    """The selection functions of states with their branches; of leaves, where they have one."""
-    for one in subprograms(text):
-        if one.is_expression and one.name.startswith(("In_", "Around_")):
-            found = branches(text, one.inner)
-            if found and re.match(r"Now\b", found[0].head.of(text)):
-                yield one, found
+def _calls(unit: Unit, function: str, called: DottedName) -> list[Spot[Call]]:
+    """The calls of a function in the body of another one."""
+    one = body_of(unit, function)
+    every = one.inner.within(Call) if one is not None else ()
+    return [call for call in every if call.node.name == called]
 
 
-def _other(text: str, found: re.Match[str], candidates: list[str]) -> str | None:
-    """The candidate after the one that stands there, in a circle."""
-    here = found.group(0)
-    ordered = list(dict.fromkeys(candidates))
-    if here not in ordered or len(ordered) < 2:
-        return None
-    return ordered[(ordered.index(here) + 1) % len(ordered)]
+def _alternatives(unit: Unit, function: str) -> list[tuple[list[DottedName], Spot[Expr]]]:
+    """The transitions and values of the case of an expression function."""
+    one = body_of(unit, function)
+    case = next(one.inner.within(CaseExpr), None) if one is not None else None
+    if case is None:
+        return []
+    return [
+        (
+            [one for one in choices.choices if isinstance(one, DottedName)],
+            case.at("branches", place, 1),
+        )
+        for place, (choices, _) in enumerate(case.node.branches)
+    ]
 
 
 # --- source
 
 
-def source_in_code(file: str, files: Files) -> Iterator[Found]:
-    """A transition that its leaf forgets, and leaves whose functions are exchanged."""
-    text = files[file]
-    for one, found in selectors(text):
-        for index, branch in enumerate(found[:-1]):
-            if len(found) == 2:
-                yield one.name, "forget", replaced(one.inner, "None")
-            elif index == 0:
-                span = Span(branch.head.start, found[1].head.start)
-                yield one.name, "forget", replaced(span, "")
-            else:
-                span = Span(found[index - 1].body.end, branch.body.end)
-                yield one.name, "forget", replaced(span, "")
-    for one in subprograms(text):
-        if not one.is_expression or not one.name.startswith(("In_", "Select_")):
-            continue
-        case = re.compile(r"\(?case ").search(text, one.inner.start, one.inner.end)
-        rows = _dispatch(text, one) if case else []
-        for first, second in pairwise(rows):
-            yield one.name, "exchange", swapped(text, first.body, second.body)
-
-
-def _dispatch(text: str, one: Subprogram) -> list[Branch]:
-    whole = one.inner
-    nested = branches(text, whole)
-    if nested:
-        whole = nested[0].body
-    inside = whole.of(text)
-    if inside.startswith("("):
-        whole = Span(whole.start + 1, whole.end - 1)
-    return choices(text, whole)
-
-
-def source_declared(file: str, files: Files) -> Iterator[Found]:
-    """Another state as the source of a declared transition; none that is asked for."""
-    yield from _declared(file, files, "In_Source", "source", _PLACED)
-    text = files[file]
-    one = subprogram(text, "Enabled")
-    asked = one and re.compile(r"\bIn_Source \([^()]*\)").search(text, one.inner.start)
-    if one is not None and asked and asked.end() < one.inner.end:
-        yield "Enabled", "source", replaced(Span(*asked.span()), "True")
-
-
-def _declared(
-    file: str, files: Files, function: str, rule: str, part: re.Pattern[str]
-) -> Iterator[Found]:
-    text = files[file]
-    parts = [
-        span
-        for row in declared_rows(text, function)
-        for span in conjuncts(text, row.body)
-        if part.match(span.of(text))
+def source_in_code(file: str, units: Units) -> Iterator[Broken]:
+    """The transitions of another lane, among which one is selected; the one found is forgotten."""
+    lanes = [
+        [end for n in range(2) if isinstance((end := call.at("args", n, "value")).node, Attribute)]
+        for call in _calls(units[file], "Choose", _SELECTED)
     ]
-    literal = re.compile(r"(?<=[=|] )[\w.]+$" if part is _TRIGGER else r"\w+\.\w+$")
-    stems: dict[str, list[str]] = {}
-    for span in parts:
-        match = literal.search(span.of(text))
-        if match:
-            stems.setdefault(span.of(text)[: match.start()], []).append(match.group(0))
-    for span in parts:
-        match = literal.search(span.of(text))
-        if match is None:
-            continue
-        stem = span.of(text)[: match.start()]
-        new = _other(text, match, stems[stem])
-        if new is not None:
-            at = Span(span.start + match.start(), span.start + match.end())
-            yield function, rule, replaced(at, new)
+    for lane in lanes:
+        if (other := following(_nodes(lane), list(map(_nodes, lanes)))) is not None:
+            puts = zip(lane, other, strict=True)
+            yield "Choose", "lane", tuple(one for end, to in puts for one in put(end, to))
+    one = body_of(units[file], _SELECTED.text)
+    for gives in one.inner.within(Return) if one is not None else ():
+        if gives.node.value != _NONE:
+            yield _SELECTED.text, "forget", put(gives.at("value"), _NONE)
+
+
+def _nodes(spots: Sequence[Spot[Expr]]) -> tuple[Expr, ...]:
+    return tuple(spot.node for spot in spots)
+
+
+def source_declared(file: str, units: Units) -> Iterator[Broken]:
+    """Another state as the source of a declared transition; none that is asked for."""
+    for _, puts in each_following(_compared(units[file], _IN_SOURCE.text)):
+        yield "In_Source", "source", puts
+    for asked in _calls(units[file], _ENABLED.text, _IN_SOURCE):
+        yield "Enabled", "source", put(asked, TRUE)
+
+
+def _compared(unit: Unit, function: str) -> list[tuple[object, Spot[DottedName]]]:
+    """The literals that the alternatives of a function compare, with what is alike in them."""
+    found: list[tuple[object, Spot[DottedName]]] = []
+    for _, row in _alternatives(unit, function):
+        for part in conjuncts(row):
+            match part.node:
+                case OperatorChain("=", (DottedName() as left, DottedName())):
+                    found.append((left, part.at("operands", 1)))
+                case Membership(item, ChoiceList((*others, DottedName()))):
+                    last = part.at("among", "choices", len(others))
+                    found.append(((item, *others), last))
+    return found
 
 
 # --- trigger and guard
 
 
-def trigger_in_code(file: str, files: Files) -> Iterator[Found]:
-    """Another occurrence in the condition of a selected transition."""
-    text = files[file]
-    found = [(one.name, row.head) for one, rows in selectors(text) for row in rows[:-1]]
-    names = re.findall(r"\bNow = (\w+)", "\n".join(h.of(text) for _, h in found))
-    for name, head in found:
-        match = re.match(r"Now = (\w+)", head.of(text))
-        if match is None:
-            continue
-        new = _after(match.group(1), names)
-        if new is not None:
-            at = Span(head.start + match.start(1), head.start + match.end(1))
-            yield name, "trigger", replaced(at, new)
+def trigger_in_code(file: str, units: Units) -> Iterator[Broken]:
+    """Another occurrence for which a segment is selected."""
+    for call in _calls(units[file], "Next_Segment", _SELECTED):
+        for arg in call.within(Arg):
+            if arg.node.value == ref(PASSING):
+                yield "Next_Segment", "trigger", put(arg.at("value"), ref("Conditions"))
 
 
-def _after(here: str, names: list[str]) -> str | None:
-    ordered = list(dict.fromkeys(names))
-    if len(ordered) < 2:
-        return None
-    return ordered[(ordered.index(here) + 1) % len(ordered)]
-
-
-def trigger_declared(file: str, files: Files) -> Iterator[Found]:
+def trigger_declared(file: str, units: Units) -> Iterator[Broken]:
     """Another occurrence as the trigger of a declared transition."""
-    yield from _declared(file, files, "Enabled", "trigger", _TRIGGER)
+    asked = [
+        (key, spot)
+        for key, spot in _compared(units[file], "Enabled")
+        if _NOW in (key, *(key if isinstance(key, tuple) else ()))
+    ]
+    for _, puts in each_following(asked):
+        yield "Enabled", "trigger", puts
 
 
-def guard_in_code(file: str, files: Files) -> Iterator[Found]:
-    """A guard that is dropped, denied or shifted by one comparison, in a leaf's function."""
-    text = files[file]
-    for one, rows in selectors(text):
-        for row in rows[:-1]:
-            parts = conjuncts(text, row.head)
-            for before, part in pairwise(parts):
-                for rule, edits in _guards(text, before, part):
-                    yield one.name, rule, edits
+def guard_in_code(file: str, units: Units) -> Iterator[Broken]:
+    """The first transition is selected whether it is enabled or not, or one that is not."""
+    one = body_of(units[file], _SELECTED.text)
+    for asks in one.inner.within(IfStatement) if one is not None else ():
+        condition = asks.at("branches", 0, 0)
+        yield _SELECTED.text, "drop guard", put(condition, TRUE)
+        yield _SELECTED.text, "deny guard", put(condition, Prefix("not", condition.node))
 
 
-def guard_declared(file: str, files: Files) -> Iterator[Found]:
+def guard_declared(file: str, units: Units) -> Iterator[Broken]:
     """A guard that is dropped, denied or shifted by one comparison."""
-    text = files[file]
-    for row in declared_rows(text, "Enabled"):
-        parts = conjuncts(text, row.body)
-        for before, part in pairwise(parts):
-            for rule, edits in _guards(text, before, part):
-                yield "Enabled", rule, edits
+    for _, row in _alternatives(units[file], _ENABLED.text):
+        for rule, puts in _guards(row):
+            yield "Enabled", rule, puts
 
 
-def _guards(text: str, before: Span, part: Span) -> Iterator[tuple[str, tuple[Edit, ...]]]:
-    yield "drop guard", replaced(Span(before.end, part.end), "")
-    yield "deny guard", replaced(part, f"not ({part.of(text)})")
-    for match in re.finditer(r"(?<= )(<=|>=|/=|<|>|=)(?= )", part.of(text)):
-        at = Span(part.start + match.start(), part.start + match.end())
-        yield "shift guard", replaced(at, _COMPARISONS[match.group(0)])
+def _guards(condition: Spot[Expr]) -> Iterator[tuple[str, tuple[Put, ...]]]:
+    parts = conjuncts(condition)
+    for place, part in enumerate(parts[1:], 1):
+        others = [one.node for one in (*parts[:place], *parts[place + 1 :])]
+        yield "drop guard", put(condition, both(*others))
+        yield "deny guard", put(part, Prefix("not", part.node))
+        for chain in part.within(OperatorChain):
+            if chain.node.operator in COMPARISONS:
+                other = replace(chain.node, operator=_COMPARED[chain.node.operator])
+                yield "shift guard", put(chain, other)
 
 
 # --- precedence
 
 
-def priority_in_code(file: str, files: Files) -> Iterator[Found]:
-    """Two transitions of one trigger that are looked at in the other order; an outer lane that
-    selects although an inner one does."""
-    text = files[file]
-    for one, rows in selectors(text):
-        for first, second in _same_trigger(text, rows):
-            edits = (
-                *swapped(text, first.head, second.head),
-                *swapped(text, first.body, second.body),
-            )
-            yield one.name, "precede", edits
-    choose = subprogram(text, "Choose")
-    if choose is not None:
-        for match in re.compile(r"\bif (C\.[^;]*?)\s+then\b").finditer(
-            text, choose.inner.start, choose.inner.end
-        ):
-            yield "Choose", "outer lane", replaced(Span(*match.span(1)), "True")
+def priority_in_code(file: str, units: Units) -> Iterator[Broken]:
+    """An outer lane that selects although an inner one does, or before it."""
+    choose = body_of(units[file], "Choose")
+    if choose is None:
+        return
+    for before, asks in pairwise(statements(choose.inner)):
+        if isinstance(asks.node, IfStatement):
+            condition = asks.at("branches", 0, 0)
+            yield "Choose", "outer lane", put(condition, TRUE)
+            asked = set(names_of(condition.node))
+            if isinstance(before.node, Assign) and before.node.target in asked:
+                yield "Choose", "outer first", exchanged(before, asks)
 
 
-def _same_trigger(text: str, rows: list[Branch]) -> Iterator[tuple[Branch, Branch]]:
-    for first, second in pairwise(rows[:-1]):
-        heads = [conjuncts(text, r.head)[0].of(text) for r in (first, second)]
-        if heads[0] == heads[1]:
-            yield first, second
-
-
-def priority_declared(file: str, files: Files) -> Iterator[Found]:
-    """Two transitions of one trigger that are declared in the other order."""
-    text = files[file]
-    body = files.get(file.removesuffix("s") + "b", "")
-    listed = re.search(r"type Selection is\s*\(([^)]*)\)", text)
+def priority_declared(file: str, units: Units) -> Iterator[Broken]:
+    """Two transitions of one source and trigger that are declared in the other order."""
+    every = whole(units[file])
+    listed = next((t for t in every.within(EnumType) if t.node.name == "Selection"), None)
     if listed is None:
         return
-    at = {m.group(0): m for m in re.compile(r"\w+").finditer(text, *listed.span(1))}
-    bounds = set(re.findall(r"range (\w+) \.\. (\w+)", text))
-    kept = {name for pair in bounds for name in pair}
-    done = set()
-    for _, rows in selectors(body):
-        for first, second in _same_trigger(body, rows):
-            one, other = first.body.of(body), second.body.of(body)
-            if (one, other) in done or {one, other} & kept:
-                continue
-            done.add((one, other))
-            spans = [Span(*at[name].span()) for name in (one, other)]
-            yield "Selection", "precede", swapped(text, *spans)
+    triggers = {
+        choice: conjuncts(row)[0].node
+        for choices, row in _alternatives(units[file], _ENABLED.text)
+        for choice in choices
+    }
+    at = {ref(name): listed.at("literals", n) for n, name in enumerate(listed.node.literals)}
+    bounds = {name for one in every.within(RangeConstrained) for name in names_of(one.node.bounds)}
+    for choices, _ in _alternatives(units[file], _IN_SOURCE.text):
+        alike: dict[Expr, list[DottedName]] = {}
+        for choice in choices:
+            alike.setdefault(triggers[choice], []).append(choice)
+        for pair in (pair for same in alike.values() for pair in pairwise(same)):
+            if not bounds & set(pair):
+                yield "Selection", "precede", exchanged(at[pair[0]], at[pair[1]])

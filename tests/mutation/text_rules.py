@@ -8,8 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from .mutants import Found, Mutant, numbered, replaced
-from .source import Span, Subprogram, subprograms
+from .mutants import Found, Mutant, numbered
+from .texts import Span, WrittenBody, replaced, written_bodies
 
 _REPLACED = {
     "comparison": {" < ": " <= ", " <= ": " < ", " > ": " >= ", " >= ": " > "},
@@ -32,7 +32,7 @@ _PROOF_ONLY = re.compile(
 
 def mutants_of(file: str, text: str) -> list[Mutant]:
     """Every mutant of a unit, kind by kind; the same text gives the same ones."""
-    bodies = [(b.name, b.inner) for b in subprograms(text) if not _is_ghost(text, b)]
+    bodies = [(b.name, b.inner) for b in written_bodies(text) if not _is_ghost(text, b)]
     bodies += [(match[2], Span(*match.span(3))) for match in _TASK.finditer(text)]
     hidden = [Span(*match.span()) for match in _PROOF_ONLY.finditer(text)]
     found: list[Mutant] = []
@@ -46,7 +46,7 @@ def mutants_of(file: str, text: str) -> list[Mutant]:
     return found
 
 
-def _is_ghost(text: str, body: Subprogram) -> bool:
+def _is_ghost(text: str, body: WrittenBody) -> bool:
     """Is it there for proof alone?"""
     contract = body.whole.of(text)
     if not body.is_expression:

@@ -19,14 +19,18 @@ import yaml
 
 from ravenchart.building import checking, generation, programs
 from ravenchart.failures import Refused, ToolFailed
-from ravenchart.gen.emit.program import generate, user_units
+from ravenchart.gen.emit.ada.declarations import GenericInstance, Unit
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.walking import names_in
+from ravenchart.gen.emit.buses.layout_tables import LAYOUTS
+from ravenchart.gen.emit.program import generate, units_of_program, user_units
 from ravenchart.paths import ROOT
 from ravenchart.proof import ages
 from ravenchart.tools.toolchain import ToolMissing, have
 
-from .mutants import Files, Mutant
+from .mutants import Files, Mutant, text_of
+from .nodes import bodies, body_of, whole
 from .observing import Observer, Simulated
-from .source import declared_rows, subprogram, subprograms
 
 LONGEST = 1200
 """Seconds after which a tool is given up: the mutant counts as not caught by it."""
@@ -61,16 +65,22 @@ class Workbench:
         checked = checking.check(model)
         self.folder = folder
         self.driver = programs.default_driver(checked)
-        files = dict(generate(checked.system, generation.claims(checked)))
+        claims = generation.claims(checked)
         home = f"{node}/" if node else ""
-        files = {n.removeprefix(home): t for n, t in files.items() if n.startswith(home)}
-        self.model = checked.path
-        self.files: Files = {
-            **{n: t for n, t in files.items() if n.endswith((".ads", ".adb"))},
-            **_model_files(checked.path),
+        texts = {
+            name.removeprefix(home): text
+            for name, text in generate(checked.system, claims).items()
+            if name.startswith(home)
         }
+        self.units = {
+            name.removeprefix(home): unit
+            for name, unit in units_of_program(checked.system, claims).items()
+            if name.startswith(home)
+        }
+        self.model = checked.path
+        self.files: Files = {**self.units, **_model_files(checked.path)}
         self.source = folder / "model" / "generated"
-        self._copy(checked, files)
+        self._copy(checked, texts)
         self.project = f"{checked.stem}.gpr"
         self.main = f"{checked.stem}_main"
         self.observer = observer(checked, folder)
@@ -117,14 +127,14 @@ class Workbench:
 
     @contextmanager
     def _broken(self, mutant: Mutant) -> Iterator[str]:
-        text = self.files[mutant.file]
-        broken = mutant.applied(text)
+        sound = self.files[mutant.file]
+        broken = mutant.applied(sound)
         path = self.source / mutant.file
         path.write_text(broken)
         try:
             yield broken
         finally:
-            path.write_text(text)
+            path.write_text(text_of(sound))
 
     def run_broken(self, mutant: Mutant) -> str:
         """How the program differs with a break that the compiler lets pass; "" if it does not."""
@@ -163,42 +173,32 @@ class Workbench:
     def _is_modular(self, mutant: Mutant) -> bool:
         """Is all that the mutant can falsify in the subprograms of its focus? Each has a
         contract, and callers know no more."""
-        body = subprogram(self.files[mutant.file], mutant.place)
-        in_body = mutant.file.endswith(".adb") and "-codecs" not in mutant.file
-        return mutant.part == "code" and body is not None and in_body
+        unit = self.units[mutant.file]
+        in_body = unit.is_body and unit.name.last != "Codecs"
+        return mutant.part == "code" and in_body and body_of(unit, mutant.place) is not None
 
     def _focus(self, mutant: Mutant) -> list[str]:
         """The subprograms that are asked first."""
-        text = self.files.get(_body(mutant.file), "")
+        unit = self.units.get(_body(mutant.file))
+        if unit is None:
+            return []
         if mutant.part == "code":
             #  some have no contract: gnatprove sees their work where they are called
             names = [mutant.place]
             if mutant.place.startswith(("Enter_", "Exit_", "Leave_")):
-                names = _firing(text)
-            elif mutant.place.startswith("Around_"):
-                names = re.findall(r"function ((?:In|Select)_\w+)", text)
-            return [n for n in names if subprogram(text, n) is not None]
-        spec = self.files[mutant.file]
-        if mutant.place == "Enabled":
-            at = mutant.edits[0].span.start
-            found = [c for c in declared_rows(spec, "Enabled") if c.body.start <= at < c.body.end]
-            name = found[0].head.of(spec) if found else ""
-            using = re.compile(rf"(?:then|\() *{name}\b")
-            for match in re.finditer(r"function (In_\w+|Select_\w+)", text):
-                one = subprogram(text, match.group(1))
-                if one is not None and using.search(one.inner.of(text)):
-                    return [one.name]
-        return _firing(text)
+                names = _firing(unit)
+            return [n for n in names if body_of(unit, n) is not None]
+        return _firing(unit)
 
     def _place(self, name: str, mutant: Mutant, broken: str) -> str:
         """Where a subprogram is declared, as gnatprove wants it."""
         body = _body(mutant.file)
         spec = body.removesuffix("b") + "s"
-        texts = {**self.files, mutant.file: broken}
         for file in (spec, body):
-            match = re.search(rf"^ *(?:procedure|function) {name}\b", texts.get(file, ""), re.M)
+            text = broken if file == mutant.file else text_of(self.files.get(file, ""))
+            match = re.search(rf"^ *(?:procedure|function) {name}\b", text, re.M)
             if match is not None:
-                return f"{file}:{texts[file].count(chr(10), 0, match.start()) + 1}"
+                return f"{file}:{text.count(chr(10), 0, match.start()) + 1}"
         raise ValueError(name)
 
     def units_of(self, mutant: Mutant) -> list[str]:
@@ -206,15 +206,16 @@ class Workbench:
         if mutant.part == "model":
             return []
         if mutant.kind == "ceiling":
-            tasks = [_body(n) for n, t in sorted(self.files.items()) if "_Processors\n" in t]
+            tasks = [_body(n) for n, unit in sorted(self.units.items()) if _has_processor(unit)]
             return [*tasks, f"{self.main}.adb"]
-        if mutant.kind == "frame" and mutant.place not in self._bodies(mutant.file):
-            return [n for n, t in sorted(self.files.items()) if _carries(n, t)]
+        if mutant.kind == "frame" and not self._in_body(mutant):
+            return [n for n, unit in sorted(self.units.items()) if _carries(unit)]
         body = _body(mutant.file)
-        return [body if body in self.files else mutant.file]
+        return [body if body in self.units else mutant.file]
 
-    def _bodies(self, file: str) -> set[str]:
-        return {one.name for one in subprograms(self.files[file])} if file.endswith("b") else set()
+    def _in_body(self, mutant: Mutant) -> bool:
+        unit = self.units[mutant.file]
+        return unit.is_body and body_of(unit, mutant.place) is not None
 
     # --- tools
 
@@ -269,14 +270,21 @@ class Workbench:
             raise ToolFailed(done.stdout)
 
 
-def _carries(name: str, text: str) -> bool:
+def _has_processor(unit: Unit) -> bool:
+    return any(one.node.generic in _PROCESSORS for one in whole(unit).within(GenericInstance))
+
+
+_PROCESSORS = ref("Ravenchart.Periodic_Processors"), ref("Ravenchart.Sporadic_Processors")
+
+
+def _carries(unit: Unit) -> bool:
     """Does it send frames, or receive them?"""
-    return name.endswith(".adb") and "Layouts.Is_Framed" in text
+    return unit.is_body and ref(LAYOUTS, "Is_Framed") in names_in(unit.item)
 
 
-def _firing(text: str) -> list[str]:
+def _firing(unit: Unit) -> list[str]:
     """Fire, and the procedures for parts of it where there are many transitions."""
-    return [one.name for one in subprograms(text) if one.fires]
+    return [one.name for one in bodies(unit) if one.fires]
 
 
 def _model_files(model: Path) -> dict[str, str]:

@@ -18,10 +18,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ravenchart.gen.emit.ada.expression_text import flat
 from ravenchart.gen.emit.ada.naming import ada_case, default_value, type_name
-from ravenchart.gen.emit.ada.syntax import Ref
 from ravenchart.gen.emit.buses.codecs import WORDS, codec_name, words_of
-from ravenchart.gen.emit.buses.coding import literal_name
+from ravenchart.gen.emit.buses.coding import choice_of_value
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import Signal
 from ravenchart.gen.model.system import System
@@ -66,9 +66,9 @@ def main_text(system: System, frames: int) -> str:
     return f"""
 with Ada.Text_IO; with Interfaces; with Ravenchart.Can.Fd_Frames; with {name}.Codecs;
 procedure Fuzzer is
-   use {name}; use type Interfaces.Unsigned_64; use type {WORDS};
+   use {name}; use type Interfaces.Unsigned_64; use type {WORDS.text};
    subtype Bits is Interfaces.Unsigned_64;
-   subtype Words is {WORDS};
+   subtype Words is {WORDS.text};
    Wrong : exception;
    Seed : Bits := 16#9E37_79B9_7F4A_7C15#;
    Sum  : Bits := 0;
@@ -123,11 +123,10 @@ end Fuzzer;
 
 
 def _procedure(system: System, message: Message, frames: int) -> str:
-    codec, of_type = codec_name(message), type_name(system, message.type)
+    codec, of_type = codec_name(message), type_name(system, message.type).text
     part = " (0)" if words_of(message) == 1 else ""
     in_range = " and then ".join(f"{_item(signal)}'Valid" for signal in message.signals)
-    default = default_value(system, message.type)
-    assert isinstance(default, Ref)
+    default = flat(default_value(system, message.type))
     return f"""
    procedure Fuzz_{ada_case(message.name)} is
       use type {of_type};
@@ -150,7 +149,7 @@ def _procedure(system: System, message: Message, frames: int) -> str:
             Accepted := Accepted + 1;
             Add (Again, {message.length});
          else
-            Expect (Item = {default.text});
+            Expect (Item = {default});
             Add (Frame, {message.length});
          end if;
       end loop;
@@ -170,7 +169,10 @@ def _mask(system: System, message: Message) -> str:
     for signal in message.signals:
         added = _added(signal)
         if selector is not None and signal.pages:
-            values = [literal_name(system, selector, selector.value(p)) for p in signal.pages]
+            values = [
+                flat(choice_of_value(system, selector, selector.value(page)))
+                for page in signal.pages
+            ]
             added = f" if {_item(selector)} in {' | '.join(values)} then {added} end if;"
         text += added
     return text

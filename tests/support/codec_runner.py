@@ -31,7 +31,7 @@ Values = tuple[int, ...]
 
 
 def _read(system: System, message: Message, signal: Signal) -> str:
-    name = type_name(system, signal.type)
+    name = type_name(system, signal.type).text
     target = "Item" if signal.field is None else f"Item.{ada_case(signal.field)}"
     made = f"{name}'Val (N)" if isinstance(signal.type, EnumerationType) else f"{name} (N)"
     return f"Get (N); {target} := {made};"
@@ -40,12 +40,13 @@ def _read(system: System, message: Message, signal: Signal) -> str:
 def _shown(system: System, signal: Signal) -> str:
     source = "Item" if signal.field is None else f"Item.{ada_case(signal.field)}"
     if isinstance(signal.type, EnumerationType):
-        return f"Put ({type_name(system, signal.type)}'Pos ({source}), Width => 1); Put (' ');"
+        of_type = type_name(system, signal.type).text
+        return f"Put ({of_type}'Pos ({source}), Width => 1); Put (' ');"
     return f"Put (Long_Long_Integer ({source}), Width => 1); Put (' ');"
 
 
 def _cases(system: System, message: Message) -> tuple[str, str]:
-    codec, of_type = codec_name(message), type_name(system, message.type)
+    codec, of_type = codec_name(message), type_name(system, message.type).text
     single = words_of(message) == 1
     frame = "F (0)" if single else "F"
     start = f"Item : {of_type}"
@@ -76,7 +77,7 @@ with Ravenchart.Can.Fd_Frames; with {ada_case(system.name)}.Codecs;
 procedure Runner is
    use Ada.Text_IO; use Ada.Long_Long_Integer_Text_IO; use {ada_case(system.name)};
    use type Interfaces.Unsigned_64;
-   F : {WORDS} := (others => 0);
+   F : {WORDS.text} := (others => 0);
    Kind : Character;
    Number, N : Long_Long_Integer;
    procedure Put_Bytes (Length : Natural) is

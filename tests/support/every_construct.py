@@ -166,7 +166,7 @@ TRANSITIONS = (
     _transition("right_join", "R2", "Gather", Completion()),
     _transition("left_join", "L1", "Gather", Completion()),
     _transition(
-        "joined", "Gather", "Idle", Segment(), effect=(Send(HERE, "out", ((None, number(1)),)),)
+        "joined", "Gather", "Idle", Segment(), effect=(Send(HERE, "told", ((None, number(1)),)),)
     ),
     _transition("restart", "Work", "First", OnEvent("Restart")),
     _transition("inside", "Work", "Second", OnEvent("Inside"), kind=TransitionKind.LOCAL),
@@ -228,7 +228,7 @@ def every_construct() -> Component:
         PSEUDOSTATES,
         reads=("level", "probe", "Other"),
         writes=("level",),
-        sends=("out",),
+        sends=("told",),
         raises=("Left",),
     )
     calm = (_state("Calm"), _state("Storm"))
@@ -238,7 +238,7 @@ def every_construct() -> Component:
         "Every",
         HERE,
         (),
-        (Port("probe", HERE, Direction.IN, LEVEL), Port("out", HERE, Direction.OUT, LEVEL)),
+        (Port("probe", HERE, Direction.IN, LEVEL), Port("told", HERE, Direction.OUT, LEVEL)),
         tuple(Event(name, HERE, LEVEL if name == "Go" else None) for name in EVENTS),
         (Data("level", HERE, LEVEL, 0),),
         _timing(10),

@@ -25,10 +25,14 @@ HOLDER, LICENCE = "Ravenchart contributors", "Apache-2.0"
 LINES = (f"SPDX-FileCopyrightText: {HOLDER}", f"SPDX-License-Identifier: {LICENCE}")
 """What stands at the head of each file of ours, as comments."""
 
-HASH, SLASHES, STARS = ("# ", ""), ("// ", ""), ("/* ", " */")
+HASH, SLASHES, STARS, DASHES = ("# ", ""), ("// ", ""), ("/* ", " */"), ("--  ", "")
 COMMENTS = {
     ".S": STARS,
+    ".adb": DASHES,
+    ".ads": DASHES,
+    ".c": STARS,
     ".css": STARS,
+    ".gpr": DASHES,
     ".js": SLASHES,
     ".ld": STARS,
     ".py": HASH,

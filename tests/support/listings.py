@@ -86,3 +86,11 @@ def called(words: list[str]) -> list[str]:
         return words
     numbered = words[ends[0] - 1] in ("1", "2")  # of the stream
     return words[: ends[0] - numbered]
+
+
+def listing(page: str, name: str) -> str:
+    """The listing of ``docs/PAGE`` below a line that ends with its name, as `name`:."""
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    found = re.search(rf"`{re.escape(name)}`:\n\n```\w*\n(.*?)^```$", text, re.M | re.S)
+    assert found is not None, name
+    return found[1]

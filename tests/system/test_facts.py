@@ -20,7 +20,7 @@ import pytest
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
 from tests.mutation.__main__ import Subject, mutants, tried
-from tests.mutation.mutants import Mutant
+from tests.mutation.mutants import Mutant, text_of
 from tests.mutation.observing import Observer, PlayedTogether
 from tests.mutation.workbench import Workbench
 
@@ -95,7 +95,7 @@ def test_the_compiler_refuses_an_edited_task_and_an_edited_certificate(
     asked = [one for one in one_of_each(facts).values() if not is_later(one)]
     assert len(asked) > 60
     for name in {one.file for one in asked}:
-        assert compiled(bench, name, bench.files[name], tmp_path) == ""
+        assert compiled(bench, name, text_of(bench.files[name]), tmp_path) == ""
     for one in asked:
         said = compiled(bench, one.file, one.applied(bench.files[one.file]), tmp_path)
         assert re.search("certificate|claim|must|sum", said), (one.name, said)

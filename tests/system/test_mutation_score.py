@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.failures import ToolFailed
-from ravenchart.gen.emit.program import generate
+from ravenchart.gen.emit.program import generate, units_of_program
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.system import System
 from ravenchart.tools import toolchain
@@ -82,8 +82,9 @@ def test_a_program_that_is_not_clean_is_no_subject(
     chosen = [m for m in mutants(subject, 1, 1, ("target",)) if m.part == "code"]
 
     def broken(system: System, bounds: Claims) -> Mapping[str, str]:
-        files = generate(system, bounds)
-        return {**files, chosen[0].file: chosen[0].applied(files[chosen[0].file])}
+        units = units_of_program(system, bounds)
+        changed = chosen[0].applied(units[chosen[0].file])
+        return {**generate(system, bounds), chosen[0].file: changed}
 
     monkeypatch.setattr("tests.mutation.workbench.generate", broken)
     with pytest.raises(ToolFailed, match=r"postcondition|assertion"):

@@ -25,10 +25,7 @@ SUBUNIT = "ravenchart-can-controllers-driver.adb"
 
 OF_THE_HOST = {
     "ravenchart-can-ctu_hosts.adb",
-    "ravenchart-can-linux_calls.adb",
-    "ravenchart-can-raw_sockets.adb",
-    "ravenchart-can-serial_lines.adb",
-    "ravenchart-can-tcp_sockets.adb",
+    "ravenchart-can-driver_hosts.adb",
     "ravenchart-failures.adb",
     "ravenchart-hosts-services.adb",
     "ravenchart-hosts-snapshots.adb",

@@ -15,8 +15,9 @@ from pathlib import Path
 import can
 import pytest
 
-from ravenchart.hw_can.bench.drives import PERIOD, Bench
+from ravenchart.hw_can.bench.drives import Bench
 from ravenchart.hw_can.bench.peer import BenchError, Codec, FrameValues, Peer
+from ravenchart.hw_can.bench.quantities import PERIOD
 from ravenchart.hw_can.bench.scenario import parse_scenario
 from tests.support.bench_files import scenario_text
 from tests.support.robot_files import dbc

@@ -15,9 +15,9 @@ from rich.console import Console
 import ravenchart.running.process as process
 from ravenchart.analysis.present.report import Comparison, StepRow
 from ravenchart.analysis.system.observed import TraceError, read_map, read_trace
+from ravenchart.hw_can.bench.forms import TraceCheck
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.bench.scenario import ScenarioError, parse_scenario
-from ravenchart.hw_can.bench.scenario_forms import TraceCheck
 from ravenchart.running import expected, judge, summary
 from ravenchart.running.process import Ended
 from ravenchart.running.result import RunOutcome

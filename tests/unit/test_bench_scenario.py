@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.hw_can.bench.forms import Hold, LetGo
 from ravenchart.hw_can.bench.scenario import ScenarioError, load_scenario, parse_scenario
-from ravenchart.hw_can.bench.scenario_forms import STEPS, Expect, Hold, LetGo, SendStep, WaitFor
+from ravenchart.hw_can.bench.steps import STEPS, Expect, SendStep, WaitFor
 from tests.support.bench_files import scenario_text
 
 ROBOT = Path(__file__).parents[2] / "examples" / "cartesian_robot"
@@ -46,8 +47,11 @@ def test_every_step_reads_as_a_sentence(tmp_path: Path) -> None:
   - stop_feedback: all
   - kill_bench: true
   - replay: field.log
+  - {set: tank.door, to: 1}
+  - {expect_output: tank.level, at_least: 2, at_most: 3}
 """
-    scenario = parse_scenario(scenario_text(steps), str(tmp_path / "scenario.yaml"))
+    plants = "plants: {tank: {class: tank.py:Tank}}\n"
+    scenario = parse_scenario(plants + scenario_text(steps), str(tmp_path / "scenario.yaml"))
     assert [str(step) for step in scenario.steps] == [
         "send robot_command: kind Move, x 5",
         "wait for robot_status.condition = Ready",
@@ -59,6 +63,8 @@ def test_every_step_reads_as_a_sentence(tmp_path: Path) -> None:
         "stop the feedback of all",
         "kill the bench",
         "replay field.log",
+        "set tank.door to 1",
+        "expect 2 <= tank.level <= 3",
     ]
     assert {type(step) for step in scenario.steps} == set(STEPS.values())
     assert isinstance(scenario.steps[0], SendStep)
@@ -71,8 +77,8 @@ FIRST_STEP = len(scenario_text("").splitlines()) + 1
 
 
 STEP_KINDS = (
-    "`send`, `replay`, `wait_for`, `expect`, `expect_stop`, `wait`, `pull`, `release`, "
-    "`stop_feedback`, `kill_bench`"
+    "`send`, `replay`, `wait_for`, `expect`, `expect_stop`, `set`, "
+    "`expect_output`, `wait`, `pull`, `release`, `stop_feedback`, `kill_bench`"
 )
 NO_DRIVE = "there is no drive `q` [RV-1304]"
 
@@ -95,7 +101,7 @@ NO_DRIVE = "there is no drive `q` [RV-1304]"
         ),
         ("{pull: q, switch: low}", "q,", NO_DRIVE),
         ("{expect: {q: 1 mm}, tolerance: 1 mm}", "q:", NO_DRIVE),
-        ("{stop_feedback: q}", "q}", NO_DRIVE),
+        ("{stop_feedback: q}", "q}", "there is no drive or plant `q` [RV-1304]"),
         ("{kill_bench: false}", "false", "`kill_bench` must be `true`, not `false` [RV-1303]"),
         ("{wait: 1 s, hurry: 1}", "hurry", "`hurry` has no place here [RV-1302]"),
         ("{send: m}", "{send", "the key `with` is missing [RV-1302]"),

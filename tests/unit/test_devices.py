@@ -53,7 +53,7 @@ def _system(changes: dict[str, str]) -> System:
 
 
 def _text(system: System) -> str:
-    return "\n".join(made.text for made in program(system, Claims(), system))
+    return "\n".join(made.item.text for made in program(system, Claims(), system))
 
 
 def _wcets(system: System) -> dict[str, int]:
@@ -105,7 +105,7 @@ def test_nothing_is_left_of_a_stand_in_where_the_command_is_provided() -> None:
 
 def test_the_user_sees_the_same_whatever_provides_a_command() -> None:
     files = [
-        {made.unit.file_name: made.text for made in program(system, Claims(), system)}
+        {made.unit.file_name: made.item.text for made in program(system, Claims(), system)}
         for system in (_system({}), _system(SPEEDOMETER))
     ]
     name = "devices_feature-servo-activities.ads"
@@ -306,7 +306,7 @@ def test_caller_is_the_same_whether_a_command_is_queued_or_direct() -> None:
         ),
     )
     files = [
-        {made.unit.file_name: made.text for made in program(system, Claims(), system)}
+        {made.unit.file_name: made.item.text for made in program(system, Claims(), system)}
         for system in (_requests(), direct)
     ]
     for unit in ("hurry.ads", "hurry-flows.ads", "hurry-flows.adb", "hurry-mood.adb"):

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import re
 
+from ravenchart.gen.emit.ada.declarations import Unit
 from ravenchart.gen.emit.ada.text import print_unit
 from ravenchart.gen.emit.charts.declared import emit_region
+from ravenchart.gen.emit.language.places import Places
 from tests.support.interpreted import chart_system
 
 CHART = """
@@ -26,6 +28,9 @@ transitions:
 def test_a_state_around_a_terminate_is_not_active_in_it() -> None:
     system = chart_system(CHART)
     component = system.components[0]
-    _, body = emit_region(system, component, component.regions[0], "")
-    profile = r"function In_Stop \(Self : Region; Now : Occurrence\) return Selection"
-    assert re.search(rf"{profile} is\s+\(None\)", print_unit(body))
+    (region,) = component.regions
+    spec, _ = emit_region(system, component, region, "")
+    assert "when Away => Leaf in Main_States.Inside" in print_unit(spec)
+    states = print_unit(Unit("", (), Places(region).package_of_states(system.origin)))
+    assert re.search(r"type Leaf is\s+\(Idle, .*\s+Busy, .*\s+Stop\b", states)
+    assert "subtype Inside is Leaf range Busy .. Busy;" in states

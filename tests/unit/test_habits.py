@@ -55,6 +55,7 @@ def test_a_file_has_its_licence_in_one_place() -> None:
         ("a.py", '"""Doc."""\n', '# {0}\n# {1}\n\n"""Doc."""\n'),
         ("__init__.py", "", "# {0}\n# {1}\n"),
         ("a.sh", "#!/bin/sh\n# Why.\n", "#!/bin/sh\n# {0}\n# {1}\n\n# Why.\n"),
+        ("a.adb", "package body A is\n", "--  {0}\n--  {1}\n\npackage body A is\n"),
         ("a.css", "/* Why. */\n", "/* {0} */\n/* {1} */\n\n/* Why. */\n"),
         ("Makefile", "all:\n", "# {0}\n# {1}\n\nall:\n"),
     ],

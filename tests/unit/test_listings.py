@@ -56,6 +56,7 @@ PROGRAMS = {
     "code": "of Visual Studio Code",
     "cp": "of the system",
     "echo": "of the shell",
+    "dask": "of the Python package distributed",
     "gprbuild": "of gprbuild",
     "ip": "of iproute2",
     "jq": "of the Debian package of that name",

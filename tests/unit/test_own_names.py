@@ -98,7 +98,7 @@ shutdown: {raises: [unit.Go_On, unit.Bye, unit.Back, unit.Order], grace: 0 ms}
 def own_names() -> tuple[str, ...]:
     """Every name in the generated code of both regions that the model has not."""
     system = system_of(MODEL)
-    text = "\n".join(print_unit(m.unit, m.text) for m in program(system, Claims(), system))
+    text = "\n".join(print_unit(m.unit, m.item) for m in program(system, Claims(), system))
     found = set(re.findall(r"\b[A-Za-z]\w*", re.sub('--.*|"[^"]*"', "", text)))
     given = {ada_case(word) for name in re.findall(r"\w+", MODEL) for word in name.split("_")}
     given -= {"After", "Of", "In", "On", "Data", "Initial", "To", "Order"}

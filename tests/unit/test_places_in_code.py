@@ -10,8 +10,9 @@ import re
 import pytest
 
 from ravenchart.building import checking
+from ravenchart.gen.emit.ada.declarations import EnumType, Package, Unit
 from ravenchart.gen.emit.ada.naming import where
-from ravenchart.gen.emit.ada.syntax import Comment, EnumType, Package, Unit
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.ada.text import WIDTH, print_unit
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.claims import Claims

@@ -178,7 +178,7 @@ o,fd,7,,,,123,10
         ({"priority": str(2**63)}, f"priority of task a must be at most {LARGEST} (63 bits)"),
         ({"timed": "maybe"}, "timed of task a must be yes or no, not maybe"),
         ({"period": "5"}, "column period of task must say its unit: period_ns, _us, _ms or _s"),
-        ({"cost_us": "5"}, "task has no column cost_us, only core, priority, period_us"),
+        ({"cost_us": "5"}, "wcet is given twice"),
         ({"task": ""}, "task needs a name in the column task"),
         ({"released_by": "b"}, "released_by of task a: there is no task or message b"),
         ({"released_by": "a"}, "a is released by itself"),
@@ -490,3 +490,10 @@ def test_messages_of_one_priority_may_go_before_each_other() -> None:
     assert isinstance(found, PlainSystem)
     responses = analyse_plain(found).found.responses
     assert [responses[name].bound for name in "mnk"] == [350_000, 350_000, 350_000]
+
+
+def test_files_of_earlier_versions_say_cost() -> None:
+    text = "task,priority,period_us,{}\na,1,10,3\n\nrow,task,{},every\nr,a,2,1\n"
+    now, before = (load_plain(text.format(name, name), "a.csv") for name in ("wcet_us", "cost_us"))
+    assert isinstance(now, PlainSystem), now
+    assert before == now

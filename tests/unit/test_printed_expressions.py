@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import pytest
 
+from ravenchart.gen.emit.ada.expression_text import expression
+from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, Prefix, Range, call, member
 from ravenchart.gen.emit.ada.layout import laid_out
-from ravenchart.gen.emit.ada.syntax import Expr, OperatorChain, Prefix, Ref, call
-from ravenchart.gen.emit.ada.text import expression
+from ravenchart.gen.emit.ada.named import ref
 
-A, B, C = Ref("A"), Ref("B"), Ref("C")
+A, B, C = ref("A"), ref("B"), ref("C")
 
 
 def _both(operator: str, left: Expr, right: Expr) -> OperatorChain:
@@ -32,7 +33,7 @@ def _both(operator: str, left: Expr, right: Expr) -> OperatorChain:
         (_both("=", _both("=", A, B), C), "(A = B) = C"),
         (_both("and then", _both("or else", A, B), C), "(A or else B) and then C"),
         (_both("and then", _both("and then", A, B), C), "(A and then B) and then C"),
-        (_both("or else", _both("in", A, Ref("B .. C")), B), "A in B .. C or else B"),
+        (_both("or else", member(A, Range(B, C)), B), "A in B .. C or else B"),
         (Prefix("not", _both("=", A, B)), "not (A = B)"),
         (Prefix("-", _both("*", A, B)), "-(A * B)"),
         (_both("*", Prefix("-", A), B), "(-A) * B"),
@@ -44,7 +45,7 @@ def test_parentheses_stand_where_the_precedence_asks_for_them(made: Expr, text: 
 
 
 def test_operands_and_positional_arguments_fill_lines() -> None:
-    names = [Ref(f"Name_{n}") for n in range(8)]
+    names = [ref(f"Name_{n}") for n in range(8)]
     assert laid_out(expression(OperatorChain("+", tuple(names))), 40) == (
         "Name_0 + Name_1 + Name_2 + Name_3\n+ Name_4 + Name_5 + Name_6 + Name_7"
     )

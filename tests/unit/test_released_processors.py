@@ -19,6 +19,7 @@ from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.behaviour.interpreter.branching import branched
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.stimuli import Arrived
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.text import print_unit
 from ravenchart.gen.emit.instances.glue import emit_instances
 from ravenchart.gen.language.terms import Ns
@@ -184,9 +185,9 @@ def test_an_arrival_is_noted_before_it_releases() -> None:
     body = next(
         print_unit(unit)
         for unit in emit_instances(system_of(), "")
-        if unit.item.name == "Releases_Feature.Drive" and getattr(unit.item, "is_body", False)
+        if unit.item.name == ref("Releases_Feature.Drive") and getattr(unit.item, "is_body", False)
     )
-    assert body.index("Elements.Drive_Level, 0") < body.index("Level_Mailbox.Put (")
+    assert body.index("Elements.Drive_Level, 0") < body.index("Level_Offers.Offer (")
 
 
 @pytest.mark.parametrize(

@@ -15,8 +15,9 @@ import pytest
 from ravenchart.behaviour.interpreter.stimuli import FORMS
 from ravenchart.building import checking
 from ravenchart.command_line import main
+from ravenchart.hw_can.bench.forms import BUS_EVENTS, DriveForm, TraceCheck
 from ravenchart.hw_can.bench.scenario import parse_scenario
-from ravenchart.hw_can.bench.scenario_forms import BUS_EVENTS, STEPS, DriveForm, TraceCheck
+from ravenchart.hw_can.bench.steps import STEPS
 from ravenchart.running import scenarios
 from ravenchart.tools import toolchain
 from tests.support.processes import ROOT

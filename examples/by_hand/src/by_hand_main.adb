@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 with Counting;
 with Ravenchart.Epochs;
 with Ravenchart.Hosts;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 package body Counting with SPARK_Mode is
    Counted : Ravenchart.Event_Count := 0;
    --  Of the processor alone.

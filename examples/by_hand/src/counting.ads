@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  One processor of two rows: Count in every release, Show in every fifth.
 
 with Ravenchart.Blackboards;

@@ -5,12 +5,8 @@
 package body Canopen_Device.Codecs
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Bits_Of_Type_Addressee
-     (Item : Canopen_Device.Addressee)
-     return Interfaces.Unsigned_8
+     (Item : Canopen_Device.Addressee) return Interfaces.Unsigned_8
    with
      Post =>
        Bits_Of_Type_Addressee'Result <= 127
@@ -26,8 +22,7 @@ is
    end Bits_Of_Type_Addressee;
 
    function Bits_Of_Type_Boolean
-     (Item : Boolean)
-     return Interfaces.Unsigned_8 is
+     (Item : Boolean) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Boolean'Pos (Item)))
    with
      Post =>
@@ -35,8 +30,7 @@ is
        and then Value_Of_Type_Boolean (Bits_Of_Type_Boolean'Result) = Item;
 
    function Bits_Of_Type_Octet
-     (Item : Canopen_Device.Octet)
-     return Interfaces.Unsigned_8
+     (Item : Canopen_Device.Octet) return Interfaces.Unsigned_8
    with Post => Value_Of_Type_Octet (Bits_Of_Type_Octet'Result) = Item
    is
       Whole : constant Ravenchart.Number range 0 .. 255 :=
@@ -48,8 +42,7 @@ is
    end Bits_Of_Type_Octet;
 
    function Bits_Of_Type_Index
-     (Item : Canopen_Device.Index)
-     return Interfaces.Unsigned_16
+     (Item : Canopen_Device.Index) return Interfaces.Unsigned_16
    with Post => Value_Of_Type_Index (Bits_Of_Type_Index'Result) = Item
    is
       Whole : constant Ravenchart.Number range 0 .. 65_535 :=
@@ -62,8 +55,7 @@ is
    end Bits_Of_Type_Index;
 
    function Bits_Of_Type_Long
-     (Item : Canopen_Device.Long)
-     return Interfaces.Unsigned_32
+     (Item : Canopen_Device.Long) return Interfaces.Unsigned_32
    with Post => Value_Of_Type_Long (Bits_Of_Type_Long'Result) = Item
    is
       Whole : constant Ravenchart.Number range 0 .. 4_294_967_295 :=
@@ -77,8 +69,7 @@ is
 
    package body Message_Nmt is
       function Bits_Of_Signal_Service
-        (Item : Canopen_Device.Nmt_Service)
-        return Interfaces.Unsigned_8 is
+        (Item : Canopen_Device.Nmt_Service) return Interfaces.Unsigned_8 is
         (case Item is
            when Canopen_Device.Start => 1,
            when Canopen_Device.Stop => 2,
@@ -171,8 +162,7 @@ is
           and then Raw_Of_Node (Word_Of'Result) = Local_Node;
 
       function Pack
-        (Item : Canopen_Device.Nmt_Command)
-        return Interfaces.Unsigned_64 is
+        (Item : Canopen_Device.Nmt_Command) return Interfaces.Unsigned_64 is
          Local_Service : constant Interfaces.Unsigned_8 :=
            Bits_Of_Signal_Service (Item.Service);
          Local_Node : constant Interfaces.Unsigned_8 :=
@@ -222,8 +212,7 @@ is
 
    package body Message_Sync is
       function Bits_Of_Signal_Value
-        (Item : Canopen_Device.Sync_Count)
-        return Interfaces.Unsigned_8
+        (Item : Canopen_Device.Sync_Count) return Interfaces.Unsigned_8
       with
         Post =>
           Bits_Of_Signal_Value'Result in 1 .. 240
@@ -274,14 +263,12 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
       function Pack
-        (Item : Canopen_Device.Sync_Count)
-        return Interfaces.Unsigned_64 is
+        (Item : Canopen_Device.Sync_Count) return Interfaces.Unsigned_64 is
          Local_Value : constant Interfaces.Unsigned_8 :=
            Bits_Of_Signal_Value (Item);
          Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
@@ -319,8 +306,7 @@ is
 
    package body Message_Tpdo_1 is
       function Bits_Of_Signal_Temperature
-        (Item : Canopen_Device.Temperature)
-        return Interfaces.Unsigned_16
+        (Item : Canopen_Device.Temperature) return Interfaces.Unsigned_16
       with
         Post =>
           Bits_Of_Signal_Temperature'Result in 0 .. 2_500 | 65_136 .. 65_535
@@ -420,8 +406,7 @@ is
           and then Raw_Of_At_Setpoint (Word_Of'Result) = Local_At_Setpoint;
 
       function Pack
-        (Item : Canopen_Device.Status_Pdo)
-        return Interfaces.Unsigned_64 is
+        (Item : Canopen_Device.Status_Pdo) return Interfaces.Unsigned_64 is
          Local_Temperature : constant Interfaces.Unsigned_16 :=
            Bits_Of_Signal_Temperature (Item.Temperature);
          Local_At_Setpoint : constant Interfaces.Unsigned_8 :=
@@ -473,8 +458,7 @@ is
 
    package body Message_Rpdo_1 is
       function Bits_Of_Signal_Setpoint
-        (Item : Canopen_Device.Temperature)
-        return Interfaces.Unsigned_16
+        (Item : Canopen_Device.Temperature) return Interfaces.Unsigned_16
       with
         Post =>
           Bits_Of_Signal_Setpoint'Result in 0 .. 2_500 | 65_136 .. 65_535
@@ -533,8 +517,7 @@ is
       with Post => Raw_Of_Setpoint (Word_Of'Result) = Local_Setpoint;
 
       function Pack
-        (Item : Canopen_Device.Setpoint_Pdo)
-        return Interfaces.Unsigned_64 is
+        (Item : Canopen_Device.Setpoint_Pdo) return Interfaces.Unsigned_64 is
          Local_Setpoint : constant Interfaces.Unsigned_16 :=
            Bits_Of_Signal_Setpoint (Item.Setpoint);
          Frame : constant Interfaces.Unsigned_64 :=
@@ -719,8 +702,7 @@ is
           and then Raw_Of_Data (Word_Of'Result) = Local_Data;
 
       function Pack
-        (Item : Canopen_Device.Sdo)
-        return Interfaces.Unsigned_64 is
+        (Item : Canopen_Device.Sdo) return Interfaces.Unsigned_64 is
          Local_Command : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Octet (Item.Command);
          Local_Index : constant Interfaces.Unsigned_16 :=
@@ -782,8 +764,7 @@ is
 
    package body Message_Heartbeat is
       function Bits_Of_Signal_Value
-        (Item : Canopen_Device.Nmt_State)
-        return Interfaces.Unsigned_8 is
+        (Item : Canopen_Device.Nmt_State) return Interfaces.Unsigned_8 is
         (case Item is
            when Canopen_Device.Boot_Up => 0,
            when Canopen_Device.Stopped => 4,
@@ -830,14 +811,12 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
       function Pack
-        (Item : Canopen_Device.Nmt_State)
-        return Interfaces.Unsigned_64 is
+        (Item : Canopen_Device.Nmt_State) return Interfaces.Unsigned_64 is
          Local_Value : constant Interfaces.Unsigned_8 :=
            Bits_Of_Signal_Value (Item);
          Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);

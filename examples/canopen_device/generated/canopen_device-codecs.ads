@@ -9,9 +9,6 @@ with Ravenchart.Can.Layouts;
 package Canopen_Device.Codecs
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Interfaces.Unsigned_16;
    use type Interfaces.Unsigned_32;
    use type Interfaces.Unsigned_64;
@@ -19,30 +16,25 @@ is
    use type Ravenchart.Number;
 
    function Value_Of_Type_Addressee
-     (Raw : Interfaces.Unsigned_8)
-     return Canopen_Device.Addressee is
+     (Raw : Interfaces.Unsigned_8) return Canopen_Device.Addressee is
      (Canopen_Device.Addressee (Ravenchart.Number (Raw)))
    with Pre => Raw <= 127;
 
    function Value_Of_Type_Boolean
-     (Raw : Interfaces.Unsigned_8)
-     return Boolean is
+     (Raw : Interfaces.Unsigned_8) return Boolean is
      (Boolean'Val (Raw))
    with Pre => Raw <= 1;
 
    function Value_Of_Type_Octet
-     (Raw : Interfaces.Unsigned_8)
-     return Canopen_Device.Octet is
+     (Raw : Interfaces.Unsigned_8) return Canopen_Device.Octet is
      (Canopen_Device.Octet (Ravenchart.Number (Raw)));
 
    function Value_Of_Type_Index
-     (Raw : Interfaces.Unsigned_16)
-     return Canopen_Device.Index is
+     (Raw : Interfaces.Unsigned_16) return Canopen_Device.Index is
      (Canopen_Device.Index (Ravenchart.Number (Raw)));
 
    function Value_Of_Type_Long
-     (Raw : Interfaces.Unsigned_32)
-     return Canopen_Device.Long is
+     (Raw : Interfaces.Unsigned_32) return Canopen_Device.Long is
      (Canopen_Device.Long (Ravenchart.Number (Raw)));
 
    package Message_Nmt is
@@ -55,8 +47,7 @@ is
          Offset => 0);
 
       function Code_Of_Service
-        (Item : Canopen_Device.Nmt_Service)
-        return Ravenchart.Number is
+        (Item : Canopen_Device.Nmt_Service) return Ravenchart.Number is
         (case Item is
            when Canopen_Device.Start => 1,
            when Canopen_Device.Stop => 2,
@@ -73,24 +64,20 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Service)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Node));
 
       function Raw_Of_Service
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#FF#));
 
       function Raw_Of_Node
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 8) and 16#FF#));
 
       function Value_Of_Signal_Service
-        (Raw : Interfaces.Unsigned_8)
-        return Canopen_Device.Nmt_Service is
+        (Raw : Interfaces.Unsigned_8) return Canopen_Device.Nmt_Service is
         (if Raw = 1 then Canopen_Device.Start
          elsif Raw = 2 then Canopen_Device.Stop
          elsif Raw = 128 then Canopen_Device.Enter_Pre_Operational
@@ -99,8 +86,7 @@ is
       with Pre => Raw in 1 | 2 | 128 | 129 | 130;
 
       function Pack
-        (Item : Canopen_Device.Nmt_Command)
-        return Interfaces.Unsigned_64
+        (Item : Canopen_Device.Nmt_Command) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Service)
@@ -147,24 +133,20 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#FF#));
 
       function Value_Of_Signal_Value
-        (Raw : Interfaces.Unsigned_8)
-        return Canopen_Device.Sync_Count is
+        (Raw : Interfaces.Unsigned_8) return Canopen_Device.Sync_Count is
         (Canopen_Device.Sync_Count (Ravenchart.Number (Raw)))
       with Pre => Raw in 1 .. 240;
 
       function Pack
-        (Item : Canopen_Device.Sync_Count)
-        return Interfaces.Unsigned_64
+        (Item : Canopen_Device.Sync_Count) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
@@ -210,25 +192,21 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Temperature)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_At_Setpoint));
 
       function Raw_Of_Temperature
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_16 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_16 is
         (Interfaces.Unsigned_16 (Word and 16#FFFF#));
 
       function Raw_Of_At_Setpoint
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8
            (Interfaces.Shift_Right (Word, 16) and 16#FF#));
 
       function Value_Of_Signal_Temperature
-        (Raw : Interfaces.Unsigned_16)
-        return Canopen_Device.Temperature is
+        (Raw : Interfaces.Unsigned_16) return Canopen_Device.Temperature is
         (Canopen_Device.Temperature
            ((if Ravenchart.Number (Raw) <= 2_500
                 then Ravenchart.Number (Raw)
@@ -236,8 +214,7 @@ is
       with Pre => Raw in 0 .. 2_500 | 65_136 .. 65_535;
 
       function Pack
-        (Item : Canopen_Device.Status_Pdo)
-        return Interfaces.Unsigned_64
+        (Item : Canopen_Device.Status_Pdo) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Temperature)
@@ -286,18 +263,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Setpoint));
 
       function Raw_Of_Setpoint
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_16 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_16 is
         (Interfaces.Unsigned_16 (Word and 16#FFFF#));
 
       function Value_Of_Signal_Setpoint
-        (Raw : Interfaces.Unsigned_16)
-        return Canopen_Device.Temperature is
+        (Raw : Interfaces.Unsigned_16) return Canopen_Device.Temperature is
         (Canopen_Device.Temperature
            ((if Ravenchart.Number (Raw) <= 2_500
                 then Ravenchart.Number (Raw)
@@ -305,8 +279,7 @@ is
       with Pre => Raw in 0 .. 2_500 | 65_136 .. 65_535;
 
       function Pack
-        (Item : Canopen_Device.Setpoint_Pdo)
-        return Interfaces.Unsigned_64
+        (Item : Canopen_Device.Setpoint_Pdo) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Setpoint)
@@ -370,39 +343,33 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Command)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Index)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Subindex)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Data));
 
       function Raw_Of_Command
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#FF#));
 
       function Raw_Of_Index
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_16 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_16 is
         (Interfaces.Unsigned_16
            (Interfaces.Shift_Right (Word, 8) and 16#FFFF#));
 
       function Raw_Of_Subindex
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8
            (Interfaces.Shift_Right (Word, 24) and 16#FF#));
 
       function Raw_Of_Data
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 32) and 16#FFFFFFFF#));
 
       function Pack
-        (Item : Canopen_Device.Sdo)
-        return Interfaces.Unsigned_64
+        (Item : Canopen_Device.Sdo) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Command)
@@ -465,8 +432,7 @@ is
          Offset => 0);
 
       function Code_Of_Value
-        (Item : Canopen_Device.Nmt_State)
-        return Ravenchart.Number is
+        (Item : Canopen_Device.Nmt_State) return Ravenchart.Number is
         (case Item is
            when Canopen_Device.Boot_Up => 0,
            when Canopen_Device.Stopped => 4,
@@ -474,18 +440,15 @@ is
            when Canopen_Device.Pre_Operational => 127);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#FF#));
 
       function Value_Of_Signal_Value
-        (Raw : Interfaces.Unsigned_8)
-        return Canopen_Device.Nmt_State is
+        (Raw : Interfaces.Unsigned_8) return Canopen_Device.Nmt_State is
         (if Raw = 0 then Canopen_Device.Boot_Up
          elsif Raw = 4 then Canopen_Device.Stopped
          elsif Raw = 5 then Canopen_Device.Operational
@@ -493,8 +456,7 @@ is
       with Pre => Raw in 0 | 4 | 5 | 127;
 
       function Pack
-        (Item : Canopen_Device.Nmt_State)
-        return Interfaces.Unsigned_64
+        (Item : Canopen_Device.Nmt_State) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)

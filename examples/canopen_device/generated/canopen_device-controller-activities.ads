@@ -15,5 +15,5 @@ is
       Objects     : in out Canopen_Device.Objects;
       Answer      : in out Canopen_Device.Transfer)
    with Global => null;
-   --  [Controller.serve] budget 100_000 ns, every 5_000_000 ns
+   --  [Controller.serve] WCET 100_000 ns, every 5_000_000 ns
 end Canopen_Device.Controller.Activities;

@@ -5,9 +5,6 @@
 package body Canopen_Device.Controller.Flows
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Nmt_States.Leaf;
    use type Ravenchart.Number;
 

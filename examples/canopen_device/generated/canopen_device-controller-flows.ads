@@ -11,7 +11,7 @@ is
       Sdo_Response      : out Canopen_Device.Sdo;
       Send_Sdo_Response : out Boolean)
    with Global => null;
-   --  [Controller.respond] budget 100_000 ns, every 5_000_000 ns
+   --  [Controller.respond] WCET 100_000 ns, every 5_000_000 ns
 
    procedure Produce_Heartbeat
      (Boots          : Canopen_Device.Count;
@@ -21,7 +21,7 @@ is
       Heartbeat      : out Canopen_Device.Nmt_State;
       Send_Heartbeat : out Boolean)
    with Global => null;
-   --  [Controller.produce_heartbeat] budget 100_000 ns, every 5_000_000 ns
+   --  [Controller.produce_heartbeat] WCET 100_000 ns, every 5_000_000 ns
 
    procedure Report
      (Syncs       : Canopen_Device.Count;
@@ -31,12 +31,12 @@ is
       Tpdo_1      : out Canopen_Device.Status_Pdo;
       Send_Tpdo_1 : out Boolean)
    with Global => null;
-   --  [Controller.report] budget 100_000 ns, every 5_000_000 ns
+   --  [Controller.report] WCET 100_000 ns, every 5_000_000 ns
 
    procedure Regulate
      (Nmt         : Controller.Nmt_States.Leaf;
       Objects     : Canopen_Device.Objects;
       Temperature : in out Canopen_Device.Temperature)
    with Global => null;
-   --  [Controller.regulate] budget 100_000 ns, every 50_000_000 ns
+   --  [Controller.regulate] WCET 100_000 ns, every 50_000_000 ns
 end Canopen_Device.Controller.Flows;

@@ -5,27 +5,22 @@
 package body Canopen_Device.Controller.Inbox
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
-   function Select_Transition
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
-     (case Self.Leaf is
-        when Inbox_States.Open =>
-           (if Now = On_Asked
-               and then (Ins.Nmt = Nmt_States.Pre_Operational
-                  or else Ins.Nmt = Nmt_States.Operational)
-               and then Item.Value_Sdo.Command /= 128
-               then Ask
-            elsif Now = On_Ordered and then Ins.Nmt = Nmt_States.Operational
-               then Order
-            elsif Now = On_Sync_Came
-               and then Ins.Nmt = Nmt_States.Operational
-               then Synchronise
-            else None))
-   with
-     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
+     return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins, Item)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins, Item)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -55,8 +50,7 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started and then Self.Leaf = Target (Chosen, Before.Leaf))
    with Ghost;
    --  Is the region after it as declared?
@@ -71,20 +65,20 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Before : constant Inbox_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen, Before);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Active := Moved (Active, Chart.Nowhere, Chart.Open);
-            Self.Leaf := Inbox_States.Open;
          when Ask =>
             Self.Data.Request.Command := Item.Value_Sdo.Command;
             Self.Data.Request.Index := Item.Value_Sdo.Index;
@@ -115,7 +109,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins, Item);
+         Fired := Selected (Self, Now, Ins, Item);
       end if;
       if Fired /= None then
          Fire (Self, Item, Fired);

@@ -5,8 +5,7 @@
 package Canopen_Device.Controller.Inbox
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
+   pragma Warnings (Off, "*can * be*");
 
    use type Inbox_States.Leaf;
    use type Ravenchart.Number;
@@ -49,8 +48,7 @@ is
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Inbox_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Inbox_States.Leaf) return Boolean is
      (case T is
         when Ask | Order | Synchronise => Leaf = Inbox_States.Open);
    --  The declared chart: the source of each transition. Is it the leaf, or
@@ -61,8 +59,7 @@ is
       Self : Region;
       Now  : Occurrence;
       Ins  : Inputs;
-      Item : Event)
-     return Boolean is
+      Item : Event) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
            when Ask =>
@@ -77,8 +74,7 @@ is
    --  The trigger and the guard of each transition.
 
    function Target
-     (T : Firing; Leaf : Inbox_States.Leaf)
-     return Inbox_States.Leaf is
+     (T : Firing; Leaf : Inbox_States.Leaf) return Inbox_States.Leaf is
      (case T is
         when Initial_Entry => Inbox_States.Open,
         when Ask | Order | Synchronise => Leaf);
@@ -89,8 +85,7 @@ is
       Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs;
-      Item   : Event)
-     return Boolean is
+      Item   : Event) return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
           and then Enabled (Chosen, Self, Now, Ins, Item)))

@@ -5,63 +5,29 @@
 package body Canopen_Device.Controller.Nmt
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
-   function Around_Ready
-     (Now : Occurrence; Ins : Inputs; Item : Event)
-     return Selection is
-     (if Now = On_Commanded
-         and then Item.Value_Nmt_Command.Service = Canopen_Device.Start
-         and then (Item.Value_Nmt_Command.Node = 0
-            or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-         then Start
-      elsif Now = On_Commanded
-         and then Item.Value_Nmt_Command.Service = Canopen_Device.Stop
-         and then (Item.Value_Nmt_Command.Node = 0
-            or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-         then Stop
-      elsif Now = On_Commanded
-         and then Item.Value_Nmt_Command.Service
-           = Canopen_Device.Enter_Pre_Operational
-         and then (Item.Value_Nmt_Command.Node = 0
-            or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-         then Prepare
-      elsif Now = On_Commanded
-         and then Item.Value_Nmt_Command.Service = Canopen_Device.Reset_Node
-         and then (Item.Value_Nmt_Command.Node = 0
-            or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-         then Reset_Node
-      elsif Now = On_Commanded
-         and then Item.Value_Nmt_Command.Service
-           = Canopen_Device.Reset_Communication
-         and then (Item.Value_Nmt_Command.Node = 0
-            or else Item.Value_Nmt_Command.Node = Ins.Node_Id)
-         then Reset_Communication
-      else None);
-
-   function Select_Transition
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
-     (case Self.Leaf is
-        when Nmt_States.Initialisation =>
-           (if Now = Expiry_Of_Initialised then Initialised else None),
-        when Nmt_States.Boot_Up_Due =>
-           (if Now = Conditions and then Ins.Beat.Boots = Self.Data.Boots
-               then Booted
-            else None),
-        when Nmt_States.Pre_Operational => Around_Ready (Now, Ins, Item),
-        when Nmt_States.Operational => Around_Ready (Now, Ins, Item),
-        when Nmt_States.Stopped => Around_Ready (Now, Ins, Item))
-   with
-     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
+     return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins, Item)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins, Item)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
    is
       type Node is
         (Nowhere, Initialisation, Boot_Up_Due, Pre_Operational, Operational,
-         Stopped, Ready, Disorder);
+         Stopped, Disorder);
 
       function Innermost (Self : Region) return Node is
         (if Self.Started then Node'Val (Nmt_States.Leaf'Pos (Self.Leaf) + 1)
@@ -97,16 +63,14 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
-     (Self.Timers (1)
-      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-           Before.Timers (1))) with Ghost;
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
+     (Self.Timers
+      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Leaf,
+           Self.Leaf)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started
       and then Self.Leaf = Target (Chosen)
       and then Is_Lasting (Before, Self, Chosen)) with Ghost;
@@ -122,83 +86,61 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Active_At_First : constant Chart.Node := Active with Ghost;
+      Before : constant Nmt_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
          To_Node     : Chart.Node;
-         In_Order    : Boolean := True)
-        return Chart.Node is
+         In_Order    : Boolean := True) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node and then In_Order
             then To_Node
          else Chart.Disorder) with Ghost;
 
-      procedure Exit_Initialisation is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Moved (Active, Chart.Initialisation, Chart.Nowhere);
-      end Exit_Initialisation;
-
-      procedure Enter_Initialisation is
-      begin
-         Self.Leaf := Nmt_States.Initialisation;
-         Ravenchart.Timers.Arm (Self.Timers (1), 40);
-         Active := Moved (Active, Chart.Nowhere, Chart.Initialisation);
-      end Enter_Initialisation;
-
       procedure Enter_Boot_Up_Due is
       begin
-         Self.Leaf := Nmt_States.Boot_Up_Due;
          Active := Moved (Active, Chart.Nowhere, Chart.Boot_Up_Due);
          Self.Data.Boots :=
            (if Self.Data.Boots = 255 then 0 else Self.Data.Boots + 1);
       end Enter_Boot_Up_Due;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen);
+      Self.Timers :=
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Leaf);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
-            Enter_Initialisation;
+            Active := Moved (Active, Chart.Nowhere, Chart.Initialisation);
          when Initialised =>
-            Exit_Initialisation;
+            Active := Moved (Active, Chart.Initialisation, Chart.Nowhere);
             Enter_Boot_Up_Due;
          when Booted =>
             Active :=
               Moved (Active, Chart.Boot_Up_Due, Chart.Pre_Operational);
-            Self.Leaf := Nmt_States.Pre_Operational;
          when Start =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Ready,
-                 Self.Leaf in Nmt_States.Ready);
-            Active := Moved (Active, Chart.Ready, Chart.Operational);
-            Self.Leaf := Nmt_States.Operational;
+              Moved (Active, Active_At_First, Chart.Operational,
+                 Before in Nmt_States.Ready);
          when Stop =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Ready,
-                 Self.Leaf in Nmt_States.Ready);
-            Active := Moved (Active, Chart.Ready, Chart.Stopped);
-            Self.Leaf := Nmt_States.Stopped;
+              Moved (Active, Active_At_First, Chart.Stopped,
+                 Before in Nmt_States.Ready);
          when Prepare =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Ready,
-                 Self.Leaf in Nmt_States.Ready);
-            Active := Moved (Active, Chart.Ready, Chart.Pre_Operational);
-            Self.Leaf := Nmt_States.Pre_Operational;
+              Moved (Active, Active_At_First, Chart.Pre_Operational,
+                 Before in Nmt_States.Ready);
          when Reset_Node =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Ready,
-                 Self.Leaf in Nmt_States.Ready);
-            Active := Moved (Active, Chart.Ready, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
+              Moved (Active, Active_At_First, Chart.Nowhere,
+                 Before in Nmt_States.Ready);
             Self.Data.Resets :=
               (if Self.Data.Resets = 255 then 0 else Self.Data.Resets + 1);
-            pragma Assert (Active = Chart.Nowhere);
-            Enter_Initialisation;
+            Active := Moved (Active, Chart.Nowhere, Chart.Initialisation);
          when Reset_Communication =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Ready,
-                 Self.Leaf in Nmt_States.Ready);
-            Active := Moved (Active, Chart.Ready, Chart.Nowhere);
-            Enter_Initialisation;
+              Moved (Active, Active_At_First, Chart.Initialisation,
+                 Before in Nmt_States.Ready);
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
@@ -213,7 +155,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins, Item);
+         Fired := Selected (Self, Now, Ins, Item);
       end if;
       if Fired /= None then
          Fire (Self, Fired);

@@ -7,9 +7,6 @@ with Ravenchart.Timers;
 package Canopen_Device.Controller.Nmt
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Nmt_States.Leaf;
    use type Ravenchart.Timers.Timer;
    use type Ravenchart.Timers.Timer_Array;
@@ -47,17 +44,31 @@ is
       Node_Id : Canopen_Device.Node_Id;
    end record;
 
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 1);
+
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is (Nothing, Inside_Ready, Everything, Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Initialised | Booted | Start | Stop | Prepare | Reset_Node
+           | Reset_Communication =>
+           Everything);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
    --  The region's own state.
    type Region is record
       Started : Boolean := False;
       Leaf    : Nmt_States.Leaf := Nmt_States.Initialisation;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
+      Timers  : Time_Outs;
       Data    : Variables;
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Nmt_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Nmt_States.Leaf) return Boolean is
      (case T is
         when Initialised => Leaf = Nmt_States.Initialisation,
         when Booted => Leaf = Nmt_States.Boot_Up_Due,
@@ -71,8 +82,7 @@ is
       Self : Region;
       Now  : Occurrence;
       Ins  : Inputs;
-      Item : Event)
-     return Boolean is
+      Item : Event) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
            when Initialised => Now = Expiry_Of_Initialised,
@@ -118,33 +128,16 @@ is
         when Stop => Nmt_States.Stopped);
    --  The leaf it leads to; that of a composite is its default.
 
-   --  The innermost region that holds all that a transition leaves and
-   --  enters.
-   type Domain is (Nothing, Inside_Ready, Everything, Beginning);
-
-   function Domain_Of (T : Firing) return Domain is
-     (case T is
-        when Initial_Entry => Beginning,
-        when Initialised | Booted | Start | Stop | Prepare | Reset_Node
-           | Reset_Communication =>
-           Everything);
-   --  Everything active inside it is left, and what is active then is
-   --  entered.
-
-   function Timer_After
-     (I      : Positive;
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Nmt_States.Leaf;
-      After  : Nmt_States.Leaf;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
-              D /= Beginning and then Before = Nmt_States.Initialisation,
-              After = Nmt_States.Initialisation,
-              Ravenchart.Timers.Started (40)),
-        when others => Timer);
+      After  : Nmt_States.Leaf) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1), D in Everything | Beginning,
+            D /= Beginning and then Before = Nmt_States.Initialisation,
+            After = Nmt_States.Initialisation,
+            Ravenchart.Timers.Started (40))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
@@ -153,8 +146,7 @@ is
       Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs;
-      Item   : Event)
-     return Boolean is
+      Item   : Event) return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
           and then Enabled (Chosen, Self, Now, Ins, Item)))
@@ -208,8 +200,8 @@ is
           else Is_Selection (Fired, Self'Old, Now, Ins, Item))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
-             and then Self.Timers (1)
-               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (1)));
+             and then Self.Timers
+               = Timers_After (Self.Timers'Old, Domain_Of (Fired),
+                    Self.Leaf'Old, Self.Leaf));
    --  One run-to-completion step.
 end Canopen_Device.Controller.Nmt;

@@ -11,6 +11,7 @@ with Canopen_Device.Line;
 with Canopen_Device.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -19,9 +20,6 @@ with System;
 package body Canopen_Device.Device
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [device.nmt_in]
    package Nmt_In_Mailbox is new Ravenchart.Queues
      (Element_Type => Canopen_Device.Nmt_Command,
@@ -29,6 +27,13 @@ is
       Capacity => 4,
       Ceiling => System.Default_Priority + 3,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Nmt_In_Offers is new Ravenchart.Offers
+     (Element_Type => Canopen_Device.Nmt_Command,
+      Put => Nmt_In_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Device_Nmt_In,
+      Report => Health_Counts.Faults.Report);
 
    Nmt_In_Port : Controller.Nmt_In_View;
 
@@ -39,6 +44,13 @@ is
       Capacity => 2,
       Ceiling => System.Default_Priority + 3,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Sync_In_Offers is new Ravenchart.Offers
+     (Element_Type => Canopen_Device.Sync_Count,
+      Put => Sync_In_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Device_Sync_In,
+      Report => Health_Counts.Faults.Report);
 
    Sync_In_Port : Controller.Sync_In_View;
 
@@ -59,6 +71,13 @@ is
       Capacity => 4,
       Ceiling => System.Default_Priority + 3,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Sdo_Request_Offers is new Ravenchart.Offers
+     (Element_Type => Canopen_Device.Sdo,
+      Put => Sdo_Request_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Device_Sdo_Request,
+      Report => Health_Counts.Faults.Report);
 
    Sdo_Request_Port : Controller.Sdo_Request_View;
 
@@ -153,6 +172,13 @@ is
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Nmt_Offers is new Ravenchart.Offers
+     (Element_Type => Controller.Event,
+      Put => Nmt_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Device_Nmt,
+      Report => Health_Counts.Faults.Report);
+
    --  [device.Inbox]
    Inbox_Region : Controller.Inbox.Region;
 
@@ -168,39 +194,25 @@ is
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
-   procedure Put_Nmt_In (Item : Canopen_Device.Nmt_Command) is
-      Status : Ravenchart.Queueing.Put_Status;
+   package Inbox_Offers is new Ravenchart.Offers
+     (Element_Type => Controller.Event,
+      Put => Inbox_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Device_Inbox,
+      Report => Health_Counts.Faults.Report);
 
-      use type Ravenchart.Queueing.Put_Status;
+   procedure Put_Nmt_In (Item : Canopen_Device.Nmt_Command) is
    begin
-      Nmt_In_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Device_Nmt_In,
          0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Device_Nmt_In,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Nmt_In_Offers.Offer (Item);
    end Put_Nmt_In;
 
    procedure Put_Sync_In (Item : Canopen_Device.Sync_Count) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
-      Sync_In_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Device_Sync_In,
          0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Device_Sync_In,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Sync_In_Offers.Offer (Item);
    end Put_Sync_In;
 
    procedure Put_Rpdo_1 (Item : Canopen_Device.Setpoint_Pdo) is
@@ -215,75 +227,29 @@ is
    end Put_Rpdo_1;
 
    procedure Put_Sdo_Request (Item : Canopen_Device.Sdo) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
-      Sdo_Request_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Device_Sdo_Request, 0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Device_Sdo_Request,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Sdo_Request_Offers.Offer (Item);
    end Put_Sdo_Request;
 
    procedure Offer (Item : Controller.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item.Name is
          when Controller.Commanded =>
-            Nmt_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Device_Nmt,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Nmt_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Device_Commanded, 0);
          when Controller.Sync_Came =>
-            Inbox_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Device_Inbox,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Inbox_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Device_Sync_Came, 0);
          when Controller.Ordered =>
-            Inbox_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Device_Inbox,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Inbox_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Device_Ordered, 0);
          when Controller.Asked =>
-            Inbox_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Device_Inbox,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Inbox_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Device_Asked, 0);
       end case;
@@ -341,12 +307,8 @@ is
                 Value_Nmt_Command => Nmt_In_Port.Value,
                 others => <>));
          when Controller.Nmt_In_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Device_Nmt_In,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Device_Nmt_In);
       end case;
       Sync_In_Mailbox.Take (Sync_In_Item, Status);
       Controller.Sync_In_Port.Handle
@@ -364,12 +326,8 @@ is
             Offer
               (Controller.Event'(Name => Controller.Sync_Came, others => <>));
          when Controller.Sync_In_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Device_Sync_In,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Device_Sync_In);
       end case;
       Rpdo_1_Mailbox.Take (Rpdo_1_Item, Status);
       Controller.Rpdo_1_Port.Handle
@@ -389,12 +347,8 @@ is
                 Value_Setpoint_Pdo => Rpdo_1_Port.Value,
                 others => <>));
          when Controller.Rpdo_1_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Device_Rpdo_1,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Device_Rpdo_1);
       end case;
       Sdo_Request_Mailbox.Take (Sdo_Request_Item, Status);
       Controller.Sdo_Request_Port.Handle
@@ -414,12 +368,8 @@ is
                 Value_Sdo => Sdo_Request_Port.Value,
                 others => <>));
          when Controller.Sdo_Request_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Device_Sdo_Request,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Device_Sdo_Request);
       end case;
       Executed := Executed + Elements.Device_Ports_Row;
    end Run_Ports;

@@ -8,9 +8,6 @@ with Canopen_Device.Elements;
 package Canopen_Device.Device
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Element_Id;
 
    procedure Put_Nmt_In (Item : Canopen_Device.Nmt_Command);

@@ -7,9 +7,6 @@ with Canopen_Device.Elements;
 package Canopen_Device.Line.Receiver
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    procedure Wait;
    --  [line.receive.release] suspend until a frame is there.
 

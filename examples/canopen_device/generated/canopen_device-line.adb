@@ -11,9 +11,6 @@ with Ravenchart.Traces;
 package body Canopen_Device.Line
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Frame_Of_Tpdo_1
      (Item : Canopen_Device.Status_Pdo)
      return Ravenchart.Can.Any_Frames.Any_Frame is
@@ -38,18 +35,13 @@ is
       Controller.Send (Frame, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Tpdo_1_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Tpdo_1_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Tpdo_1_Message);
       end if;
    end Send_Tpdo_1;
 
    function Frame_Of_Sdo_Response
-     (Item : Canopen_Device.Sdo)
-     return Ravenchart.Can.Any_Frames.Any_Frame is
+     (Item : Canopen_Device.Sdo) return Ravenchart.Can.Any_Frames.Any_Frame is
    begin
       return
         Ravenchart.Can.Any_Frames.Whole_Frame
@@ -72,12 +64,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent,
          Elements.Sdo_Response_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Sdo_Response_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Sdo_Response_Message);
       end if;
    end Send_Sdo_Response;
 
@@ -106,12 +94,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Heartbeat_Message,
          0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Heartbeat_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Heartbeat_Message);
       end if;
    end Send_Heartbeat;
 end Canopen_Device.Line;

@@ -14,17 +14,12 @@ with System;
 package Canopen_Device.Line
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Accepts
-     (Id     : Ravenchart.Can.Identifier;
-      Format : Ravenchart.Can.Frame_Format)
+     (Id : Ravenchart.Can.Identifier; Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
         when Ravenchart.Can.Standard =>
-           Id
-           in Timing_Certificate.Line_Nmt_Id
+           Id in Timing_Certificate.Line_Nmt_Id
              | Timing_Certificate.Line_Sync_Id
              | Timing_Certificate.Line_Rpdo_1_Id
              | Timing_Certificate.Line_Sdo_Request_Id,
@@ -85,8 +80,7 @@ is
    --  [tpdo_1] hand one frame to the controller; never blocks.
 
    function Frame_Of_Sdo_Response
-     (Item : Canopen_Device.Sdo)
-     return Ravenchart.Can.Any_Frames.Any_Frame
+     (Item : Canopen_Device.Sdo) return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
        Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Sdo_Response'Result,

@@ -10,9 +10,6 @@ with System;
 package Canopen_Device.Protocol
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [protocol.table] the activities, in the order in which they run
    type Row is
      (Device_Ports, Device_Nmt, Device_Inbox, Device_Serve, Device_Respond,

@@ -20,9 +20,6 @@ with Ravenchart.Traces;
 package body Canopen_Device.Reports
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
 

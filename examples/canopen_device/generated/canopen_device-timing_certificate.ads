@@ -10,9 +10,6 @@ with Ravenchart.Response_Times;
 package Canopen_Device.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "49f9db734c82e469138fdeac3f7b5f9e76c0faf3d85759460f66d2aa53aaa7da";
@@ -186,55 +183,70 @@ is
 
    function Board_Probe_Up (W : Window) return Time is
      (Demand (W, Board_Probe_J, Board_Probe_T, Board_Probe_C)) with Static;
+
    function Line_Driver_Rx_Nmt_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Nmt_J, Line_Driver_Rx_Nmt_T,
          Line_Driver_Rx_Nmt_C, Board_Probe_Up (W))) with Static;
+
    function Line_Driver_Rx_Sync_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Sync_J, Line_Driver_Rx_Sync_T,
          Line_Driver_Rx_Sync_C, Line_Driver_Rx_Nmt_Up (W))) with Static;
+
    function Line_Driver_Tx_Tpdo_1_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Tpdo_1_J, Line_Driver_Tx_Tpdo_1_T,
          Line_Driver_Tx_Tpdo_1_C, Line_Driver_Rx_Sync_Up (W))) with Static;
+
    function Line_Driver_Rx_Rpdo_1_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Rpdo_1_J, Line_Driver_Rx_Rpdo_1_T,
          Line_Driver_Rx_Rpdo_1_C, Line_Driver_Tx_Tpdo_1_Up (W))) with Static;
+
    function Line_Driver_Tx_Sdo_Response_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Sdo_Response_J,
          Line_Driver_Tx_Sdo_Response_T, Line_Driver_Tx_Sdo_Response_C,
          Line_Driver_Rx_Rpdo_1_Up (W))) with Static;
+
    function Line_Driver_Rx_Sdo_Request_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Sdo_Request_J, Line_Driver_Rx_Sdo_Request_T,
          Line_Driver_Rx_Sdo_Request_C, Line_Driver_Tx_Sdo_Response_Up (W)))
    with Static;
+
    function Line_Driver_Tx_Heartbeat_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Heartbeat_J, Line_Driver_Tx_Heartbeat_T,
          Line_Driver_Tx_Heartbeat_C, Line_Driver_Rx_Sdo_Request_Up (W)))
    with Static;
+
    function Reception_Up (W : Window) return Time is
      (Demand (W, Reception_J, Reception_T, Reception_C,
          Line_Driver_Tx_Heartbeat_Up (W))) with Static;
+
    function Protocol_Up (W : Window) return Time is
      (Demand (W, Protocol_J, Protocol_T, Protocol_C, Reception_Up (W)))
    with Static;
+
    function Line_Driver_Tx_Heartbeat_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Heartbeat_J, Line_Driver_Tx_Heartbeat_T,
          Line_Driver_Tx_Heartbeat_C)) with Static;
+
    function Line_Driver_Rx_Sdo_Request_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Sdo_Request_J, Line_Driver_Rx_Sdo_Request_T,
          Line_Driver_Rx_Sdo_Request_C, Line_Driver_Tx_Heartbeat_Rest (W)))
    with Static;
+
    function Line_Driver_Tx_Sdo_Response_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Sdo_Response_J,
          Line_Driver_Tx_Sdo_Response_T, Line_Driver_Tx_Sdo_Response_C,
          Line_Driver_Rx_Sdo_Request_Rest (W))) with Static;
+
    function Line_Driver_Rx_Rpdo_1_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Rpdo_1_J, Line_Driver_Rx_Rpdo_1_T,
          Line_Driver_Rx_Rpdo_1_C, Line_Driver_Tx_Sdo_Response_Rest (W)))
    with Static;
+
    function Line_Driver_Tx_Tpdo_1_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Tpdo_1_J, Line_Driver_Tx_Tpdo_1_T,
          Line_Driver_Tx_Tpdo_1_C, Line_Driver_Rx_Rpdo_1_Rest (W)))
    with Static;
+
    function Line_Driver_Rx_Sync_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Sync_J, Line_Driver_Rx_Sync_T,
          Line_Driver_Rx_Sync_C, Line_Driver_Tx_Tpdo_1_Rest (W))) with Static;
@@ -256,6 +268,7 @@ is
 
    function Line_Bits (Stuffed : Positive) return Time is
      (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+
    function Line_Time_Of (Stuffed : Positive) return Time is
      ((Line_Bits (Stuffed) * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate)
    with Static;
@@ -503,45 +516,59 @@ is
 
    function Line_Nmt_Up (W : Window) return Time is
      (Demand (W, Line_Nmt_J, Line_Nmt_T, Line_Nmt_C)) with Static;
+
    function Line_Sync_Up (W : Window) return Time is
      (Demand (W, Line_Sync_J, Line_Sync_T, Line_Sync_C, Line_Nmt_Up (W)))
    with Static;
+
    function Line_Tpdo_1_Up (W : Window) return Time is
      (Demand (W, Line_Tpdo_1_R - Line_Tpdo_1_C, Line_Tpdo_1_T,
          Line_Tpdo_1_C, Line_Sync_Up (W))) with Static;
+
    function Line_Rpdo_1_Up (W : Window) return Time is
      (Demand (W, Line_Rpdo_1_J, Line_Rpdo_1_T, Line_Rpdo_1_C,
          Line_Tpdo_1_Up (W))) with Static;
+
    function Line_Sdo_Response_Up (W : Window) return Time is
      (Demand (W, Line_Sdo_Response_R - Line_Sdo_Response_C,
          Line_Sdo_Response_T, Line_Sdo_Response_C, Line_Rpdo_1_Up (W)))
    with Static;
+
    function Line_Sdo_Request_Up (W : Window) return Time is
      (Demand (W, Line_Sdo_Request_J, Line_Sdo_Request_T, Line_Sdo_Request_C,
          Line_Sdo_Response_Up (W))) with Static;
+
    function Line_Nmt_Up_Board (W : Window) return Time is
      (Demand (W, Line_Nmt_J, Line_Nmt_T, Line_Nmt_C)) with Static;
+
    function Line_Sync_Up_Board (W : Window) return Time is
      (Demand (W, Line_Sync_J, Line_Sync_T, Line_Sync_C,
          Line_Nmt_Up_Board (W))) with Static;
+
    function Line_Rpdo_1_Up_Board (W : Window) return Time is
      (Demand (W, Line_Rpdo_1_J, Line_Rpdo_1_T, Line_Rpdo_1_C,
          Line_Sync_Up_Board (W))) with Static;
+
    function Line_Sdo_Request_Up_Board (W : Window) return Time is
      (Demand (W, Line_Sdo_Request_J, Line_Sdo_Request_T, Line_Sdo_Request_C,
          Line_Rpdo_1_Up_Board (W))) with Static;
+
    function Line_Tpdo_1_Up_Board (W : Window) return Time is
      (Demand (W, Line_Tpdo_1_J, Line_Tpdo_1_T, Line_Tpdo_1_C,
          Line_Sdo_Request_Up_Board (W))) with Static;
+
    function Line_Sdo_Response_Up_Board (W : Window) return Time is
      (Demand (W, Line_Sdo_Response_J, Line_Sdo_Response_T,
          Line_Sdo_Response_C, Line_Tpdo_1_Up_Board (W))) with Static;
+
    function Line_Heartbeat_Up_Board (W : Window) return Time is
      (Demand (W, Line_Heartbeat_J, Line_Heartbeat_T, Line_Heartbeat_C,
          Line_Sdo_Response_Up_Board (W))) with Static;
+
    function Line_Heartbeat_Rest_Board (W : Window) return Time is
      (Demand (W, Line_Heartbeat_J, Line_Heartbeat_T, Line_Heartbeat_C))
    with Static;
+
    function Line_Sdo_Response_Rest_Board (W : Window) return Time is
      (Demand (W, Line_Sdo_Response_J, Line_Sdo_Response_T,
          Line_Sdo_Response_C, Line_Heartbeat_Rest_Board (W))) with Static;

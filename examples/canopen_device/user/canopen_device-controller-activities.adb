@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The SDO server of the device, written by hand: expedited transfers from
 --  and to an object dictionary (CiA 301, SDO services and protocols).
 

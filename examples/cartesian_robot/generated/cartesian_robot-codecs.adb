@@ -6,8 +6,7 @@ package body Cartesian_Robot.Codecs
 with SPARK_Mode
 is
    function Bits_Of_Type_Order_Kind
-     (Item : Cartesian_Robot.Order_Kind)
-     return Interfaces.Unsigned_8 is
+     (Item : Cartesian_Robot.Order_Kind) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Cartesian_Robot.Order_Kind'Pos (Item)))
    with
      Post =>
@@ -16,8 +15,7 @@ is
          = Item;
 
    function Bits_Of_Type_Position
-     (Item : Cartesian_Robot.Position)
-     return Interfaces.Unsigned_32
+     (Item : Cartesian_Robot.Position) return Interfaces.Unsigned_32
    with
      Post =>
        Bits_Of_Type_Position'Result <= 520_000
@@ -33,8 +31,7 @@ is
    end Bits_Of_Type_Position;
 
    function Bits_Of_Type_Robot_Condition
-     (Item : Cartesian_Robot.Robot_Condition)
-     return Interfaces.Unsigned_8 is
+     (Item : Cartesian_Robot.Robot_Condition) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Cartesian_Robot.Robot_Condition'Pos (Item)))
    with
      Post =>
@@ -44,8 +41,7 @@ is
          = Item;
 
    function Bits_Of_Type_Drive_Mode
-     (Item : Cartesian_Robot.Drive_Mode)
-     return Interfaces.Unsigned_8 is
+     (Item : Cartesian_Robot.Drive_Mode) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Cartesian_Robot.Drive_Mode'Pos (Item)))
    with
      Post =>
@@ -54,8 +50,7 @@ is
          = Item;
 
    function Bits_Of_Type_Speed
-     (Item : Cartesian_Robot.Speed)
-     return Interfaces.Unsigned_32
+     (Item : Cartesian_Robot.Speed) return Interfaces.Unsigned_32
    with
      Post =>
        Bits_Of_Type_Speed'Result <= 800_000
@@ -71,8 +66,7 @@ is
    end Bits_Of_Type_Speed;
 
    function Bits_Of_Type_Encoder_Count
-     (Item : Cartesian_Robot.Encoder_Count)
-     return Interfaces.Unsigned_32
+     (Item : Cartesian_Robot.Encoder_Count) return Interfaces.Unsigned_32
    with
      Post =>
        Bits_Of_Type_Encoder_Count'Result <= 2_000_000
@@ -90,8 +84,7 @@ is
    end Bits_Of_Type_Encoder_Count;
 
    function Bits_Of_Type_Switch
-     (Item : Cartesian_Robot.Switch)
-     return Interfaces.Unsigned_8 is
+     (Item : Cartesian_Robot.Switch) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Cartesian_Robot.Switch'Pos (Item)))
    with
      Post =>
@@ -99,8 +92,7 @@ is
        and then Value_Of_Type_Switch (Bits_Of_Type_Switch'Result) = Item;
 
    function Bits_Of_Type_Drive_Condition
-     (Item : Cartesian_Robot.Drive_Condition)
-     return Interfaces.Unsigned_8 is
+     (Item : Cartesian_Robot.Drive_Condition) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Cartesian_Robot.Drive_Condition'Pos (Item)))
    with
      Post =>
@@ -258,8 +250,7 @@ is
         (Local_Kind : Interfaces.Unsigned_8;
          Local_X    : Interfaces.Unsigned_32;
          Local_Y    : Interfaces.Unsigned_32;
-         Local_Z    : Interfaces.Unsigned_32)
-        return Interfaces.Unsigned_64 is
+         Local_Z    : Interfaces.Unsigned_32) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Kind)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_X), 2)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Y), 21)
@@ -277,8 +268,7 @@ is
           and then Raw_Of_Z (Word_Of'Result) = Local_Z;
 
       function Pack
-        (Item : Cartesian_Robot.Robot_Order)
-        return Interfaces.Unsigned_64 is
+        (Item : Cartesian_Robot.Robot_Order) return Interfaces.Unsigned_64 is
          Local_Kind : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Order_Kind (Item.Kind);
          Local_X : constant Interfaces.Unsigned_32 :=
@@ -471,8 +461,7 @@ is
           and then Raw_Of_Y (Word_Of'Result) = Local_Y;
 
       function Pack
-        (Item : Cartesian_Robot.Robot_Report)
-        return Interfaces.Unsigned_64 is
+        (Item : Cartesian_Robot.Robot_Report) return Interfaces.Unsigned_64 is
          Local_Condition : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Robot_Condition (Item.Condition);
          Local_X : constant Interfaces.Unsigned_32 :=
@@ -604,8 +593,7 @@ is
 
       function Word_Of
         (Local_Mode  : Interfaces.Unsigned_8;
-         Local_Speed : Interfaces.Unsigned_32)
-        return Interfaces.Unsigned_64 is
+         Local_Speed : Interfaces.Unsigned_32) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Mode)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Speed), 1))
       with

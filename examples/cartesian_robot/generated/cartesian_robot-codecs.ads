@@ -15,50 +15,42 @@ is
    use type Ravenchart.Number;
 
    function Value_Of_Type_Order_Kind
-     (Raw : Interfaces.Unsigned_8)
-     return Cartesian_Robot.Order_Kind is
+     (Raw : Interfaces.Unsigned_8) return Cartesian_Robot.Order_Kind is
      (Cartesian_Robot.Order_Kind'Val (Raw))
    with Pre => Raw <= 3;
 
    function Value_Of_Type_Position
-     (Raw : Interfaces.Unsigned_32)
-     return Cartesian_Robot.Position is
+     (Raw : Interfaces.Unsigned_32) return Cartesian_Robot.Position is
      (Cartesian_Robot.Position (Ravenchart.Number (Raw) - 20_000))
    with Pre => Raw <= 520_000;
 
    function Value_Of_Type_Robot_Condition
-     (Raw : Interfaces.Unsigned_8)
-     return Cartesian_Robot.Robot_Condition is
+     (Raw : Interfaces.Unsigned_8) return Cartesian_Robot.Robot_Condition is
      (Cartesian_Robot.Robot_Condition'Val (Raw))
    with Pre => Raw <= 5;
 
    function Value_Of_Type_Drive_Mode
-     (Raw : Interfaces.Unsigned_8)
-     return Cartesian_Robot.Drive_Mode is
+     (Raw : Interfaces.Unsigned_8) return Cartesian_Robot.Drive_Mode is
      (Cartesian_Robot.Drive_Mode'Val (Raw))
    with Pre => Raw <= 1;
 
    function Value_Of_Type_Speed
-     (Raw : Interfaces.Unsigned_32)
-     return Cartesian_Robot.Speed is
+     (Raw : Interfaces.Unsigned_32) return Cartesian_Robot.Speed is
      (Cartesian_Robot.Speed (Ravenchart.Number (Raw) - 400_000))
    with Pre => Raw <= 800_000;
 
    function Value_Of_Type_Encoder_Count
-     (Raw : Interfaces.Unsigned_32)
-     return Cartesian_Robot.Encoder_Count is
+     (Raw : Interfaces.Unsigned_32) return Cartesian_Robot.Encoder_Count is
      (Cartesian_Robot.Encoder_Count (Ravenchart.Number (Raw) - 1_000_000))
    with Pre => Raw <= 2_000_000;
 
    function Value_Of_Type_Switch
-     (Raw : Interfaces.Unsigned_8)
-     return Cartesian_Robot.Switch is
+     (Raw : Interfaces.Unsigned_8) return Cartesian_Robot.Switch is
      (Cartesian_Robot.Switch'Val (Raw))
    with Pre => Raw <= 2;
 
    function Value_Of_Type_Drive_Condition
-     (Raw : Interfaces.Unsigned_8)
-     return Cartesian_Robot.Drive_Condition is
+     (Raw : Interfaces.Unsigned_8) return Cartesian_Robot.Drive_Condition is
      (Cartesian_Robot.Drive_Condition'Val (Raw))
    with Pre => Raw <= 1;
 
@@ -96,39 +88,33 @@ is
          Offset => (-20_000));
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Kind)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_X)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Y)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Z));
 
       function Raw_Of_Kind
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#3#));
 
       function Raw_Of_X
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 2) and 16#7FFFF#));
 
       function Raw_Of_Y
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 21) and 16#7FFFF#));
 
       function Raw_Of_Z
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 40) and 16#7FFFF#));
 
       function Pack
-        (Item : Cartesian_Robot.Robot_Order)
-        return Interfaces.Unsigned_64
+        (Item : Cartesian_Robot.Robot_Order) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Kind)
@@ -203,32 +189,27 @@ is
          Offset => (-20_000));
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Condition)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_X)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Y));
 
       function Raw_Of_Condition
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#7#));
 
       function Raw_Of_X
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 3) and 16#7FFFF#));
 
       function Raw_Of_Y
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 22) and 16#7FFFF#));
 
       function Pack
-        (Item : Cartesian_Robot.Robot_Report)
-        return Interfaces.Unsigned_64
+        (Item : Cartesian_Robot.Robot_Report) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Condition)
@@ -290,19 +271,16 @@ is
          Offset => (-400_000));
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Mode)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Speed));
 
       function Raw_Of_Mode
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#1#));
 
       function Raw_Of_Speed
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 1) and 16#FFFFF#));
 
@@ -378,32 +356,27 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Count)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Speed)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Limit)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Condition));
 
       function Raw_Of_Count
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32 (Word and 16#1FFFFF#));
 
       function Raw_Of_Speed
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 21) and 16#FFFFF#));
 
       function Raw_Of_Limit
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 41) and 16#3#));
 
       function Raw_Of_Condition
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 43) and 16#1#));
 
       function Pack

@@ -12,6 +12,7 @@ with Cartesian_Robot.Robot_Coordinator.Mission;
 with Cartesian_Robot.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -27,6 +28,13 @@ is
       Capacity => 2,
       Ceiling => System.Default_Priority + 4,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Command_Offers is new Ravenchart.Offers
+     (Element_Type => Cartesian_Robot.Robot_Order,
+      Put => Command_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Coordinator_Command,
+      Report => Health_Counts.Faults.Report);
 
    Command_Port : Robot_Coordinator.Command_View;
 
@@ -95,22 +103,18 @@ is
       Ceiling => System.Default_Priority + 6,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
-   procedure Put_Command (Item : Cartesian_Robot.Robot_Order) is
-      Status : Ravenchart.Queueing.Put_Status;
+   package Mission_Offers is new Ravenchart.Offers
+     (Element_Type => Robot_Coordinator.Event,
+      Put => Mission_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Coordinator_Mission,
+      Report => Health_Counts.Faults.Report);
 
-      use type Ravenchart.Queueing.Put_Status;
+   procedure Put_Command (Item : Cartesian_Robot.Robot_Order) is
    begin
-      Command_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Coordinator_Command, 0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Coordinator_Command,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Command_Offers.Offer (Item);
    end Put_Command;
 
    procedure Put_Report_X (Item : Cartesian_Robot.Joint_Report) is
@@ -147,45 +151,18 @@ is
    end Put_Report_Z;
 
    procedure Offer (Item : Robot_Coordinator.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
          when Robot_Coordinator.Commanded =>
-            Mission_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Coordinator_Mission,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Mission_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Coordinator_Commanded, 0);
          when Robot_Coordinator.Joint_Lost =>
-            Mission_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Coordinator_Mission,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Mission_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Coordinator_Joint_Lost, 0);
          when Robot_Coordinator.Shutdown =>
-            Mission_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Coordinator_Mission,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Mission_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Coordinator_Shutdown, 0);
       end case;
@@ -249,12 +226,8 @@ is
                Elements.Coordinator_Command, 0);
             Offer (Robot_Coordinator.Commanded);
          when Robot_Coordinator.Command_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Coordinator_Command,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Coordinator_Command);
       end case;
       Report_X_Mailbox.Take (Report_X_Item, Status);
       Robot_Coordinator.Report_X_Port.Handle
@@ -271,12 +244,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Coordinator_Report_X, 0);
          when Robot_Coordinator.Report_X_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Coordinator_Report_X,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Coordinator_Report_X);
             Offer (Robot_Coordinator.Joint_Lost);
       end case;
       Report_Y_Mailbox.Take (Report_Y_Item, Status);
@@ -294,12 +263,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Coordinator_Report_Y, 0);
          when Robot_Coordinator.Report_Y_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Coordinator_Report_Y,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Coordinator_Report_Y);
             Offer (Robot_Coordinator.Joint_Lost);
       end case;
       Report_Z_Mailbox.Take (Report_Z_Item, Status);
@@ -317,12 +282,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Coordinator_Report_Z, 0);
          when Robot_Coordinator.Report_Z_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Coordinator_Report_Z,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Coordinator_Report_Z);
             Offer (Robot_Coordinator.Joint_Lost);
       end case;
       Executed := Executed + Elements.Coordinator_Ports_Row;

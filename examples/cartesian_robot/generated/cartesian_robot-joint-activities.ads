@@ -11,7 +11,7 @@ is
       Top_Speed : Cartesian_Robot.Top_Speed;
       Profile   : in out Cartesian_Robot.Profile)
    with Global => null;
-   --  [Joint.trajectory_step] budget 100_000 ns, every 5_000_000 ns
+   --  [Joint.trajectory_step] WCET 100_000 ns, every 5_000_000 ns
 
    procedure Position_Control
      (Profile  : Cartesian_Robot.Profile;
@@ -22,5 +22,5 @@ is
       Measured : out Cartesian_Robot.Measurement;
       Drive    : out Cartesian_Robot.Drive_Set_Point)
    with Global => null;
-   --  [Joint.position_control] budget 150_000 ns, every 10_000_000 ns
+   --  [Joint.position_control] WCET 150_000 ns, every 10_000_000 ns
 end Cartesian_Robot.Joint.Activities;

@@ -12,5 +12,5 @@ is
       Report      : out Cartesian_Robot.Joint_Report;
       Send_Report : out Boolean)
    with Global => null;
-   --  [Joint.supervise] budget 100_000 ns, every 20_000_000 ns
+   --  [Joint.supervise] WCET 100_000 ns, every 20_000_000 ns
 end Cartesian_Robot.Joint.Flows;

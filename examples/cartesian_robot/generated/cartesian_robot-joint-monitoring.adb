@@ -5,33 +5,21 @@
 package body Cartesian_Robot.Joint.Monitoring
 with SPARK_Mode
 is
-   function Select_Transition
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (case Self.Leaf is
-        when Monitoring_States.Watching =>
-           (if Now = Conditions
-               and then Ins.Homed
-               and then abs Ins.Measured.Error > 20_000
-               then Strayed
-            elsif Now = Conditions
-               and then Ins.Motion in Motion_States.Moving
-               and then Ins.Feedback.Value.Limit /= Cartesian_Robot.Clear
-               then Limit_Hit
-            elsif Now = Conditions
-               and then Ins.Motion in Motion_States.Homing
-               and then Ins.Feedback.Value.Limit = Cartesian_Robot.High_End
-               then End_Reached
-            elsif Now = Conditions
-               and then Ins.Feedback.State = Ravenchart.Fresh
-               and then Ins.Feedback.Value.Condition
-                 = Cartesian_Robot.Faulted
-               and then Ins.Motion in Motion_States.Operational
-               then Drive_Failed
-            else None),
-        when Monitoring_States.Alarmed =>
-           (if Now = Expiry_Of_Calm then Calm else None))
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -73,16 +61,14 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
-     (Self.Timers (1)
-      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-           Before.Timers (1))) with Ghost;
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
+     (Self.Timers
+      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Leaf,
+           Self.Leaf)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started
       and then Self.Leaf = Target (Chosen)
       and then Is_Lasting (Before, Self, Chosen)) with Ghost;
@@ -99,55 +85,36 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Before : constant Monitoring_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
-
-      procedure Exit_Alarmed is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Moved (Active, Chart.Alarmed, Chart.Nowhere);
-      end Exit_Alarmed;
-
-      procedure Enter_Alarmed is
-      begin
-         Self.Leaf := Monitoring_States.Alarmed;
-         Ravenchart.Timers.Arm (Self.Timers (1), 50);
-         Active := Moved (Active, Chart.Nowhere, Chart.Alarmed);
-      end Enter_Alarmed;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen);
+      Self.Timers :=
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Leaf);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Active := Moved (Active, Chart.Nowhere, Chart.Watching);
-            Self.Leaf := Monitoring_States.Watching;
          when Strayed =>
             Active := Moved (Active, Chart.Watching, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Strayed);
-            pragma Assert (Active = Chart.Nowhere);
-            Enter_Alarmed;
+            Active := Moved (Active, Chart.Nowhere, Chart.Alarmed);
          when Limit_Hit | End_Reached =>
             Active := Moved (Active, Chart.Watching, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Limit_Hit);
-            pragma Assert (Active = Chart.Nowhere);
-            Enter_Alarmed;
+            Active := Moved (Active, Chart.Nowhere, Chart.Alarmed);
          when Drive_Failed =>
             Active := Moved (Active, Chart.Watching, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Drive_Failed);
-            pragma Assert (Active = Chart.Nowhere);
-            Enter_Alarmed;
+            Active := Moved (Active, Chart.Nowhere, Chart.Alarmed);
          when Calm =>
-            Exit_Alarmed;
-            Active := Moved (Active, Chart.Nowhere, Chart.Watching);
-            Self.Leaf := Monitoring_States.Watching;
+            Active := Moved (Active, Chart.Alarmed, Chart.Watching);
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
@@ -162,7 +129,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins);
+         Fired := Selected (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Box, Fired);

@@ -42,16 +42,29 @@ is
       Raised : Event_Lists.List;
    end record;
 
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 1);
+
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is (Nothing, Everything, Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Strayed | Limit_Hit | End_Reached | Drive_Failed | Calm =>
+           Everything);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
    --  The region's own state.
    type Region is record
       Started : Boolean := False;
       Leaf    : Monitoring_States.Leaf := Monitoring_States.Watching;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
+      Timers  : Time_Outs;
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Monitoring_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Monitoring_States.Leaf) return Boolean is
      (case T is
         when Strayed | Limit_Hit | End_Reached | Drive_Failed =>
            Leaf = Monitoring_States.Watching,
@@ -60,7 +73,7 @@ is
    --  around it?
 
    function Enabled
-     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
@@ -92,40 +105,21 @@ is
            Monitoring_States.Alarmed);
    --  The leaf it leads to; that of a composite is its default.
 
-   --  The innermost region that holds all that a transition leaves and
-   --  enters.
-   type Domain is (Nothing, Everything, Beginning);
-
-   function Domain_Of (T : Firing) return Domain is
-     (case T is
-        when Initial_Entry => Beginning,
-        when Strayed | Limit_Hit | End_Reached | Drive_Failed | Calm =>
-           Everything);
-   --  Everything active inside it is left, and what is active then is
-   --  entered.
-
-   function Timer_After
-     (I      : Positive;
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Monitoring_States.Leaf;
-      After  : Monitoring_States.Leaf;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
-              D /= Beginning and then Before = Monitoring_States.Alarmed,
-              After = Monitoring_States.Alarmed,
-              Ravenchart.Timers.Started (50)),
-        when others => Timer);
+      After  : Monitoring_States.Leaf) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1), D in Everything | Beginning,
+            D /= Beginning and then Before = Monitoring_States.Alarmed,
+            After = Monitoring_States.Alarmed,
+            Ravenchart.Timers.Started (50))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
    function Is_Selection
-     (Chosen : Selection;
-      Self   : Region;
-      Now    : Occurrence;
-      Ins    : Inputs)
+     (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
@@ -175,8 +169,8 @@ is
           else Is_Selection (Fired, Self'Old, Now, Ins))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
-             and then Self.Timers (1)
-               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (1)));
+             and then Self.Timers
+               = Timers_After (Self.Timers'Old, Domain_Of (Fired),
+                    Self.Leaf'Old, Self.Leaf));
    --  One run-to-completion step.
 end Cartesian_Robot.Joint.Monitoring;

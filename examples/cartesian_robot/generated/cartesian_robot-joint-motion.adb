@@ -5,83 +5,21 @@
 package body Cartesian_Robot.Joint.Motion
 with SPARK_Mode
 is
-   function Around_Operational
-     (Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (if Now = On_Ordered
-         and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-         then Halt
-      elsif Now = On_Feedback_Lost then Lost
-      elsif Now = On_Drive_Failed then Failed
-      elsif Now = On_Strayed then Strayed
-      elsif Now = On_Limit_Hit then Limit
-      else None);
-
-   function Around_Homing (Now : Occurrence; Ins : Inputs) return Selection is
-     (if Now = Expiry_Of_No_End then No_End
-      else Around_Operational (Now, Ins));
-
-   function Around_Moving
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (if Now = Conditions
-         and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
-         and then Ins.Profile.Position = Self.Data.Goal.Target
-         and then abs Ins.Measured.Error < 2_000
-         then Arrived
-      else Around_Operational (Now, Ins));
-
-   function Select_Transition
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (case Self.Leaf is
-        when Motion_States.Idle =>
-           (if Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Home
-               and then Ins.Feedback.State = Ravenchart.Fresh
-               then Start_Homing
-            elsif Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Move
-               and then Self.Data.Homed
-               then Start_Move
-            else Around_Operational (Now, Ins)),
-        when Motion_States.Seeking =>
-           (if Now = Conditions
-               and then Ins.Feedback.Value.Limit = Cartesian_Robot.Low_End
-               then End_Found
-            else Around_Homing (Now, Ins)),
-        when Motion_States.Backing_Off =>
-           (if Now = Conditions
-               and then Ins.Feedback.Value.Limit = Cartesian_Robot.Clear
-               then End_Left
-            else Around_Homing (Now, Ins)),
-        when Motion_States.Accelerating =>
-           (if Now = Conditions
-               and then Ins.Profile.Phase = Cartesian_Robot.At_Speed
-               then At_Speed
-            elsif Now = Conditions
-               and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down
-               then No_Cruise
-            else Around_Moving (Self, Now, Ins)),
-        when Motion_States.Cruising =>
-           (if Now = Conditions
-               and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down
-               then Brake
-            else Around_Moving (Self, Now, Ins)),
-        when Motion_States.Braking => Around_Moving (Self, Now, Ins),
-        when Motion_States.Limit =>
-           (if Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
-               and then Ins.Feedback.State = Ravenchart.Fresh
-               then Reset
-            else None),
-        when Motion_States.Drive =>
-           (if Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
-               and then Ins.Feedback.State = Ravenchart.Fresh
-               then Reset
-            else None))
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -125,16 +63,14 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
-     (Self.Timers (1)
-      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-           Before.Timers (1))) with Ghost;
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
+     (Self.Timers
+      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Leaf,
+           Self.Leaf)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started
       and then Self.Leaf = Target (Chosen)
       and then Is_Lasting (Before, Self, Chosen)) with Ghost;
@@ -150,57 +86,26 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Active_At_First : constant Chart.Node := Active with Ghost;
+      Before : constant Motion_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
          To_Node     : Chart.Node;
-         In_Order    : Boolean := True)
-        return Chart.Node is
+         In_Order    : Boolean := True) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node and then In_Order
             then To_Node
          else Chart.Disorder) with Ghost;
 
-      procedure Exit_Homing is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Moved (Active, Chart.Homing, Chart.Operational);
-      end Exit_Homing;
-
-      procedure Leave_Operational is
-      begin
-         case Motion_States.Operational'(Self.Leaf) is
-            when Motion_States.Idle =>
-               Active := Moved (Active, Chart.Idle, Chart.Operational);
-            when Motion_States.Homing =>
-               Active :=
-                 Moved (Active, Chart.Innermost (Self), Chart.Homing,
-                    Self.Leaf in Motion_States.Homing);
-               Exit_Homing;
-            when Motion_States.Moving =>
-               Active :=
-                 Moved (Active, Chart.Innermost (Self), Chart.Moving,
-                    Self.Leaf in Motion_States.Moving);
-               Active := Moved (Active, Chart.Moving, Chart.Operational);
-         end case;
-      end Leave_Operational;
-
       procedure Enter_Idle is
       begin
-         Self.Leaf := Motion_States.Idle;
          Active := Moved (Active, Chart.Operational, Chart.Idle);
          Self.Data.Goal.Wanted := Cartesian_Robot.Hold;
       end Enter_Idle;
 
-      procedure Enter_Homing is
-      begin
-         Ravenchart.Timers.Arm (Self.Timers (1), 1_000);
-         Active := Moved (Active, Chart.Operational, Chart.Homing);
-      end Enter_Homing;
-
       procedure Enter_Seeking is
       begin
-         Self.Leaf := Motion_States.Seeking;
          Active := Moved (Active, Chart.Homing, Chart.Seeking);
          Self.Data.Homed := False;
          Self.Data.Goal.Wanted := Cartesian_Robot.Seek_Low_End;
@@ -208,7 +113,6 @@ is
 
       procedure Enter_Backing_Off is
       begin
-         Self.Leaf := Motion_States.Backing_Off;
          Active := Moved (Active, Chart.Homing, Chart.Backing_Off);
          Self.Data.Goal.Wanted := Cartesian_Robot.Leave_Low_End;
       end Enter_Backing_Off;
@@ -230,75 +134,67 @@ is
          Self.Data.Homed := False;
       end Enter_Fault;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen);
+      Self.Timers :=
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Leaf);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Active := Moved (Active, Chart.Nowhere, Chart.Operational);
             Enter_Idle;
          when End_Found =>
             Active := Moved (Active, Chart.Seeking, Chart.Homing);
             Enter_Backing_Off;
          when End_Left =>
-            Active := Moved (Active, Chart.Backing_Off, Chart.Homing);
-            Exit_Homing;
-            pragma Assert (Active = Chart.Operational);
+            Active := Moved (Active, Chart.Backing_Off, Chart.Operational);
             Self.Data.Homed := True;
-            pragma Assert (Active = Chart.Operational);
+            Active := Moved (Active, Chart.Operational, Chart.Operational);
             Enter_Idle;
          when At_Speed =>
             Active := Moved (Active, Chart.Accelerating, Chart.Cruising);
-            Self.Leaf := Motion_States.Cruising;
          when No_Cruise =>
             Active := Moved (Active, Chart.Accelerating, Chart.Braking);
-            Self.Leaf := Motion_States.Braking;
          when Brake =>
             Active := Moved (Active, Chart.Cruising, Chart.Braking);
-            Self.Leaf := Motion_States.Braking;
          when Start_Homing =>
-            Active := Moved (Active, Chart.Idle, Chart.Operational);
-            Enter_Homing;
+            Active := Moved (Active, Chart.Idle, Chart.Homing);
             Enter_Seeking;
          when No_End =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Homing,
-                 Self.Leaf in Motion_States.Homing);
-            Exit_Homing;
-            Active := Moved (Active, Chart.Operational, Chart.Nowhere);
+              Moved (Active, Active_At_First, Chart.Nowhere,
+                 Before in Motion_States.Homing);
             Enter_Fault;
             Active := Moved (Active, Chart.Fault, Chart.Drive);
-            Self.Leaf := Motion_States.Drive;
          when Start_Move =>
             Active := Moved (Active, Chart.Idle, Chart.Operational);
             Enter_Moving;
             Active := Moved (Active, Chart.Moving, Chart.Accelerating);
-            Self.Leaf := Motion_States.Accelerating;
          when Arrived =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Moving,
-                 Self.Leaf in Motion_States.Moving);
-            Active := Moved (Active, Chart.Moving, Chart.Operational);
+              Moved (Active, Active_At_First, Chart.Operational,
+                 Before in Motion_States.Moving);
             Enter_Idle;
          when Halt =>
-            Leave_Operational;
-            Active := Moved (Active, Chart.Operational, Chart.Operational);
+            Active :=
+              Moved (Active, Active_At_First, Chart.Operational,
+                 Before in Motion_States.Operational);
             Enter_Idle;
          when Lost | Failed | Strayed =>
-            Leave_Operational;
-            Active := Moved (Active, Chart.Operational, Chart.Nowhere);
+            Active :=
+              Moved (Active, Active_At_First, Chart.Nowhere,
+                 Before in Motion_States.Operational);
             Enter_Fault;
             Active := Moved (Active, Chart.Fault, Chart.Drive);
-            Self.Leaf := Motion_States.Drive;
          when Limit =>
-            Leave_Operational;
-            Active := Moved (Active, Chart.Operational, Chart.Nowhere);
+            Active :=
+              Moved (Active, Active_At_First, Chart.Nowhere,
+                 Before in Motion_States.Operational);
             Enter_Fault;
             Active := Moved (Active, Chart.Fault, Chart.Limit);
-            Self.Leaf := Motion_States.Limit;
          when Reset =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Fault,
-                 Self.Leaf in Motion_States.Fault);
-            Active := Moved (Active, Chart.Fault, Chart.Operational);
+              Moved (Active, Active_At_First, Chart.Operational,
+                 Before in Motion_States.Fault);
             Enter_Idle;
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
@@ -313,7 +209,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins);
+         Fired := Selected (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Ins, Fired);

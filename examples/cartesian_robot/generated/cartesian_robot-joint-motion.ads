@@ -57,17 +57,36 @@ is
       Measured : Cartesian_Robot.Measurement;
    end record;
 
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 1);
+
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is
+     (Nothing, Inside_Operational, Inside_Homing, Inside_Moving,
+      Inside_Fault, Everything, Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when End_Found => Inside_Homing,
+        when End_Left | Start_Homing | Start_Move | Arrived =>
+           Inside_Operational,
+        when At_Speed | No_Cruise | Brake => Inside_Moving,
+        when No_End | Halt | Lost | Failed | Strayed | Limit | Reset =>
+           Everything);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
    --  The region's own state.
    type Region is record
       Started : Boolean := False;
       Leaf    : Motion_States.Leaf := Motion_States.Idle;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
+      Timers  : Time_Outs;
       Data    : Variables;
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Motion_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Motion_States.Leaf) return Boolean is
      (case T is
         when End_Found => Leaf = Motion_States.Seeking,
         when End_Left => Leaf = Motion_States.Backing_Off,
@@ -83,7 +102,7 @@ is
    --  around it?
 
    function Enabled
-     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
@@ -142,47 +161,22 @@ is
         when Limit => Motion_States.Limit);
    --  The leaf it leads to; that of a composite is its default.
 
-   --  The innermost region that holds all that a transition leaves and
-   --  enters.
-   type Domain is
-     (Nothing, Inside_Operational, Inside_Homing, Inside_Moving,
-      Inside_Fault, Everything, Beginning);
-
-   function Domain_Of (T : Firing) return Domain is
-     (case T is
-        when Initial_Entry => Beginning,
-        when End_Found => Inside_Homing,
-        when End_Left | Start_Homing | Start_Move | Arrived =>
-           Inside_Operational,
-        when At_Speed | No_Cruise | Brake => Inside_Moving,
-        when No_End | Halt | Lost | Failed | Strayed | Limit | Reset =>
-           Everything);
-   --  Everything active inside it is left, and what is active then is
-   --  entered.
-
-   function Timer_After
-     (I      : Positive;
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Motion_States.Leaf;
-      After  : Motion_States.Leaf;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D in Inside_Operational | Everything | Beginning,
-              D /= Beginning and then Before in Motion_States.Homing,
-              After in Motion_States.Homing,
-              Ravenchart.Timers.Started (1_000)),
-        when others => Timer);
+      After  : Motion_States.Leaf) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1),
+            D in Inside_Operational | Everything | Beginning,
+            D /= Beginning and then Before in Motion_States.Homing,
+            After in Motion_States.Homing,
+            Ravenchart.Timers.Started (1_000))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
    function Is_Selection
-     (Chosen : Selection;
-      Self   : Region;
-      Now    : Occurrence;
-      Ins    : Inputs)
+     (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
@@ -239,8 +233,8 @@ is
           else Is_Selection (Fired, Self'Old, Now, Ins))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
-             and then Self.Timers (1)
-               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (1)));
+             and then Self.Timers
+               = Timers_After (Self.Timers'Old, Domain_Of (Fired),
+                    Self.Leaf'Old, Self.Leaf));
    --  One run-to-completion step.
 end Cartesian_Robot.Joint.Motion;

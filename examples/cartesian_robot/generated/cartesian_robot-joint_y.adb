@@ -12,6 +12,7 @@ with Cartesian_Robot.Robot_Bus;
 with Cartesian_Robot.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -27,6 +28,13 @@ is
       Capacity => 4,
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Order_Offers is new Ravenchart.Offers
+     (Element_Type => Cartesian_Robot.Joint_Order,
+      Put => Order_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Joint_Y_Order,
+      Report => Health_Counts.Faults.Report);
 
    Order_Port : Joint.Order_View;
 
@@ -97,6 +105,13 @@ is
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Motion_Offers is new Ravenchart.Offers
+     (Element_Type => Joint.Event,
+      Put => Motion_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Joint_Y_Motion,
+      Report => Health_Counts.Faults.Report);
+
    --  [joint_y.Monitoring]
    Monitoring_Region : Joint.Monitoring.Region;
 
@@ -106,20 +121,10 @@ is
       Ceiling => System.Default_Priority + 2);
 
    procedure Put_Order (Item : Cartesian_Robot.Joint_Order) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
-      Order_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Joint_Y_Order,
          0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Joint_Y_Order,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Order_Offers.Offer (Item);
    end Put_Order;
 
    procedure Put_Feedback (Item : Cartesian_Robot.Drive_Feedback) is
@@ -134,69 +139,26 @@ is
    end Put_Feedback;
 
    procedure Offer (Item : Joint.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
          when Joint.Ordered =>
-            Motion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Joint_Y_Motion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Motion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Joint_Y_Ordered, 0);
          when Joint.Feedback_Lost =>
-            Motion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Joint_Y_Motion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Motion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Joint_Y_Feedback_Lost, 0);
          when Joint.Strayed =>
-            Motion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Joint_Y_Motion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Motion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Joint_Y_Strayed, 0);
          when Joint.Limit_Hit =>
-            Motion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Joint_Y_Motion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Motion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Joint_Y_Limit_Hit, 0);
          when Joint.Drive_Failed =>
-            Motion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Joint_Y_Motion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Motion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Joint_Y_Drive_Failed, 0);
       end case;
@@ -257,12 +219,8 @@ is
                Elements.Joint_Y_Order, 0);
             Offer (Joint.Ordered);
          when Joint.Order_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Joint_Y_Order,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Joint_Y_Order);
       end case;
       Feedback_Mailbox.Take (Feedback_Item, Status);
       Joint.Feedback_Port.Handle
@@ -279,12 +237,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Joint_Y_Feedback, 0);
          when Joint.Feedback_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Joint_Y_Feedback,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Joint_Y_Feedback);
             Offer (Joint.Feedback_Lost);
       end case;
       Executed := Executed + Elements.Joint_Y_Ports_Row;

@@ -9,11 +9,9 @@ with Cartesian_Robot.Health_Counts;
 with Cartesian_Robot.Reception;
 with Cartesian_Robot.Robot_Coordinator;
 with Cartesian_Robot.Supervision;
-with Cartesian_Robot.Trace;
 with Cartesian_Robot.Trajectory;
 with Ravenchart.Health;
 with Ravenchart.Liveness;
-with Ravenchart.Traces;
 
 package body Cartesian_Robot.Liveness_Supervision
 with SPARK_Mode
@@ -56,30 +54,25 @@ is
 
    procedure On_Silence (Item : Watched) is
    begin
-      Health_Counts.Counters.Record_Fault (Ravenchart.Health.Silence);
       case Item is
          when Reception_Watch =>
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Reception_Processor,
-               Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
+            Health_Counts.Faults.Report (Ravenchart.Health.Silence,
+               Elements.Reception_Processor);
             Coordinator.Offer (Robot_Coordinator.Shutdown);
             Ravenchart.Failures.Note_Silence ("reception");
          when Trajectory_Watch =>
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Trajectory_Processor,
-               Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
+            Health_Counts.Faults.Report (Ravenchart.Health.Silence,
+               Elements.Trajectory_Processor);
             Coordinator.Offer (Robot_Coordinator.Shutdown);
             Ravenchart.Failures.Note_Silence ("trajectory");
          when Control_Watch =>
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Control_Processor,
-               Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
+            Health_Counts.Faults.Report (Ravenchart.Health.Silence,
+               Elements.Control_Processor);
             Coordinator.Offer (Robot_Coordinator.Shutdown);
             Ravenchart.Failures.Note_Silence ("control");
          when Supervision_Watch =>
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Supervision_Processor,
-               Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
+            Health_Counts.Faults.Report (Ravenchart.Health.Silence,
+               Elements.Supervision_Processor);
             Ravenchart.Failures.Note_Silence ("supervision");
       end case;
    end On_Silence;

@@ -36,12 +36,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent,
          Elements.Robot_Status_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Robot_Status_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Robot_Status_Message);
       end if;
    end Send_Robot_Status;
 
@@ -70,12 +66,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent,
          Elements.X_Set_Point_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.X_Set_Point_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.X_Set_Point_Message);
       end if;
    end Send_X_Set_Point;
 
@@ -104,12 +96,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent,
          Elements.Y_Set_Point_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Y_Set_Point_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Y_Set_Point_Message);
       end if;
    end Send_Y_Set_Point;
 
@@ -138,12 +126,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent,
          Elements.Z_Set_Point_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Z_Set_Point_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Z_Set_Point_Message);
       end if;
    end Send_Z_Set_Point;
 end Cartesian_Robot.Robot_Bus;

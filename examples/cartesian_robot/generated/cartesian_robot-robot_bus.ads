@@ -15,13 +15,11 @@ package Cartesian_Robot.Robot_Bus
 with SPARK_Mode
 is
    function Accepts
-     (Id     : Ravenchart.Can.Identifier;
-      Format : Ravenchart.Can.Frame_Format)
+     (Id : Ravenchart.Can.Identifier; Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
         when Ravenchart.Can.Standard =>
-           Id
-           in Timing_Certificate.Robot_Bus_Robot_Command_Id
+           Id in Timing_Certificate.Robot_Bus_Robot_Command_Id
              | Timing_Certificate.Robot_Bus_X_Feedback_Id
              | Timing_Certificate.Robot_Bus_Y_Feedback_Id
              | Timing_Certificate.Robot_Bus_Z_Feedback_Id,

@@ -11,5 +11,5 @@ is
       Mission  : Robot_Coordinator.Mission_States.Leaf;
       Status   : out Cartesian_Robot.Robot_Report)
    with Global => null;
-   --  [Robot_Coordinator.summarise] budget 100_000 ns, every 20_000_000 ns
+   --  [Robot_Coordinator.summarise] WCET 100_000 ns, every 20_000_000 ns
 end Cartesian_Robot.Robot_Coordinator.Activities;

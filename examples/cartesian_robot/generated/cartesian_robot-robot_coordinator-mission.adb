@@ -5,87 +5,21 @@
 package body Cartesian_Robot.Robot_Coordinator.Mission
 with SPARK_Mode
 is
-   function Around_Active (Now : Occurrence; Ins : Inputs) return Selection is
-     (if Now = Conditions
-         and then ((Ins.Report_X.Value.Condition = Cartesian_Robot.Failed
-             or else Ins.Report_Y.Value.Condition = Cartesian_Robot.Failed)
-            or else Ins.Report_Z.Value.Condition = Cartesian_Robot.Failed)
-         then Joint_Failed
-      elsif Now = On_Joint_Lost then Joint_Lost
-      elsif Now = On_Shutdown then Shut_Down
-      else None);
-
-   function Around_Travelling
-     (Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (if Now = On_Commanded
-         and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
-         then Halt
-      else Around_Active (Now, Ins));
-
-   function Select_Transition
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (case Self.Leaf is
-        when Mission_States.Waiting =>
-           (if Now = On_Commanded
-               and then Ins.Command.Value.Kind = Cartesian_Robot.Home
-               then Home
-            else Around_Active (Now, Ins)),
-        when Mission_States.Homing =>
-           (if Now = Conditions
-               and then Ins.Report_X.Value.Condition
-                 = Cartesian_Robot.Standing
-               and then Ins.Report_Y.Value.Condition
-                 = Cartesian_Robot.Standing
-               and then Ins.Report_Z.Value.Condition
-                 = Cartesian_Robot.Standing
-               then Homed
-            elsif Now = On_Commanded
-               and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
-               then Halt_Homing
-            else Around_Active (Now, Ins)),
-        when Mission_States.Ready =>
-           (if Now = On_Commanded
-               and then Ins.Command.Value.Kind = Cartesian_Robot.Home
-               then Home_Again
-            elsif Now = On_Commanded
-               and then Ins.Command.Value.Kind = Cartesian_Robot.Move
-               then Move
-            else Around_Active (Now, Ins)),
-        when Mission_States.Departing =>
-           (if Now = Expiry_Of_Under_Way then Under_Way
-            else Around_Travelling (Now, Ins)),
-        when Mission_States.Under_Way =>
-           (if Now = Conditions
-               and then Ins.Report_X.Value.Condition
-                 = Cartesian_Robot.Standing
-               and then Ins.Report_Y.Value.Condition
-                 = Cartesian_Robot.Standing
-               and then Ins.Report_Z.Value.Condition
-                 = Cartesian_Robot.Standing
-               then Arrived
-            else Around_Travelling (Now, Ins)),
-        when Mission_States.Failed =>
-           (if Now = On_Shutdown then Shut_Down_Failed
-            elsif Now = On_Commanded
-               and then Ins.Command.Value.Kind = Cartesian_Robot.Reset
-               then Recover
-            else None),
-        when Mission_States.Recovering =>
-           (if Now = Conditions
-               and then Ins.Report_X.Value.Condition
-                 /= Cartesian_Robot.Failed
-               and then Ins.Report_Y.Value.Condition
-                 /= Cartesian_Robot.Failed
-               and then Ins.Report_Z.Value.Condition
-                 /= Cartesian_Robot.Failed
-               then Recovered
-            elsif Now = Expiry_Of_Not_Recovered then Not_Recovered
-            elsif Now = On_Shutdown then Shut_Down_Recovering
-            else None),
-        when Mission_States.Shut_Down => None)
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -131,19 +65,14 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
-     (Self.Timers (1)
-      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-           Before.Timers (1))
-      and then Self.Timers (2)
-        = Timer_After (2, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-             Before.Timers (2))) with Ghost;
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
+     (Self.Timers
+      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Leaf,
+           Self.Leaf)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started
       and then Self.Leaf = Target (Chosen)
       and then Is_Lasting (Before, Self, Chosen)) with Ghost;
@@ -163,55 +92,20 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Active_At_First : constant Chart.Node := Active with Ghost;
+      Before : constant Mission_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
-        (if Self.Started and then Active_Node = From_Node then To_Node
+         To_Node     : Chart.Node;
+         In_Order    : Boolean := True) return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node and then In_Order
+            then To_Node
          else Chart.Disorder) with Ghost;
-
-      procedure Exit_Departing is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Moved (Active, Chart.Departing, Chart.Travelling);
-      end Exit_Departing;
-
-      procedure Exit_Recovering is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active := Moved (Active, Chart.Recovering, Chart.Stopped);
-      end Exit_Recovering;
-
-      procedure Leave_Travelling is
-      begin
-         case Mission_States.Travelling'(Self.Leaf) is
-            when Mission_States.Departing =>
-               Exit_Departing;
-            when Mission_States.Under_Way =>
-               Active := Moved (Active, Chart.Under_Way, Chart.Travelling);
-         end case;
-      end Leave_Travelling;
-
-      procedure Leave_Active is
-      begin
-         case Mission_States.Active'(Self.Leaf) is
-            when Mission_States.Waiting =>
-               Active := Moved (Active, Chart.Waiting, Chart.Active);
-            when Mission_States.Homing =>
-               Active := Moved (Active, Chart.Homing, Chart.Active);
-            when Mission_States.Ready =>
-               Active := Moved (Active, Chart.Ready, Chart.Active);
-            when Mission_States.Travelling =>
-               Leave_Travelling;
-               Active := Moved (Active, Chart.Travelling, Chart.Active);
-         end case;
-      end Leave_Active;
 
       procedure Enter_Homing is
       begin
-         Self.Leaf := Mission_States.Homing;
          Active := Moved (Active, Chart.Active, Chart.Homing);
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Home,
@@ -244,13 +138,6 @@ is
          Box.Order_Z_Sent := True;
       end Enter_Travelling;
 
-      procedure Enter_Departing is
-      begin
-         Self.Leaf := Mission_States.Departing;
-         Ravenchart.Timers.Arm (Self.Timers (1), 5);
-         Active := Moved (Active, Chart.Travelling, Chart.Departing);
-      end Enter_Departing;
-
       procedure Enter_Stopped is
       begin
          Active := Moved (Active, Chart.Nowhere, Chart.Stopped);
@@ -270,8 +157,6 @@ is
 
       procedure Enter_Recovering is
       begin
-         Self.Leaf := Mission_States.Recovering;
-         Ravenchart.Timers.Arm (Self.Timers (2), 10);
          Active := Moved (Active, Chart.Stopped, Chart.Recovering);
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
@@ -287,18 +172,17 @@ is
          Box.Order_Z_Sent := True;
       end Enter_Recovering;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen);
+      Self.Timers :=
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Leaf);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Active := Moved (Active, Chart.Nowhere, Chart.Waiting);
-            Self.Leaf := Mission_States.Waiting;
          when Under_Way =>
-            Exit_Departing;
-            Active := Moved (Active, Chart.Travelling, Chart.Under_Way);
-            Self.Leaf := Mission_States.Under_Way;
+            Active := Moved (Active, Chart.Departing, Chart.Under_Way);
          when Arrived =>
             Active := Moved (Active, Chart.Under_Way, Chart.Ready);
-            Self.Leaf := Mission_States.Ready;
          when Home =>
             Active := Moved (Active, Chart.Waiting, Chart.Active);
             Enter_Homing;
@@ -307,52 +191,43 @@ is
             Enter_Homing;
          when Homed =>
             Active := Moved (Active, Chart.Homing, Chart.Ready);
-            Self.Leaf := Mission_States.Ready;
          when Move =>
             Active := Moved (Active, Chart.Ready, Chart.Active);
             Enter_Travelling;
-            Enter_Departing;
+            Active := Moved (Active, Chart.Travelling, Chart.Departing);
          when Halt =>
-            Leave_Travelling;
-            Active := Moved (Active, Chart.Travelling, Chart.Nowhere);
+            Active :=
+              Moved (Active, Active_At_First, Chart.Nowhere,
+                 Before in Mission_States.Travelling);
             Enter_Stopped;
             Active := Moved (Active, Chart.Stopped, Chart.Failed);
-            Self.Leaf := Mission_States.Failed;
          when Halt_Homing =>
             Active := Moved (Active, Chart.Homing, Chart.Nowhere);
             Enter_Stopped;
             Active := Moved (Active, Chart.Stopped, Chart.Failed);
-            Self.Leaf := Mission_States.Failed;
          when Shut_Down_Failed =>
             Active := Moved (Active, Chart.Failed, Chart.Shut_Down);
-            Self.Leaf := Mission_States.Shut_Down;
          when Recover =>
             Active := Moved (Active, Chart.Failed, Chart.Stopped);
             Enter_Recovering;
          when Recovered =>
-            Exit_Recovering;
-            Active := Moved (Active, Chart.Stopped, Chart.Waiting);
-            Self.Leaf := Mission_States.Waiting;
+            Active := Moved (Active, Chart.Recovering, Chart.Waiting);
          when Not_Recovered =>
-            Exit_Recovering;
-            Active := Moved (Active, Chart.Stopped, Chart.Failed);
-            Self.Leaf := Mission_States.Failed;
+            Active := Moved (Active, Chart.Recovering, Chart.Failed);
          when Shut_Down_Recovering =>
-            Exit_Recovering;
-            Active := Moved (Active, Chart.Stopped, Chart.Shut_Down);
-            Self.Leaf := Mission_States.Shut_Down;
+            Active := Moved (Active, Chart.Recovering, Chart.Shut_Down);
          when Joint_Failed | Joint_Lost =>
-            Leave_Active;
-            Active := Moved (Active, Chart.Active, Chart.Nowhere);
+            Active :=
+              Moved (Active, Active_At_First, Chart.Nowhere,
+                 Before in Mission_States.Active);
             Enter_Stopped;
             Active := Moved (Active, Chart.Stopped, Chart.Failed);
-            Self.Leaf := Mission_States.Failed;
          when Shut_Down =>
-            Leave_Active;
-            Active := Moved (Active, Chart.Active, Chart.Nowhere);
+            Active :=
+              Moved (Active, Active_At_First, Chart.Nowhere,
+                 Before in Mission_States.Active);
             Enter_Stopped;
             Active := Moved (Active, Chart.Stopped, Chart.Shut_Down);
-            Self.Leaf := Mission_States.Shut_Down;
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
@@ -367,7 +242,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins);
+         Fired := Selected (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Ins, Box, Fired);

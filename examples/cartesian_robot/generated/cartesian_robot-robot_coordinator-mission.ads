@@ -62,16 +62,37 @@ is
       Order_Z_Sent : Boolean := False;
    end record;
 
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 2);
+
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is
+     (Nothing, Inside_Active, Inside_Travelling, Inside_Stopped, Everything,
+      Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Under_Way => Inside_Travelling,
+        when Arrived | Home | Home_Again | Homed | Move => Inside_Active,
+        when Halt | Halt_Homing | Recovered | Joint_Failed | Joint_Lost
+           | Shut_Down =>
+           Everything,
+        when Shut_Down_Failed | Recover | Not_Recovered
+           | Shut_Down_Recovering =>
+           Inside_Stopped);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
    --  The region's own state.
    type Region is record
       Started : Boolean := False;
       Leaf    : Mission_States.Leaf := Mission_States.Waiting;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 2);
+      Timers  : Time_Outs;
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Mission_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Mission_States.Leaf) return Boolean is
      (case T is
         when Under_Way => Leaf = Mission_States.Departing,
         when Arrived => Leaf = Mission_States.Under_Way,
@@ -88,7 +109,7 @@ is
    --  around it?
 
    function Enabled
-     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
@@ -165,56 +186,27 @@ is
         when Recover => Mission_States.Recovering);
    --  The leaf it leads to; that of a composite is its default.
 
-   --  The innermost region that holds all that a transition leaves and
-   --  enters.
-   type Domain is
-     (Nothing, Inside_Active, Inside_Travelling, Inside_Stopped, Everything,
-      Beginning);
-
-   function Domain_Of (T : Firing) return Domain is
-     (case T is
-        when Initial_Entry => Beginning,
-        when Under_Way => Inside_Travelling,
-        when Arrived | Home | Home_Again | Homed | Move => Inside_Active,
-        when Halt | Halt_Homing | Recovered | Joint_Failed | Joint_Lost
-           | Shut_Down =>
-           Everything,
-        when Shut_Down_Failed | Recover | Not_Recovered
-           | Shut_Down_Recovering =>
-           Inside_Stopped);
-   --  Everything active inside it is left, and what is active then is
-   --  entered.
-
-   function Timer_After
-     (I      : Positive;
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Mission_States.Leaf;
-      After  : Mission_States.Leaf;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D
-              in Inside_Travelling | Inside_Active | Everything | Beginning,
-              D /= Beginning and then Before = Mission_States.Departing,
-              After = Mission_States.Departing,
-              Ravenchart.Timers.Started (5)),
-        when 2 =>
-           Ravenchart.Timers.Moved (Timer,
-              D in Inside_Stopped | Everything | Beginning,
-              D /= Beginning and then Before = Mission_States.Recovering,
-              After = Mission_States.Recovering,
-              Ravenchart.Timers.Started (10)),
-        when others => Timer);
+      After  : Mission_States.Leaf) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1),
+            D in Inside_Travelling | Inside_Active | Everything | Beginning,
+            D /= Beginning and then Before = Mission_States.Departing,
+            After = Mission_States.Departing, Ravenchart.Timers.Started (5)),
+       2 =>
+         Ravenchart.Timers.Moved (Timers (2),
+            D in Inside_Stopped | Everything | Beginning,
+            D /= Beginning and then Before = Mission_States.Recovering,
+            After = Mission_States.Recovering,
+            Ravenchart.Timers.Started (10))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
    function Is_Selection
-     (Chosen : Selection;
-      Self   : Region;
-      Now    : Occurrence;
-      Ins    : Inputs)
+     (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
@@ -253,8 +245,7 @@ is
        and then (if Self.Started
              then (if (for some I in Self.Timers'Range =>
                         Ravenchart.Timers.Is_Due (Self.Timers'Old (I)))
-                    then Now
-                       in Expiry_Of_Under_Way .. Expiry_Of_Not_Recovered
+                    then Now in Expiry_Of_Under_Way .. Expiry_Of_Not_Recovered
                  else Now = Conditions));
    --  Its start, or the time-out that is due; Conditions when there is
    --  neither.
@@ -273,11 +264,8 @@ is
           else Is_Selection (Fired, Self'Old, Now, Ins))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
-             and then Self.Timers (1)
-               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (1))
-             and then Self.Timers (2)
-               = Timer_After (2, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (2)));
+             and then Self.Timers
+               = Timers_After (Self.Timers'Old, Domain_Of (Fired),
+                    Self.Leaf'Old, Self.Leaf));
    --  One run-to-completion step.
 end Cartesian_Robot.Robot_Coordinator.Mission;

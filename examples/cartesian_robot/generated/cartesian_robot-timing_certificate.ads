@@ -255,82 +255,101 @@ is
    function Controller_Probe_Up (W : Window) return Time is
      (Demand (W, Controller_Probe_J, Controller_Probe_T, Controller_Probe_C))
    with Static;
+
    function Controller_Supervisor_Up (W : Window) return Time is
      (Demand (W, Controller_Supervisor_J, Controller_Supervisor_T,
          Controller_Supervisor_C, Controller_Probe_Up (W))) with Static;
+
    function Robot_Bus_Driver_Rx_Robot_Command_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_Robot_Command_J,
          Robot_Bus_Driver_Rx_Robot_Command_T,
          Robot_Bus_Driver_Rx_Robot_Command_C, Controller_Supervisor_Up (W)))
    with Static;
+
    function Robot_Bus_Driver_Tx_Robot_Status_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Tx_Robot_Status_J,
          Robot_Bus_Driver_Tx_Robot_Status_T,
          Robot_Bus_Driver_Tx_Robot_Status_C,
          Robot_Bus_Driver_Rx_Robot_Command_Up (W))) with Static;
+
    function Robot_Bus_Driver_Tx_X_Set_Point_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Tx_X_Set_Point_J,
          Robot_Bus_Driver_Tx_X_Set_Point_T,
          Robot_Bus_Driver_Tx_X_Set_Point_C,
          Robot_Bus_Driver_Tx_Robot_Status_Up (W))) with Static;
+
    function Robot_Bus_Driver_Tx_Y_Set_Point_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Tx_Y_Set_Point_J,
          Robot_Bus_Driver_Tx_Y_Set_Point_T,
          Robot_Bus_Driver_Tx_Y_Set_Point_C,
          Robot_Bus_Driver_Tx_X_Set_Point_Up (W))) with Static;
+
    function Robot_Bus_Driver_Tx_Z_Set_Point_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Tx_Z_Set_Point_J,
          Robot_Bus_Driver_Tx_Z_Set_Point_T,
          Robot_Bus_Driver_Tx_Z_Set_Point_C,
          Robot_Bus_Driver_Tx_Y_Set_Point_Up (W))) with Static;
+
    function Robot_Bus_Driver_Rx_X_Feedback_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_X_Feedback_J,
          Robot_Bus_Driver_Rx_X_Feedback_T, Robot_Bus_Driver_Rx_X_Feedback_C,
          Robot_Bus_Driver_Tx_Z_Set_Point_Up (W))) with Static;
+
    function Robot_Bus_Driver_Rx_Y_Feedback_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_Y_Feedback_J,
          Robot_Bus_Driver_Rx_Y_Feedback_T, Robot_Bus_Driver_Rx_Y_Feedback_C,
          Robot_Bus_Driver_Rx_X_Feedback_Up (W))) with Static;
+
    function Robot_Bus_Driver_Rx_Z_Feedback_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_Z_Feedback_J,
          Robot_Bus_Driver_Rx_Z_Feedback_T, Robot_Bus_Driver_Rx_Z_Feedback_C,
          Robot_Bus_Driver_Rx_Y_Feedback_Up (W))) with Static;
+
    function Reception_Up (W : Window) return Time is
      (Demand (W, Reception_J, Reception_T, Reception_C,
          Robot_Bus_Driver_Rx_Z_Feedback_Up (W))) with Static;
+
    function Trajectory_Up (W : Window) return Time is
      (Demand (W, Trajectory_J, Trajectory_T, Trajectory_C, Reception_Up (W)))
    with Static;
+
    function Control_Up (W : Window) return Time is
      (Demand (W, Control_J, Control_T, Control_C, Trajectory_Up (W)))
    with Static;
+
    function Robot_Bus_Driver_Rx_Z_Feedback_Rest (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_Z_Feedback_J,
          Robot_Bus_Driver_Rx_Z_Feedback_T, Robot_Bus_Driver_Rx_Z_Feedback_C))
    with Static;
+
    function Robot_Bus_Driver_Rx_Y_Feedback_Rest (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_Y_Feedback_J,
          Robot_Bus_Driver_Rx_Y_Feedback_T, Robot_Bus_Driver_Rx_Y_Feedback_C,
          Robot_Bus_Driver_Rx_Z_Feedback_Rest (W))) with Static;
+
    function Robot_Bus_Driver_Rx_X_Feedback_Rest (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_X_Feedback_J,
          Robot_Bus_Driver_Rx_X_Feedback_T, Robot_Bus_Driver_Rx_X_Feedback_C,
          Robot_Bus_Driver_Rx_Y_Feedback_Rest (W))) with Static;
+
    function Robot_Bus_Driver_Tx_Z_Set_Point_Rest (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Tx_Z_Set_Point_J,
          Robot_Bus_Driver_Tx_Z_Set_Point_T,
          Robot_Bus_Driver_Tx_Z_Set_Point_C,
          Robot_Bus_Driver_Rx_X_Feedback_Rest (W))) with Static;
+
    function Robot_Bus_Driver_Tx_Y_Set_Point_Rest (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Tx_Y_Set_Point_J,
          Robot_Bus_Driver_Tx_Y_Set_Point_T,
          Robot_Bus_Driver_Tx_Y_Set_Point_C,
          Robot_Bus_Driver_Tx_Z_Set_Point_Rest (W))) with Static;
+
    function Robot_Bus_Driver_Tx_X_Set_Point_Rest (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Tx_X_Set_Point_J,
          Robot_Bus_Driver_Tx_X_Set_Point_T,
          Robot_Bus_Driver_Tx_X_Set_Point_C,
          Robot_Bus_Driver_Tx_Y_Set_Point_Rest (W))) with Static;
+
    function Robot_Bus_Driver_Tx_Robot_Status_Rest (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Tx_Robot_Status_J,
          Robot_Bus_Driver_Tx_Robot_Status_T,
@@ -356,6 +375,7 @@ is
 
    function Robot_Bus_Bits (Stuffed : Positive) return Time is
      (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+
    function Robot_Bus_Time_Of (Stuffed : Positive) return Time is
      ((Robot_Bus_Bits (Stuffed) * 10**9 + (Robot_Bus_Bit_Rate - 1))
       / Robot_Bus_Bit_Rate) with Static;
@@ -841,65 +861,82 @@ is
    function Robot_Bus_Robot_Command_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Robot_Command_J, Robot_Bus_Robot_Command_T,
          Robot_Bus_Robot_Command_C)) with Static;
+
    function Robot_Bus_X_Set_Point_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C,
          Robot_Bus_X_Set_Point_T, Robot_Bus_X_Set_Point_C,
          Robot_Bus_Robot_Command_Up (W))) with Static;
+
    function Robot_Bus_Y_Set_Point_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C,
          Robot_Bus_Y_Set_Point_T, Robot_Bus_Y_Set_Point_C,
          Robot_Bus_X_Set_Point_Up (W))) with Static;
+
    function Robot_Bus_Z_Set_Point_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C,
          Robot_Bus_Z_Set_Point_T, Robot_Bus_Z_Set_Point_C,
          Robot_Bus_Y_Set_Point_Up (W))) with Static;
+
    function Robot_Bus_X_Feedback_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_X_Feedback_J, Robot_Bus_X_Feedback_T,
          Robot_Bus_X_Feedback_C, Robot_Bus_Z_Set_Point_Up (W))) with Static;
+
    function Robot_Bus_Y_Feedback_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Y_Feedback_J, Robot_Bus_Y_Feedback_T,
          Robot_Bus_Y_Feedback_C, Robot_Bus_X_Feedback_Up (W))) with Static;
+
    function Robot_Bus_Z_Feedback_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Z_Feedback_J, Robot_Bus_Z_Feedback_T,
          Robot_Bus_Z_Feedback_C, Robot_Bus_Y_Feedback_Up (W))) with Static;
+
    function Robot_Bus_Robot_Command_Up_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_Robot_Command_J, Robot_Bus_Robot_Command_T,
          Robot_Bus_Robot_Command_C)) with Static;
+
    function Robot_Bus_X_Feedback_Up_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_X_Feedback_J, Robot_Bus_X_Feedback_T,
          Robot_Bus_X_Feedback_C, Robot_Bus_Robot_Command_Up_Controller (W)))
    with Static;
+
    function Robot_Bus_Y_Feedback_Up_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_Y_Feedback_J, Robot_Bus_Y_Feedback_T,
          Robot_Bus_Y_Feedback_C, Robot_Bus_X_Feedback_Up_Controller (W)))
    with Static;
+
    function Robot_Bus_Z_Feedback_Up_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_Z_Feedback_J, Robot_Bus_Z_Feedback_T,
          Robot_Bus_Z_Feedback_C, Robot_Bus_Y_Feedback_Up_Controller (W)))
    with Static;
+
    function Robot_Bus_X_Set_Point_Up_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_X_Set_Point_J, Robot_Bus_X_Set_Point_T,
          Robot_Bus_X_Set_Point_C, Robot_Bus_Z_Feedback_Up_Controller (W)))
    with Static;
+
    function Robot_Bus_Y_Set_Point_Up_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_Y_Set_Point_J, Robot_Bus_Y_Set_Point_T,
          Robot_Bus_Y_Set_Point_C, Robot_Bus_X_Set_Point_Up_Controller (W)))
    with Static;
+
    function Robot_Bus_Z_Set_Point_Up_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_Z_Set_Point_J, Robot_Bus_Z_Set_Point_T,
          Robot_Bus_Z_Set_Point_C, Robot_Bus_Y_Set_Point_Up_Controller (W)))
    with Static;
+
    function Robot_Bus_Robot_Status_Up_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_Robot_Status_J, Robot_Bus_Robot_Status_T,
          Robot_Bus_Robot_Status_C, Robot_Bus_Z_Set_Point_Up_Controller (W)))
    with Static;
+
    function Robot_Bus_Robot_Status_Rest_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_Robot_Status_J, Robot_Bus_Robot_Status_T,
          Robot_Bus_Robot_Status_C)) with Static;
+
    function Robot_Bus_Z_Set_Point_Rest_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_Z_Set_Point_J, Robot_Bus_Z_Set_Point_T,
          Robot_Bus_Z_Set_Point_C,
          Robot_Bus_Robot_Status_Rest_Controller (W))) with Static;
+
    function Robot_Bus_Y_Set_Point_Rest_Controller (W : Window) return Time is
      (Demand (W, Robot_Bus_Y_Set_Point_J, Robot_Bus_Y_Set_Point_T,
          Robot_Bus_Y_Set_Point_C, Robot_Bus_Z_Set_Point_Rest_Controller (W)))
@@ -1137,18 +1174,23 @@ is
    function Robot_Bus_Robot_Command_Turn_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_Robot_Command_R,
          Robot_Bus_Robot_Command_T, Reception_T)) with Static;
+
    function Robot_Bus_X_Feedback_Turn_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_X_Feedback_R, Robot_Bus_X_Feedback_T,
          Reception_T, Robot_Bus_Robot_Command_Turn_Up (W))) with Static;
+
    function Robot_Bus_Y_Feedback_Turn_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_Y_Feedback_R, Robot_Bus_Y_Feedback_T,
          Reception_T, Robot_Bus_X_Feedback_Turn_Up (W))) with Static;
+
    function Robot_Bus_Z_Feedback_Turn_Up (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_Z_Feedback_R, Robot_Bus_Z_Feedback_T,
          Reception_T, Robot_Bus_Y_Feedback_Turn_Up (W))) with Static;
+
    function Robot_Bus_Z_Feedback_Turn_Rest (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_Z_Feedback_R, Robot_Bus_Z_Feedback_T,
          Reception_T)) with Static;
+
    function Robot_Bus_Y_Feedback_Turn_Rest (W : Window) return Time is
      (Demand (W, Robot_Bus_Driver_Rx_Y_Feedback_R, Robot_Bus_Y_Feedback_T,
          Reception_T, Robot_Bus_Z_Feedback_Turn_Rest (W))) with Static;

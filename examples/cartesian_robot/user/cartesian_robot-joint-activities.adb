@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The control code of one joint, written by hand. A trapezoidal profile is
 --  stepped every 5 ms; every 10 ms a proportional controller with the
 --  profile's speed fed forward turns it into a set point for the drive.

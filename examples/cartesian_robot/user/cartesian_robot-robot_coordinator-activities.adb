@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What the coordinator tells the operator, written by hand.
 
 package body Cartesian_Robot.Robot_Coordinator.Activities

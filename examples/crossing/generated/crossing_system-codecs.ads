@@ -9,40 +9,32 @@ with Ravenchart.Can.Layouts;
 package Crossing_System.Codecs
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Interfaces.Unsigned_64;
    use type Interfaces.Unsigned_8;
    use type Ravenchart.Number;
 
    function Value_Of_Type_Order
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Order is
+     (Raw : Interfaces.Unsigned_8) return Crossing_System.Order is
      (Crossing_System.Order'Val (Raw))
    with Pre => Raw <= 1;
 
    function Value_Of_Type_Press
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Press is
+     (Raw : Interfaces.Unsigned_8) return Crossing_System.Press is
      (Crossing_System.Press'Val (Raw))
-   with Pre => Raw <= 0;
+   with Pre => Raw = 0;
 
    function Value_Of_Type_Car_Light
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Car_Light is
+     (Raw : Interfaces.Unsigned_8) return Crossing_System.Car_Light is
      (Crossing_System.Car_Light'Val (Raw))
    with Pre => Raw <= 4;
 
    function Value_Of_Type_Walk_Light
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Walk_Light is
+     (Raw : Interfaces.Unsigned_8) return Crossing_System.Walk_Light is
      (Crossing_System.Walk_Light'Val (Raw))
    with Pre => Raw <= 2;
 
    function Value_Of_Type_Boolean
-     (Raw : Interfaces.Unsigned_8)
-     return Boolean is
+     (Raw : Interfaces.Unsigned_8) return Boolean is
      (Boolean'Val (Raw))
    with Pre => Raw <= 1;
 
@@ -56,18 +48,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#1#));
 
       function Pack
-        (Item : Crossing_System.Order)
-        return Interfaces.Unsigned_64
+        (Item : Crossing_System.Order) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
@@ -104,18 +93,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#1#));
 
       function Pack
-        (Item : Crossing_System.Press)
-        return Interfaces.Unsigned_64
+        (Item : Crossing_System.Press) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
@@ -130,11 +116,10 @@ is
       with
         Post =>
           Valid
-          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value) in 0 .. 0)
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value) = 0)
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
-                   = Crossing_System.Press'Pos (Item)
-             else Item = Crossing_System.Pressed);
+                   = Crossing_System.Press'Pos (Item));
       --  Valid when all bits stand for values.
 
       procedure Lemma_Survives (Item : Crossing_System.Press)
@@ -152,18 +137,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#7#));
 
       function Pack
-        (Item : Crossing_System.Car_Light)
-        return Interfaces.Unsigned_64
+        (Item : Crossing_System.Car_Light) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
@@ -200,18 +182,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#3#));
 
       function Pack
-        (Item : Crossing_System.Walk_Light)
-        return Interfaces.Unsigned_64
+        (Item : Crossing_System.Walk_Light) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
@@ -248,13 +227,11 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#1#));
 
       function Pack (Item : Boolean) return Interfaces.Unsigned_64

@@ -10,9 +10,6 @@ with System;
 package Crossing_System.Control
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [control.table] the activities, in the order in which they run
    type Row is (School_Ports, School_Lights, School_Show);
 

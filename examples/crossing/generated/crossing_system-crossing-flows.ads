@@ -18,5 +18,5 @@ is
       Sign           : out Boolean;
       Send_Sign      : out Boolean)
    with Global => null;
-   --  [Crossing.show] budget 100_000 ns, every 100_000_000 ns
+   --  [Crossing.show] WCET 100_000 ns, every 100_000_000 ns
 end Crossing_System.Crossing.Flows;

@@ -5,91 +5,39 @@
 package body Crossing_System.Crossing.Lights
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
-   function Select_Cars
-     (Self : Region; Now : Occurrence; Item : Event)
-     return Selection is
-     (if Self.Place.Top = Lights_States.Working
-         then (case Self.Place.In_Cars is
-               when Lights_States.Stopping =>
-                  (if Now = Expiry_Of_Stopped then Stopped else None),
-               when Lights_States.Held =>
-                  (if Now = Conditions
-                      and then Self.Data.Road_Free
-                      and then not Self.Data.Requested
-                      then Get_Ready
-                   else None),
-               when Lights_States.Red_Yellow =>
-                  (if Now = Expiry_Of_Start then Start else None),
-               when Lights_States.Least =>
-                  (if Now = Expiry_Of_Long_Enough then Long_Enough
-                   else None),
-               when Lights_States.Longer =>
-                  (if Now = Conditions and then Self.Data.Requested
-                      then Slow_Down
-                   else None),
-               when Lights_States.Yellow =>
-                  (if Now = Expiry_Of_Stop then Stop else None))
-      else None)
-   with
-     Post =>
-       Is_Selection (Select_Cars'Result, Cars_Transition'First,
-          Cars_Transition'Last, Self, Now, Item);
-
-   function Select_Walkers
-     (Self : Region; Now : Occurrence; Item : Event)
-     return Selection is
-     (if Self.Place.Top = Lights_States.Working
-         then (case Self.Place.In_Walkers is
-               when Lights_States.Nobody =>
-                  (if Now = On_Wish then Ask else None),
-               when Lights_States.Waiting =>
-                  (if Now = Conditions and then Self.Data.Cars_Stopped
-                      then Walk
-                   else None),
-               when Lights_States.Walking =>
-                  (if Now = Expiry_Of_Last_Call then Last_Call
-                   elsif Now = Expiry_Of_Gone then Gone
-                   else None),
-               when Lights_States.Leaving =>
-                  (if Now = Expiry_Of_Gone then Gone else None))
-      else None)
-   with
-     Post =>
-       Is_Selection (Select_Walkers'Result, Walkers_Transition'First,
-          Walkers_Transition'Last, Self, Now, Item);
-
-   function Select_Top
-     (Self : Region; Now : Occurrence; Item : Event)
-     return Selection is
-     (case Self.Place.Top is
-        when Lights_States.Blinking =>
-           (if Now = On_Ordered
-               and then Item.Value_Order = Crossing_System.Work
-               then Into_Service
-            elsif Now = Expiry_Of_Blink then Blink
-            else None),
-        when Lights_States.Working =>
-           (if Now = On_Ordered
-               and then Item.Value_Order = Crossing_System.Blink
-               then Out_Of_Service
-            else None))
-   with
-     Post =>
-       Is_Selection (Select_Top'Result, Top_Transition'First,
-          Top_Transition'Last, Self, Now, Item);
+   function Selected
+     (First : Transition;
+      Last  : Transition;
+      Self  : Region;
+      Now   : Occurrence;
+      Item  : Event) return Selection
+   with Post => Is_Selection (Selected'Result, First, Last, Self, Now, Item)
+   is
+   begin
+      for T in Transition range First .. Last loop
+         if Enabled (T, Self, Now, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in First .. T => not Enabled (J, Self, Now, Item)));
+      end loop;
+      return None;
+   end Selected;
 
    function Choose
-     (Self : Region; Now : Occurrence; Item : Event)
-     return Choice is
+     (Self : Region; Now : Occurrence; Item : Event) return Choice is
       C : Choice;
    begin
-      C.Cars := Select_Cars (Self, Now, Item);
-      C.Walkers := Select_Walkers (Self, Now, Item);
+      C.Cars :=
+        Selected (Cars_Transition'First, Cars_Transition'Last, Self, Now,
+           Item);
+      C.Walkers :=
+        Selected (Walkers_Transition'First, Walkers_Transition'Last, Self,
+           Now, Item);
       if C.Cars = None and then C.Walkers = None then
-         C.Top := Select_Top (Self, Now, Item);
+         C.Top :=
+           Selected (Top_Transition'First, Top_Transition'Last, Self, Now,
+              Item);
       end if;
       return C;
    end Choose;
@@ -102,22 +50,28 @@ is
          Waiting, Walking, Leaving, Blinking, Working, Red, Green,
          Dont_Walk, On_The_Road, Disorder);
 
-      function Innermost_Cars (Self : Region) return Node is
-        (if Self.Started and then Self.Place.Top = Lights_States.Working
-            then Node'Val
-                 (Lights_States.Cars_Leaf'Pos (Self.Place.In_Cars) + 1)
-         else Nowhere);
+      type Nodes is record
+         Cars    : Node;
+         Walkers : Node;
+         Top     : Node;
+      end record;
 
-      function Innermost_Walkers (Self : Region) return Node is
-        (if Self.Started and then Self.Place.Top = Lights_States.Working
-            then Node'Val
-                 (Lights_States.Walkers_Leaf'Pos (Self.Place.In_Walkers) + 7)
-         else Nowhere);
-
-      function Innermost_Top (Self : Region) return Node is
-        (if Self.Started
-            then Node'Val (Lights_States.Leaf'Pos (Self.Place.Top) + 11)
-         else Nowhere);
+      function Innermost (Self : Region) return Nodes is
+        ((Cars =>
+            (if Self.Started and then Self.Place.Top = Lights_States.Working
+                then Node'Val
+                     (Lights_States.Cars_Leaf'Pos (Self.Place.In_Cars) + 1)
+             else Nowhere),
+          Walkers =>
+            (if Self.Started and then Self.Place.Top = Lights_States.Working
+                then Node'Val
+                     (Lights_States.Walkers_Leaf'Pos (Self.Place.In_Walkers)
+                      + 7)
+             else Nowhere),
+          Top =>
+            (if Self.Started
+                then Node'Val (Lights_States.Leaf'Pos (Self.Place.Top) + 11)
+             else Nowhere)));
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -154,8 +108,7 @@ is
    end Poll;
 
    function Is_Ready
-     (Self : Region; Item : Event; Chosen : Firing)
-     return Boolean is
+     (Self : Region; Item : Event; Chosen : Firing) return Boolean is
      (if Chosen = Initial_Entry
          then not Self.Started and then Self.Data = Initial_Data
       else Self.Started
@@ -167,34 +120,14 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
-     (Self.Timers (1)
-      = Timer_After (1, Domain_Of (Chosen), Before.Place, Self.Place,
-           Before.Timers (1))
-      and then Self.Timers (2)
-        = Timer_After (2, Domain_Of (Chosen), Before.Place, Self.Place,
-             Before.Timers (2))
-      and then Self.Timers (3)
-        = Timer_After (3, Domain_Of (Chosen), Before.Place, Self.Place,
-             Before.Timers (3))
-      and then Self.Timers (4)
-        = Timer_After (4, Domain_Of (Chosen), Before.Place, Self.Place,
-             Before.Timers (4))
-      and then Self.Timers (5)
-        = Timer_After (5, Domain_Of (Chosen), Before.Place, Self.Place,
-             Before.Timers (5))
-      and then Self.Timers (6)
-        = Timer_After (6, Domain_Of (Chosen), Before.Place, Self.Place,
-             Before.Timers (6))
-      and then Self.Timers (7)
-        = Timer_After (7, Domain_Of (Chosen), Before.Place, Self.Place,
-             Before.Timers (7))) with Ghost;
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
+     (Self.Timers
+      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Place,
+           Self.Place)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started
       and then Self.Place = Target (Chosen, Before.Place)
       and then Is_Lasting (Before, Self, Chosen)) with Ghost;
@@ -209,103 +142,41 @@ is
        Is_Fired (Self'Old, Self, Chosen)
        and then Is_Safe (Self.Place, Self.Data)
    is
+      use type Chart.Nodes;
       use type Chart.Node;
 
-      Active_Cars : Chart.Node := Chart.Innermost_Cars (Self) with Ghost;
-      Active_Walkers : Chart.Node :=
-        Chart.Innermost_Walkers (Self)
-      with Ghost;
-      Active_Top : Chart.Node := Chart.Innermost_Top (Self) with Ghost;
+      Active : Chart.Nodes := Chart.Innermost (Self) with Ghost;
+      Active_At_First : constant Chart.Nodes := Active with Ghost;
+      Before : constant Lights_States.Configuration := Self.Place;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
          To_Node     : Chart.Node;
-         In_Order    : Boolean := True)
-        return Chart.Node is
+         In_Order    : Boolean := True) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node and then In_Order
             then To_Node
          else Chart.Disorder) with Ghost;
 
-      procedure Exit_Blinking is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active_Top := Moved (Active_Top, Chart.Blinking, Chart.Nowhere);
-      end Exit_Blinking;
-
-      procedure Exit_Stopping is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active_Cars := Moved (Active_Cars, Chart.Stopping, Chart.Red);
-      end Exit_Stopping;
-
       procedure Exit_Held is
       begin
          Self.Data.Cars_Stopped := False;
-         Active_Cars := Moved (Active_Cars, Chart.Held, Chart.Red);
+         Active.Cars := Moved (Active.Cars, Chart.Held, Chart.Red);
       end Exit_Held;
-
-      procedure Exit_Red_Yellow is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (3));
-         Active_Cars :=
-           Moved (Active_Cars, Chart.Red_Yellow, Chart.Nowhere);
-      end Exit_Red_Yellow;
-
-      procedure Exit_Least is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (4));
-         Active_Cars := Moved (Active_Cars, Chart.Least, Chart.Green);
-      end Exit_Least;
-
-      procedure Exit_Yellow is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (5));
-         Active_Cars := Moved (Active_Cars, Chart.Yellow, Chart.Nowhere);
-      end Exit_Yellow;
 
       procedure Exit_On_The_Road is
       begin
          Self.Data.Road_Free := True;
-         Ravenchart.Timers.Disarm (Self.Timers (7));
-         Active_Walkers :=
-           Moved (Active_Walkers, Chart.On_The_Road, Chart.Nowhere);
+         Active.Walkers :=
+           Moved (Active.Walkers, Chart.On_The_Road, Chart.Nowhere);
       end Exit_On_The_Road;
-
-      procedure Exit_Walking is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (6));
-         Active_Walkers :=
-           Moved (Active_Walkers, Chart.Walking, Chart.On_The_Road);
-      end Exit_Walking;
-
-      procedure Leave_On_The_Road is
-      begin
-         case Lights_States.On_The_Road'(Self.Place.In_Walkers) is
-            when Lights_States.Walking =>
-               Exit_Walking;
-            when Lights_States.Leaving =>
-               Active_Walkers :=
-                 Moved (Active_Walkers, Chart.Leaving, Chart.On_The_Road);
-         end case;
-      end Leave_On_The_Road;
-
-      procedure Leave_Green is
-      begin
-         case Lights_States.Green'(Self.Place.In_Cars) is
-            when Lights_States.Least =>
-               Exit_Least;
-            when Lights_States.Longer =>
-               Active_Cars :=
-                 Moved (Active_Cars, Chart.Longer, Chart.Green);
-         end case;
-      end Leave_Green;
 
       procedure Leave_Red is
       begin
-         case Lights_States.Red'(Self.Place.In_Cars) is
+         case Lights_States.Red'(Before.In_Cars) is
             when Lights_States.Stopping =>
-               Exit_Stopping;
+               Active.Cars :=
+                 Moved (Active.Cars, Chart.Stopping, Chart.Red);
             when Lights_States.Held =>
                Exit_Held;
          end case;
@@ -313,312 +184,230 @@ is
 
       procedure Leave_Cars is
       begin
-         case Self.Place.In_Cars is
+         case Before.In_Cars is
             when Lights_States.Red =>
                Leave_Red;
-               Active_Cars := Moved (Active_Cars, Chart.Red, Chart.Nowhere);
+               Active.Cars := Moved (Active.Cars, Chart.Red, Chart.Nowhere);
             when Lights_States.Red_Yellow =>
-               Exit_Red_Yellow;
+               Active.Cars :=
+                 Moved (Active.Cars, Chart.Red_Yellow, Chart.Nowhere);
             when Lights_States.Green =>
-               Leave_Green;
-               Active_Cars :=
-                 Moved (Active_Cars, Chart.Green, Chart.Nowhere);
+               Active.Cars :=
+                 Moved (Active.Cars, Active_At_First.Cars, Chart.Nowhere,
+                    Before.Top = Lights_States.Working
+                    and then Before.In_Cars in Lights_States.Green);
             when Lights_States.Yellow =>
-               Exit_Yellow;
+               Active.Cars :=
+                 Moved (Active.Cars, Chart.Yellow, Chart.Nowhere);
          end case;
       end Leave_Cars;
 
       procedure Leave_Walkers is
       begin
-         case Self.Place.In_Walkers is
+         case Before.In_Walkers is
             when Lights_States.Dont_Walk =>
-               Active_Walkers :=
-                 Moved (Active_Walkers, Chart.Innermost_Walkers (Self),
-                    Chart.Dont_Walk,
-                    Self.Place.Top = Lights_States.Working
-                    and then Self.Place.In_Walkers
-                      in Lights_States.Dont_Walk);
-               Active_Walkers :=
-                 Moved (Active_Walkers, Chart.Dont_Walk, Chart.Nowhere);
+               Active.Walkers :=
+                 Moved (Active.Walkers, Active_At_First.Walkers,
+                    Chart.Nowhere,
+                    Before.Top = Lights_States.Working
+                    and then Before.In_Walkers in Lights_States.Dont_Walk);
             when Lights_States.On_The_Road =>
-               Leave_On_The_Road;
+               Active.Walkers :=
+                 Moved (Active.Walkers, Active_At_First.Walkers,
+                    Chart.On_The_Road,
+                    Before.Top = Lights_States.Working
+                    and then Before.In_Walkers in Lights_States.On_The_Road);
                Exit_On_The_Road;
          end case;
       end Leave_Walkers;
 
       procedure Enter_Blinking is
       begin
-         Self.Place.Top := Lights_States.Blinking;
-         Ravenchart.Timers.Arm (Self.Timers (1), 5, 5);
-         Active_Top := Moved (Active_Top, Chart.Nowhere, Chart.Blinking);
+         Active.Top := Moved (Active.Top, Chart.Nowhere, Chart.Blinking);
          Self.Data.Cars_See := Crossing_System.Slow;
          Self.Data.Walkers_See := Crossing_System.Dark;
       end Enter_Blinking;
 
       procedure Enter_Red is
       begin
-         Active_Cars :=
-           Moved (Active_Cars, Chart.Nowhere, Chart.Red,
-              Active_Top = Chart.Working);
+         Active.Cars :=
+           Moved (Active.Cars, Chart.Nowhere, Chart.Red,
+              Active.Top = Chart.Working);
          Self.Data.Cars_See := Crossing_System.Stop;
       end Enter_Red;
 
-      procedure Enter_Stopping is
-      begin
-         Self.Place.In_Cars := Lights_States.Stopping;
-         Ravenchart.Timers.Arm (Self.Timers (2), 20);
-         Active_Cars := Moved (Active_Cars, Chart.Red, Chart.Stopping);
-      end Enter_Stopping;
-
       procedure Enter_Held is
       begin
-         Self.Place.In_Cars := Lights_States.Held;
-         Active_Cars := Moved (Active_Cars, Chart.Red, Chart.Held);
+         Active.Cars := Moved (Active.Cars, Chart.Red, Chart.Held);
          Self.Data.Cars_Stopped := True;
       end Enter_Held;
 
       procedure Enter_Red_Yellow is
       begin
-         Self.Place.In_Cars := Lights_States.Red_Yellow;
-         Ravenchart.Timers.Arm (Self.Timers (3), 10);
-         Active_Cars :=
-           Moved (Active_Cars, Chart.Nowhere, Chart.Red_Yellow,
-              Active_Top = Chart.Working);
+         Active.Cars :=
+           Moved (Active.Cars, Chart.Nowhere, Chart.Red_Yellow,
+              Active.Top = Chart.Working);
          Self.Data.Cars_See := Crossing_System.Ready;
       end Enter_Red_Yellow;
 
       procedure Enter_Green is
       begin
-         Active_Cars :=
-           Moved (Active_Cars, Chart.Nowhere, Chart.Green,
-              Active_Top = Chart.Working);
+         Active.Cars :=
+           Moved (Active.Cars, Chart.Nowhere, Chart.Green,
+              Active.Top = Chart.Working);
          Self.Data.Cars_See := Crossing_System.Go;
       end Enter_Green;
 
-      procedure Enter_Least is
-      begin
-         Self.Place.In_Cars := Lights_States.Least;
-         Ravenchart.Timers.Arm (Self.Timers (4), 100);
-         Active_Cars := Moved (Active_Cars, Chart.Green, Chart.Least);
-      end Enter_Least;
-
       procedure Enter_Yellow is
       begin
-         Self.Place.In_Cars := Lights_States.Yellow;
-         Ravenchart.Timers.Arm (Self.Timers (5), 30);
-         Active_Cars :=
-           Moved (Active_Cars, Chart.Nowhere, Chart.Yellow,
-              Active_Top = Chart.Working);
+         Active.Cars :=
+           Moved (Active.Cars, Chart.Nowhere, Chart.Yellow,
+              Active.Top = Chart.Working);
          Self.Data.Cars_See := Crossing_System.Slow;
       end Enter_Yellow;
 
       procedure Enter_Dont_Walk is
       begin
-         Active_Walkers :=
-           Moved (Active_Walkers, Chart.Nowhere, Chart.Dont_Walk,
-              Active_Top = Chart.Working);
+         Active.Walkers :=
+           Moved (Active.Walkers, Chart.Nowhere, Chart.Dont_Walk,
+              Active.Top = Chart.Working);
          Self.Data.Walkers_See := Crossing_System.Wait;
       end Enter_Dont_Walk;
 
       procedure Enter_Nobody is
       begin
-         Self.Place.In_Walkers := Lights_States.Nobody;
-         Active_Walkers :=
-           Moved (Active_Walkers, Chart.Dont_Walk, Chart.Nobody);
+         Active.Walkers :=
+           Moved (Active.Walkers, Chart.Dont_Walk, Chart.Nobody);
          Self.Data.Requested := False;
       end Enter_Nobody;
 
       procedure Enter_Waiting is
       begin
-         Self.Place.In_Walkers := Lights_States.Waiting;
-         Active_Walkers :=
-           Moved (Active_Walkers, Chart.Dont_Walk, Chart.Waiting);
+         Active.Walkers :=
+           Moved (Active.Walkers, Chart.Dont_Walk, Chart.Waiting);
          Self.Data.Requested := True;
       end Enter_Waiting;
 
       procedure Enter_On_The_Road is
       begin
-         Ravenchart.Timers.Arm (Self.Timers (7), 100);
-         Active_Walkers :=
-           Moved (Active_Walkers, Chart.Nowhere, Chart.On_The_Road,
-              Active_Top = Chart.Working);
+         Active.Walkers :=
+           Moved (Active.Walkers, Chart.Nowhere, Chart.On_The_Road,
+              Active.Top = Chart.Working);
          Self.Data.Road_Free := False;
       end Enter_On_The_Road;
 
       procedure Enter_Walking is
       begin
-         Self.Place.In_Walkers := Lights_States.Walking;
-         Ravenchart.Timers.Arm (Self.Timers (6), 60);
-         Active_Walkers :=
-           Moved (Active_Walkers, Chart.On_The_Road, Chart.Walking);
+         Active.Walkers :=
+           Moved (Active.Walkers, Chart.On_The_Road, Chart.Walking);
          Self.Data.Walkers_See := Crossing_System.Walk;
       end Enter_Walking;
 
       procedure Enter_Leaving is
       begin
-         Self.Place.In_Walkers := Lights_States.Leaving;
-         Active_Walkers :=
-           Moved (Active_Walkers, Chart.On_The_Road, Chart.Leaving);
+         Active.Walkers :=
+           Moved (Active.Walkers, Chart.On_The_Road, Chart.Leaving);
          Self.Data.Walkers_See := Crossing_System.Wait;
       end Enter_Leaving;
-
-      function Is_Agreed return Boolean is
-        (Active_Cars = Chart.Innermost_Cars (Self)
-         and then Active_Walkers = Chart.Innermost_Walkers (Self)
-         and then Active_Top = Chart.Innermost_Top (Self)) with Ghost;
-
-      subtype From_Stopped is Selection range Stopped .. Stop;
-
-      procedure Fire_From_Stopped (Chosen : From_Stopped)
-      with
-        Pre => Is_Ready (Self, Item, Chosen) and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
-      is
-      begin
-         case Chosen is
-            when Stopped =>
-               Exit_Stopping;
-               Enter_Held;
-            when Get_Ready =>
-               Exit_Held;
-               Active_Cars := Moved (Active_Cars, Chart.Red, Chart.Nowhere);
-               Enter_Red_Yellow;
-            when Long_Enough =>
-               Exit_Least;
-               Active_Cars :=
-                 Moved (Active_Cars, Chart.Green, Chart.Longer);
-               Self.Place.In_Cars := Lights_States.Longer;
-            when Slow_Down =>
-               Active_Cars :=
-                 Moved (Active_Cars, Chart.Longer, Chart.Nowhere);
-               Enter_Yellow;
-            when Start =>
-               Exit_Red_Yellow;
-               Enter_Green;
-               Enter_Least;
-            when Stop =>
-               Exit_Yellow;
-               Enter_Red;
-               Enter_Stopping;
-         end case;
-      end Fire_From_Stopped;
-
-      subtype From_Ask is Selection range Ask .. Out_Of_Service;
-
-      procedure Fire_From_Ask (Chosen : From_Ask)
-      with
-        Pre => Is_Ready (Self, Item, Chosen) and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
-      is
-      begin
-         case Chosen is
-            when Ask =>
-               Active_Walkers :=
-                 Moved (Active_Walkers, Chart.Nobody, Chart.Dont_Walk);
-               Enter_Waiting;
-            when Walk =>
-               Active_Walkers :=
-                 Moved (Active_Walkers, Chart.Waiting, Chart.Nowhere);
-               Enter_On_The_Road;
-               Enter_Walking;
-            when Last_Call =>
-               Exit_Walking;
-               Enter_Leaving;
-            when Gone =>
-               Leave_On_The_Road;
-               Exit_On_The_Road;
-               Enter_Dont_Walk;
-               Enter_Nobody;
-            when Into_Service =>
-               Exit_Blinking;
-               Active_Top :=
-                 Moved (Active_Top, Chart.Nowhere, Chart.Working,
-                    Active_Cars = Chart.Nowhere
-                    and then Active_Walkers = Chart.Nowhere);
-               Self.Place.Top := Lights_States.Working;
-               Self.Place.In_Cars := Lights_States.Stopping;
-               Self.Place.In_Walkers := Lights_States.Nobody;
-               Enter_Red;
-               Enter_Stopping;
-               Enter_Dont_Walk;
-               Enter_Nobody;
-            when Out_Of_Service =>
-               Leave_Cars;
-               Leave_Walkers;
-               Active_Top :=
-                 Moved (Active_Top, Chart.Working, Chart.Nowhere,
-                    Active_Cars = Chart.Nowhere
-                    and then Active_Walkers = Chart.Nowhere);
-               Enter_Blinking;
-         end case;
-      end Fire_From_Ask;
-
-      subtype From_Blink is Selection range Blink .. Blink;
-
-      procedure Fire_From_Blink (Chosen : From_Blink)
-      with
-        Pre => Is_Ready (Self, Item, Chosen) and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
-      is
-      begin
-         case Chosen is
-            when Blink =>
-               Self.Data.Cars_See :=
-                 (if Self.Data.Cars_See = Crossing_System.Slow
-                     then Crossing_System.Dark
-                  else Crossing_System.Slow);
-         end case;
-      end Fire_From_Blink;
    begin
+      Self.Started := True;
+      Self.Place := Target (Chosen, Before);
+      Self.Timers :=
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Place);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Enter_Blinking;
-         when Stopped .. Stop =>
-            Fire_From_Stopped (Chosen);
-         when Ask .. Out_Of_Service =>
-            Fire_From_Ask (Chosen);
-         when Blink .. Blink =>
-            Fire_From_Blink (Chosen);
+         when Stopped =>
+            Active.Cars := Moved (Active.Cars, Chart.Stopping, Chart.Red);
+            Enter_Held;
+         when Get_Ready =>
+            Exit_Held;
+            Active.Cars := Moved (Active.Cars, Chart.Red, Chart.Nowhere);
+            Enter_Red_Yellow;
+         when Long_Enough =>
+            Active.Cars := Moved (Active.Cars, Chart.Least, Chart.Longer);
+         when Slow_Down =>
+            Active.Cars := Moved (Active.Cars, Chart.Longer, Chart.Nowhere);
+            Enter_Yellow;
+         when Start =>
+            Active.Cars :=
+              Moved (Active.Cars, Chart.Red_Yellow, Chart.Nowhere);
+            Enter_Green;
+            Active.Cars := Moved (Active.Cars, Chart.Green, Chart.Least);
+         when Stop =>
+            Active.Cars := Moved (Active.Cars, Chart.Yellow, Chart.Nowhere);
+            Enter_Red;
+            Active.Cars := Moved (Active.Cars, Chart.Red, Chart.Stopping);
+         when Ask =>
+            Active.Walkers :=
+              Moved (Active.Walkers, Chart.Nobody, Chart.Dont_Walk);
+            Enter_Waiting;
+         when Walk =>
+            Active.Walkers :=
+              Moved (Active.Walkers, Chart.Waiting, Chart.Nowhere);
+            Enter_On_The_Road;
+            Enter_Walking;
+         when Last_Call =>
+            Active.Walkers :=
+              Moved (Active.Walkers, Chart.Walking, Chart.On_The_Road);
+            Enter_Leaving;
+         when Gone =>
+            Active.Walkers :=
+              Moved (Active.Walkers, Active_At_First.Walkers,
+                 Chart.On_The_Road,
+                 Before.Top = Lights_States.Working
+                 and then Before.In_Walkers in Lights_States.On_The_Road);
+            Exit_On_The_Road;
+            Enter_Dont_Walk;
+            Enter_Nobody;
+         when Into_Service =>
+            Active.Top :=
+              Moved (Active.Top, Chart.Blinking, Chart.Working,
+                 Active.Cars = Chart.Nowhere
+                 and then Active.Walkers = Chart.Nowhere);
+            Enter_Red;
+            Active.Cars := Moved (Active.Cars, Chart.Red, Chart.Stopping);
+            Enter_Dont_Walk;
+            Enter_Nobody;
+         when Out_Of_Service =>
+            Leave_Cars;
+            Leave_Walkers;
+            Active.Top :=
+              Moved (Active.Top, Chart.Working, Chart.Nowhere,
+                 Active.Cars = Chart.Nowhere
+                 and then Active.Walkers = Chart.Nowhere);
+            Enter_Blinking;
+         when Blink =>
+            Self.Data.Cars_See :=
+              (if Self.Data.Cars_See = Crossing_System.Slow
+                  then Crossing_System.Dark
+               else Crossing_System.Slow);
       end case;
-      pragma Assert (Is_Agreed);
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step
      (Self  : in out Region;
       Now   : Occurrence;
       Item  : Event;
-      Fired : out Firing_List) is
+      Fired : out Firings.List) is
       C : Choice;
 
       procedure Fire_Whole (T : Firing)
       with
         Pre => Is_Ready (Self, Item, T) and then Fired.Count <= 2,
         Post =>
-          Fired.Count = Fired.Count'Old + 1
+          Firings.Is_Added (Fired'Old, T, Fired)
           and then Self.Started
-          and then Fired.Items (Fired.Count'Old + 1) = T
-          and then (for all J in 1 .. Fired.Count'Old =>
-                Fired.Items (J) = Fired.Items'Old (J))
           and then Self.Place = Target (T, Self.Place'Old)
           and then Is_Safe (Self.Place, Self.Data)
       is
       begin
          Fire (Self, Item, T);
-         Fired.Count := Fired.Count + 1;
-         Fired.Items (Fired.Count) := T;
+         Firings.Add (Fired, T);
       end Fire_Whole;
    begin
-      Fired := (Count => 0, Items => (others => None));
+      Fired := Firings.Nothing;
       if Now = Start_Of_Region then
          Fire_Whole (Initial_Entry);
       else
@@ -630,26 +419,19 @@ is
          pragma Assert
            (Fired.Count <= 1
             and then Is_Of_Choice (Fired, C, Cars_Transition'Last)
-            and then Is_Ordered (Fired)
-            and then (if C.Cars /= None then Has (Fired, C.Cars)));
+            and then (if C.Cars /= None then Firings.Has (Fired, C.Cars)));
          if C.Walkers /= None then
             Fire_Whole (C.Walkers);
          end if;
          pragma Assert
            (Fired.Count <= 2
             and then Is_Of_Choice (Fired, C, Walkers_Transition'Last)
-            and then Is_Ordered (Fired)
-            and then (if C.Cars /= None then Has (Fired, C.Cars))
-            and then (if C.Walkers /= None then Has (Fired, C.Walkers)));
+            and then (if C.Cars /= None then Firings.Has (Fired, C.Cars))
+            and then (if C.Walkers /= None
+                  then Firings.Has (Fired, C.Walkers)));
          if C.Top /= None then
             Fire_Whole (C.Top);
          end if;
-         pragma Assert
-           (Is_Of_Choice (Fired, C, Top_Transition'Last)
-            and then Is_Ordered (Fired)
-            and then (if C.Cars /= None then Has (Fired, C.Cars))
-            and then (if C.Walkers /= None then Has (Fired, C.Walkers))
-            and then (if C.Top /= None then Has (Fired, C.Top)));
       end if;
    end Step;
 end Crossing_System.Crossing.Lights;

@@ -6,13 +6,11 @@ pragma Ada_2022;
 pragma Warnings (Off, "*array aggregate using*");
 
 with Ravenchart.Timers;
+with Ravenchart.Firing_Lists;
 
 package Crossing_System.Crossing.Lights
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Lights_States.Leaf;
    use type Lights_States.Cars_Leaf;
    use type Lights_States.Configuration;
@@ -67,25 +65,48 @@ is
       Cars_Stopped : Boolean := False;
    end record;
 
-   type Firing_Array is array (1 .. 3) of Selection;
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 7);
 
-   --  What one step has fired, in order; None behind the last.
-   type Firing_List is record
-      Count : Natural range 0 .. 3 := 0;
-      Items : Firing_Array := (others => None);
-   end record;
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is
+     (Nothing, Inside_Cars, Inside_Walkers, Inside_Red, Inside_Green,
+      Inside_Dont_Walk, Inside_On_The_Road, Everything, Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Stopped => Inside_Red,
+        when Get_Ready | Slow_Down | Start | Stop => Inside_Cars,
+        when Long_Enough => Inside_Green,
+        when Ask => Inside_Dont_Walk,
+        when Walk | Gone => Inside_Walkers,
+        when Last_Call => Inside_On_The_Road,
+        when Into_Service | Out_Of_Service => Everything,
+        when Blink => Nothing);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
 
    --  The region's own state.
    type Region is record
       Started : Boolean := False;
       Place   : Lights_States.Configuration;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 7);
+      Timers  : Time_Outs;
       Data    : Variables;
    end record;
 
+   function Is_Segment (T : Selection) return Boolean is (T = None);
+   --  None does: the chart has neither choices nor histories.
+
+   package Firings is new Ravenchart.Firing_Lists
+     (Selection => Selection,
+      No_Selection => None,
+      Is_Segment => Is_Segment,
+      Most_Segments => 0,
+      Capacity => 3);
+
    function In_Source
-     (T : Transition; Place : Lights_States.Configuration)
-     return Boolean is
+     (T : Transition; Place : Lights_States.Configuration) return Boolean is
      (case T is
         when Stopped =>
            Place.Top = Lights_States.Working
@@ -123,7 +144,7 @@ is
    --  around it?
 
    function Enabled
-     (T    : Transition; Self : Region; Now  : Occurrence; Item : Event)
+     (T : Transition; Self : Region; Now : Occurrence; Item : Event)
      return Boolean is
      (In_Source (T, Self.Place)
       and then (case T is
@@ -175,96 +196,71 @@ is
         when Blink => Place);
    --  The leaves it leads to; those of a composite are its defaults.
 
-   --  The innermost region that holds all that a transition leaves and
-   --  enters.
-   type Domain is
-     (Nothing, Inside_Cars, Inside_Walkers, Inside_Red, Inside_Green,
-      Inside_Dont_Walk, Inside_On_The_Road, Everything, Beginning);
-
-   function Domain_Of (T : Firing) return Domain is
-     (case T is
-        when Initial_Entry => Beginning,
-        when Stopped => Inside_Red,
-        when Get_Ready | Slow_Down | Start | Stop => Inside_Cars,
-        when Long_Enough => Inside_Green,
-        when Ask => Inside_Dont_Walk,
-        when Walk | Gone => Inside_Walkers,
-        when Last_Call => Inside_On_The_Road,
-        when Into_Service | Out_Of_Service => Everything,
-        when Blink => Nothing);
-   --  Everything active inside it is left, and what is active then is
-   --  entered.
-
-   function Timer_After
-     (I      : Positive;
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Lights_States.Configuration;
-      After  : Lights_States.Configuration;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
-              D /= Beginning and then Before.Top = Lights_States.Blinking,
-              After.Top = Lights_States.Blinking,
-              Ravenchart.Timers.Started (5, 5)),
-        when 2 =>
-           Ravenchart.Timers.Moved (Timer,
-              D in Inside_Red | Inside_Cars | Everything | Beginning,
-              D /= Beginning
-              and then Before.Top = Lights_States.Working
-              and then Before.In_Cars = Lights_States.Stopping,
-              After.Top = Lights_States.Working
-              and then After.In_Cars = Lights_States.Stopping,
-              Ravenchart.Timers.Started (20)),
-        when 3 =>
-           Ravenchart.Timers.Moved (Timer,
-              D in Inside_Cars | Everything | Beginning,
-              D /= Beginning
-              and then Before.Top = Lights_States.Working
-              and then Before.In_Cars = Lights_States.Red_Yellow,
-              After.Top = Lights_States.Working
-              and then After.In_Cars = Lights_States.Red_Yellow,
-              Ravenchart.Timers.Started (10)),
-        when 4 =>
-           Ravenchart.Timers.Moved (Timer,
-              D in Inside_Green | Inside_Cars | Everything | Beginning,
-              D /= Beginning
-              and then Before.Top = Lights_States.Working
-              and then Before.In_Cars = Lights_States.Least,
-              After.Top = Lights_States.Working
-              and then After.In_Cars = Lights_States.Least,
-              Ravenchart.Timers.Started (100)),
-        when 5 =>
-           Ravenchart.Timers.Moved (Timer,
-              D in Inside_Cars | Everything | Beginning,
-              D /= Beginning
-              and then Before.Top = Lights_States.Working
-              and then Before.In_Cars = Lights_States.Yellow,
-              After.Top = Lights_States.Working
-              and then After.In_Cars = Lights_States.Yellow,
-              Ravenchart.Timers.Started (30)),
-        when 6 =>
-           Ravenchart.Timers.Moved (Timer,
-              D
-              in Inside_On_The_Road | Inside_Walkers | Everything
-                | Beginning,
-              D /= Beginning
-              and then Before.Top = Lights_States.Working
-              and then Before.In_Walkers = Lights_States.Walking,
-              After.Top = Lights_States.Working
-              and then After.In_Walkers = Lights_States.Walking,
-              Ravenchart.Timers.Started (60)),
-        when 7 =>
-           Ravenchart.Timers.Moved (Timer,
-              D in Inside_Walkers | Everything | Beginning,
-              D /= Beginning
-              and then Before.Top = Lights_States.Working
-              and then Before.In_Walkers in Lights_States.On_The_Road,
-              After.Top = Lights_States.Working
-              and then After.In_Walkers in Lights_States.On_The_Road,
-              Ravenchart.Timers.Started (100)),
-        when others => Timer);
+      After  : Lights_States.Configuration) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1), D in Everything | Beginning,
+            D /= Beginning and then Before.Top = Lights_States.Blinking,
+            After.Top = Lights_States.Blinking,
+            Ravenchart.Timers.Started (5, 5)),
+       2 =>
+         Ravenchart.Timers.Moved (Timers (2),
+            D in Inside_Red | Inside_Cars | Everything | Beginning,
+            D /= Beginning
+            and then Before.Top = Lights_States.Working
+            and then Before.In_Cars = Lights_States.Stopping,
+            After.Top = Lights_States.Working
+            and then After.In_Cars = Lights_States.Stopping,
+            Ravenchart.Timers.Started (20)),
+       3 =>
+         Ravenchart.Timers.Moved (Timers (3),
+            D in Inside_Cars | Everything | Beginning,
+            D /= Beginning
+            and then Before.Top = Lights_States.Working
+            and then Before.In_Cars = Lights_States.Red_Yellow,
+            After.Top = Lights_States.Working
+            and then After.In_Cars = Lights_States.Red_Yellow,
+            Ravenchart.Timers.Started (10)),
+       4 =>
+         Ravenchart.Timers.Moved (Timers (4),
+            D in Inside_Green | Inside_Cars | Everything | Beginning,
+            D /= Beginning
+            and then Before.Top = Lights_States.Working
+            and then Before.In_Cars = Lights_States.Least,
+            After.Top = Lights_States.Working
+            and then After.In_Cars = Lights_States.Least,
+            Ravenchart.Timers.Started (100)),
+       5 =>
+         Ravenchart.Timers.Moved (Timers (5),
+            D in Inside_Cars | Everything | Beginning,
+            D /= Beginning
+            and then Before.Top = Lights_States.Working
+            and then Before.In_Cars = Lights_States.Yellow,
+            After.Top = Lights_States.Working
+            and then After.In_Cars = Lights_States.Yellow,
+            Ravenchart.Timers.Started (30)),
+       6 =>
+         Ravenchart.Timers.Moved (Timers (6),
+            D in Inside_On_The_Road | Inside_Walkers | Everything
+              | Beginning,
+            D /= Beginning
+            and then Before.Top = Lights_States.Working
+            and then Before.In_Walkers = Lights_States.Walking,
+            After.Top = Lights_States.Working
+            and then After.In_Walkers = Lights_States.Walking,
+            Ravenchart.Timers.Started (60)),
+       7 =>
+         Ravenchart.Timers.Moved (Timers (7),
+            D in Inside_Walkers | Everything | Beginning,
+            D /= Beginning
+            and then Before.Top = Lights_States.Working
+            and then Before.In_Walkers in Lights_States.On_The_Road,
+            After.Top = Lights_States.Working
+            and then After.In_Walkers in Lights_States.On_The_Road,
+            Ravenchart.Timers.Started (100))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
@@ -274,8 +270,7 @@ is
       Last   : Transition;
       Self   : Region;
       Now    : Occurrence;
-      Item   : Event)
-     return Boolean is
+      Item   : Event) return Boolean is
      ((Chosen = None
        or else (Chosen in First .. Last
           and then Enabled (Chosen, Self, Now, Item)))
@@ -297,39 +292,27 @@ is
          else C.Top = None)) with Ghost;
    --  Each lane's first; none where a lane inside it has one.
 
-   function Is_Only (Fired : Firing_List; T : Selection) return Boolean is
-     (Fired.Count = 1 and then Fired.Items (1) = T) with Ghost;
-   --  Is that fired, with the segments of its way, and nothing else?
-
    function Choose
-     (Self : Region; Now : Occurrence; Item : Event)
-     return Choice
+     (Self : Region; Now : Occurrence; Item : Event) return Choice
    with Post => Is_Choice (Choose'Result, Self, Now, Item);
    --  The transitions that one occurrence asks for.
 
-   function Has (Fired : Firing_List; T : Selection) return Boolean is
-     (for some I in 1 .. Fired.Count => Fired.Items (I) = T) with Ghost;
-
    function Is_Of_Choice
-     (Fired : Firing_List; C : Choice; Last : Selection)
-     return Boolean is
-     (for all I in 1 .. Fired.Count =>
-         Fired.Items (I) <= Last
-         and then Fired.Items (I) in C.Cars | C.Walkers | C.Top) with Ghost;
-   --  Is what has fired chosen, and none of it after Last?
-
-   function Is_Ordered (Fired : Firing_List) return Boolean is
-     (for all I in 1 .. Fired.Count =>
-         (for all J in 1 .. I - 1 => Fired.Items (J) < Fired.Items (I)))
+     (Fired : Firings.List; C : Choice; Last : Selection) return Boolean is
+     (Firings.Is_Ordered (Fired)
+      and then (for all I in 1 .. Fired.Count =>
+            Fired.Items (I) <= Last
+            and then Fired.Items (I) in C.Cars | C.Walkers | C.Top))
    with Ghost;
-   --  Do the lanes fire in their order?
+   --  Is what has fired chosen, in the order of the lanes, and none of it
+   --  after Last?
 
-   function Follows (Fired : Firing_List; C : Choice) return Boolean is
+   function Follows (Fired : Firings.List; C : Choice) return Boolean is
      (Is_Of_Choice (Fired, C, Top_Transition'Last)
-      and then Is_Ordered (Fired)
-      and then (if C.Cars /= None then Has (Fired, C.Cars))
-      and then (if C.Walkers /= None then Has (Fired, C.Walkers))
-      and then (if C.Top /= None then Has (Fired, C.Top))) with Ghost;
+      and then (if C.Cars /= None then Firings.Has (Fired, C.Cars))
+      and then (if C.Walkers /= None then Firings.Has (Fired, C.Walkers))
+      and then (if C.Top /= None then Firings.Has (Fired, C.Top)))
+   with Ghost;
    --  A deferral is fired alone. Otherwise what is chosen is fired, lane by
    --  lane, and nothing else; a lane inside a state that transitions leave
    --  may be overtaken by an earlier one.
@@ -342,8 +325,7 @@ is
    --  [Crossing.green_for_both] the condition of `never` is false.
 
    function Never_Walkers_Among_Cars
-     (Place : Lights_States.Configuration)
-     return Boolean is
+     (Place : Lights_States.Configuration) return Boolean is
      (not ((Place.Top = Lights_States.Working
         and then Place.In_Walkers in Lights_States.On_The_Road)
        and then not (Place.Top = Lights_States.Working
@@ -351,24 +333,21 @@ is
    --  [Crossing.walkers_among_cars] the condition of `never` is false.
 
    function Never_Road_Forgotten
-     (Place : Lights_States.Configuration; Data : Variables)
-     return Boolean is
+     (Place : Lights_States.Configuration; Data : Variables) return Boolean is
      (not ((Place.Top = Lights_States.Working
         and then Place.In_Walkers in Lights_States.On_The_Road)
        and then Data.Road_Free));
    --  [Crossing.road_forgotten] the condition of `never` is false.
 
    function Never_Request_Forgotten
-     (Place : Lights_States.Configuration; Data : Variables)
-     return Boolean is
+     (Place : Lights_States.Configuration; Data : Variables) return Boolean is
      (not ((Place.Top = Lights_States.Working
         and then Place.In_Walkers = Lights_States.Waiting)
        and then not Data.Requested));
    --  [Crossing.request_forgotten] the condition of `never` is false.
 
    function Data_Are_Known
-     (Place : Lights_States.Configuration; Data : Variables)
-     return Boolean is
+     (Place : Lights_States.Configuration; Data : Variables) return Boolean is
      ((if Place.Top = Lights_States.Blinking then not Data.Cars_Stopped)
       and then (if Place.Top = Lights_States.Working
             and then Place.In_Cars = Lights_States.Stopping
@@ -399,8 +378,7 @@ is
    --  might break an invariant.
 
    function Is_Safe
-     (Place : Lights_States.Configuration; Data : Variables)
-     return Boolean is
+     (Place : Lights_States.Configuration; Data : Variables) return Boolean is
      (Never_Green_For_Both (Data)
       and then Never_Walkers_Among_Cars (Place)
       and then Never_Road_Forgotten (Place, Data)
@@ -420,8 +398,7 @@ is
    subtype Safe_Region is Region with Predicate => Is_Kept (Safe_Region);
 
    function Guards_Hold
-     (T : Firing; Data : Variables; Item : Event)
-     return Boolean is
+     (T : Firing; Data : Variables; Item : Event) return Boolean is
      (case T is
         when Get_Ready => Data.Road_Free and then not Data.Requested,
         when Slow_Down => Data.Requested,
@@ -483,7 +460,7 @@ is
      (Self  : in out Region;
       Now   : Occurrence;
       Item  : Event;
-      Fired : out Firing_List)
+      Fired : out Firings.List)
    with
      Pre =>
        Is_Kept (Self) and then (Now = Start_Of_Region) = not Self.Started,
@@ -491,7 +468,8 @@ is
        Self.Started
        and then Is_Kept (Self)
        and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
-       and then ((Now = Start_Of_Region and Is_Only (Fired, Initial_Entry))
+       and then ((Now = Start_Of_Region
+           and Firings.Is_Only (Fired, Initial_Entry))
           or (Now /= Start_Of_Region
              and Follows (Fired, Choose (Self'Old, Now, Item))));
    --  One run-to-completion step.

@@ -10,9 +10,6 @@ with System;
 package Crossing_System.Reception
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [reception.table] the activities, in the order in which they run
    type Row is (Street_Receive);
 

@@ -9,6 +9,7 @@ with Crossing_System.Street;
 with Crossing_System.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -17,9 +18,6 @@ with System;
 package body Crossing_System.School
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [school.button]
    package Button_Mailbox is new Ravenchart.Queues
      (Element_Type => Crossing_System.Press,
@@ -27,6 +25,13 @@ is
       Capacity => 4,
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Drop_Oldest);
+
+   package Button_Offers is new Ravenchart.Offers
+     (Element_Type => Crossing_System.Press,
+      Put => Button_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Drop_Oldest,
+      Element => Elements.School_Button,
+      Report => Health_Counts.Faults.Report);
 
    Button_Port : Crossing.Button_View;
 
@@ -37,6 +42,13 @@ is
       Capacity => 2,
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Order_Offers is new Ravenchart.Offers
+     (Element_Type => Crossing_System.Order,
+      Put => Order_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.School_Order,
+      Report => Health_Counts.Faults.Report);
 
    Order_Port : Crossing.Order_View;
 
@@ -78,68 +90,36 @@ is
       Ceiling => System.Default_Priority + 1,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
-   procedure Put_Button (Item : Crossing_System.Press) is
-      Status : Ravenchart.Queueing.Put_Status;
+   package Lights_Offers is new Ravenchart.Offers
+     (Element_Type => Crossing.Event,
+      Put => Lights_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.School_Lights,
+      Report => Health_Counts.Faults.Report);
 
-      use type Ravenchart.Queueing.Put_Status;
+   procedure Put_Button (Item : Crossing_System.Press) is
    begin
-      Button_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.School_Button,
          0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.School_Button,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Button_Offers.Offer (Item);
    end Put_Button;
 
    procedure Put_Order (Item : Crossing_System.Order) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
-      Order_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.School_Order,
          0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.School_Order,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Order_Offers.Offer (Item);
    end Put_Order;
 
    procedure Offer (Item : Crossing.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item.Name is
          when Crossing.Wish =>
-            Lights_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.School_Lights,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Lights_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.School_Wish, 0);
          when Crossing.Ordered =>
-            Lights_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.School_Lights,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Lights_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.School_Ordered, 0);
       end case;
@@ -190,12 +170,8 @@ is
                Elements.School_Button, 0);
             Offer (Crossing.Event'(Name => Crossing.Wish, others => <>));
          when Crossing.Button_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.School_Button,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.School_Button);
       end case;
       Order_Mailbox.Take (Order_Item, Status);
       Crossing.Order_Port.Handle
@@ -214,19 +190,15 @@ is
               (Crossing.Event'(Name => Crossing.Ordered,
                 Value_Order => Order_Port.Value));
          when Crossing.Order_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.School_Order,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.School_Order);
       end case;
       Executed := Executed + Elements.School_Ports_Row;
    end Run_Ports;
 
    procedure Step_Lights is
       Now : Crossing.Lights.Occurrence;
-      Fired : Crossing.Lights.Firing_List;
+      Fired : Crossing.Lights.Firings.List;
 
       use type Crossing.Lights_States.Leaf;
       use type Crossing.Lights.Occurrence;

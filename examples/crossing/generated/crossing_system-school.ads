@@ -9,9 +9,6 @@ with Crossing_System.Elements;
 package Crossing_System.School
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Element_Id;
 
    procedure Put_Button (Item : Crossing_System.Press);

@@ -8,9 +8,6 @@ with Crossing_System.Elements;
 package Crossing_System.Street.Receiver
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    procedure Wait;
    --  [street.receive.release] suspend until a frame is there.
 

@@ -11,9 +11,6 @@ with Ravenchart.Traces;
 package body Crossing_System.Street
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Frame_Of_Car_Lamp
      (Item : Crossing_System.Car_Light)
      return Ravenchart.Can.Any_Frames.Any_Frame is
@@ -39,12 +36,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Car_Lamp_Message,
          0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Car_Lamp_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Car_Lamp_Message);
       end if;
    end Send_Car_Lamp;
 
@@ -73,18 +66,13 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Walk_Lamp_Message,
          0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Walk_Lamp_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Walk_Lamp_Message);
       end if;
    end Send_Walk_Lamp;
 
    function Frame_Of_Sign
-     (Item : Boolean)
-     return Ravenchart.Can.Any_Frames.Any_Frame is
+     (Item : Boolean) return Ravenchart.Can.Any_Frames.Any_Frame is
    begin
       return
         Ravenchart.Can.Any_Frames.Whole_Frame
@@ -106,11 +94,8 @@ is
       Controller.Send (Frame, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Sign_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Sign_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Sign_Message);
       end if;
    end Send_Sign;
 end Crossing_System.Street;

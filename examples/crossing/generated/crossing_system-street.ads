@@ -14,17 +14,12 @@ with System;
 package Crossing_System.Street
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Accepts
-     (Id     : Ravenchart.Can.Identifier;
-      Format : Ravenchart.Can.Frame_Format)
+     (Id : Ravenchart.Can.Identifier; Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
         when Ravenchart.Can.Standard =>
-           Id
-           in Timing_Certificate.Street_Order_Id
+           Id in Timing_Certificate.Street_Order_Id
              | Timing_Certificate.Street_Button_Id,
         when Ravenchart.Can.Extended => False);
    --  [street] the identifiers that this node receives
@@ -94,8 +89,7 @@ is
    --  [walk_lamp] hand one frame to the controller; never blocks.
 
    function Frame_Of_Sign
-     (Item : Boolean)
-     return Ravenchart.Can.Any_Frames.Any_Frame
+     (Item : Boolean) return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
        Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Sign'Result,

@@ -10,9 +10,6 @@ with Ravenchart.Response_Times;
 package Crossing_System.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "550297c9ad319044d77670a4bc57183a53a3bf568f7160286b4ed43fc1e0527d";
@@ -131,36 +128,45 @@ is
    function Street_Driver_Rx_Order_Up (W : Window) return Time is
      (Demand (W, Street_Driver_Rx_Order_J, Street_Driver_Rx_Order_T,
          Street_Driver_Rx_Order_C)) with Static;
+
    function Street_Driver_Rx_Button_Up (W : Window) return Time is
      (Demand (W, Street_Driver_Rx_Button_J, Street_Driver_Rx_Button_T,
          Street_Driver_Rx_Button_C, Street_Driver_Rx_Order_Up (W)))
    with Static;
+
    function Street_Driver_Tx_Car_Lamp_Up (W : Window) return Time is
      (Demand (W, Street_Driver_Tx_Car_Lamp_J, Street_Driver_Tx_Car_Lamp_T,
          Street_Driver_Tx_Car_Lamp_C, Street_Driver_Rx_Button_Up (W)))
    with Static;
+
    function Street_Driver_Tx_Walk_Lamp_Up (W : Window) return Time is
      (Demand (W, Street_Driver_Tx_Walk_Lamp_J, Street_Driver_Tx_Walk_Lamp_T,
          Street_Driver_Tx_Walk_Lamp_C, Street_Driver_Tx_Car_Lamp_Up (W)))
    with Static;
+
    function Street_Driver_Tx_Sign_Up (W : Window) return Time is
      (Demand (W, Street_Driver_Tx_Sign_J, Street_Driver_Tx_Sign_T,
          Street_Driver_Tx_Sign_C, Street_Driver_Tx_Walk_Lamp_Up (W)))
    with Static;
+
    function Reception_Up (W : Window) return Time is
      (Demand (W, Reception_J, Reception_T, Reception_C,
          Street_Driver_Tx_Sign_Up (W))) with Static;
+
    function Street_Driver_Tx_Sign_Rest (W : Window) return Time is
      (Demand (W, Street_Driver_Tx_Sign_J, Street_Driver_Tx_Sign_T,
          Street_Driver_Tx_Sign_C)) with Static;
+
    function Street_Driver_Tx_Walk_Lamp_Rest (W : Window) return Time is
      (Demand (W, Street_Driver_Tx_Walk_Lamp_J, Street_Driver_Tx_Walk_Lamp_T,
          Street_Driver_Tx_Walk_Lamp_C, Street_Driver_Tx_Sign_Rest (W)))
    with Static;
+
    function Street_Driver_Tx_Car_Lamp_Rest (W : Window) return Time is
      (Demand (W, Street_Driver_Tx_Car_Lamp_J, Street_Driver_Tx_Car_Lamp_T,
          Street_Driver_Tx_Car_Lamp_C, Street_Driver_Tx_Walk_Lamp_Rest (W)))
    with Static;
+
    function Street_Driver_Rx_Button_Rest (W : Window) return Time is
      (Demand (W, Street_Driver_Rx_Button_J, Street_Driver_Rx_Button_T,
          Street_Driver_Rx_Button_C, Street_Driver_Tx_Car_Lamp_Rest (W)))
@@ -181,6 +187,7 @@ is
 
    function Street_Bits (Stuffed : Positive) return Time is
      (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+
    function Street_Time_Of (Stuffed : Positive) return Time is
      ((Street_Bits (Stuffed) * 10**9 + (Street_Bit_Rate - 1))
       / Street_Bit_Rate) with Static;
@@ -351,26 +358,34 @@ is
    function Street_Order_Up (W : Window) return Time is
      (Demand (W, Street_Order_J, Street_Order_T, Street_Order_C))
    with Static;
+
    function Street_Button_Up (W : Window) return Time is
      (Demand (W, Street_Button_J, Street_Button_T, Street_Button_C,
          Street_Order_Up (W))) with Static;
+
    function Street_Order_Up_Board (W : Window) return Time is
      (Demand (W, Street_Order_J, Street_Order_T, Street_Order_C))
    with Static;
+
    function Street_Button_Up_Board (W : Window) return Time is
      (Demand (W, Street_Button_J, Street_Button_T, Street_Button_C,
          Street_Order_Up_Board (W))) with Static;
+
    function Street_Car_Lamp_Up_Board (W : Window) return Time is
      (Demand (W, Street_Car_Lamp_J, Street_Car_Lamp_T, Street_Car_Lamp_C,
          Street_Button_Up_Board (W))) with Static;
+
    function Street_Walk_Lamp_Up_Board (W : Window) return Time is
      (Demand (W, Street_Walk_Lamp_J, Street_Walk_Lamp_T, Street_Walk_Lamp_C,
          Street_Car_Lamp_Up_Board (W))) with Static;
+
    function Street_Sign_Up_Board (W : Window) return Time is
      (Demand (W, Street_Sign_J, Street_Sign_T, Street_Sign_C,
          Street_Walk_Lamp_Up_Board (W))) with Static;
+
    function Street_Sign_Rest_Board (W : Window) return Time is
      (Demand (W, Street_Sign_J, Street_Sign_T, Street_Sign_C)) with Static;
+
    function Street_Walk_Lamp_Rest_Board (W : Window) return Time is
      (Demand (W, Street_Walk_Lamp_J, Street_Walk_Lamp_T, Street_Walk_Lamp_C,
          Street_Sign_Rest_Board (W))) with Static;

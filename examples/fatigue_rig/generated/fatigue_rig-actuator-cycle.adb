@@ -5,35 +5,21 @@
 package body Fatigue_Rig.Actuator.Cycle
 with SPARK_Mode
 is
-   function Around_Moving
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (if Now = Conditions and then not Ins.Permit.Value then Trip
-      elsif Now = Conditions and then Ins.Order.Value = Fatigue_Rig.Halt
-         then Halt
-      elsif Now = Conditions and then Self.Data.Cycles >= Ins.Planned
-         then Done
-      else None);
-
-   function Select_Transition
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (case Self.Leaf is
-        when Cycle_States.Resting =>
-           (if Now = Conditions
-               and then Ins.Order.Value = Fatigue_Rig.Work
-               and then Ins.Permit.Value
-               and then Self.Data.Condition = Fatigue_Rig.Idle
-               then Start
-            else None),
-        when Cycle_States.Pulling =>
-           (if Now = Conditions and then Ins.Force.Value >= Ins.Peak
-               then At_Peak
-            else Around_Moving (Self, Now, Ins)),
-        when Cycle_States.Releasing =>
-           (if Now = Conditions and then Ins.Force.Value <= 0 then At_Zero
-            else Around_Moving (Self, Now, Ins)))
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -56,8 +42,7 @@ is
    end Poll;
 
    function Is_Ready
-     (Self : Region; Ins : Inputs; Chosen : Firing)
-     return Boolean is
+     (Self : Region; Ins : Inputs; Chosen : Firing) return Boolean is
      (if Chosen = Initial_Entry
          then not Self.Started and then Self.Data = Initial_Data
       else Self.Started
@@ -82,20 +67,20 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Active_At_First : constant Chart.Node := Active with Ghost;
+      Before : constant Cycle_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
          To_Node     : Chart.Node;
-         In_Order    : Boolean := True)
-        return Chart.Node is
+         In_Order    : Boolean := True) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node and then In_Order
             then To_Node
          else Chart.Disorder) with Ghost;
 
       procedure Enter_Resting is
       begin
-         Self.Leaf := Cycle_States.Resting;
          Active := Moved (Active, Chart.Nowhere, Chart.Resting);
          Self.Data.Opening := 0;
       end Enter_Resting;
@@ -108,31 +93,29 @@ is
 
       procedure Enter_Pulling is
       begin
-         Self.Leaf := Cycle_States.Pulling;
          Active := Moved (Active, Chart.Moving, Chart.Pulling);
          Self.Data.Opening := 400;
       end Enter_Pulling;
 
       procedure Enter_Releasing is
       begin
-         Self.Leaf := Cycle_States.Releasing;
          Active := Moved (Active, Chart.Moving, Chart.Releasing);
          Self.Data.Opening := Ravenchart.Number'Val (-400);
       end Enter_Releasing;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Enter_Resting;
          when At_Peak =>
             Active := Moved (Active, Chart.Pulling, Chart.Moving);
             Enter_Releasing;
          when At_Zero =>
             Active := Moved (Active, Chart.Releasing, Chart.Moving);
-            pragma Assert (Active = Chart.Moving);
             Self.Data.Cycles :=
               Ravenchart.Number'Min (Self.Data.Cycles + 1, 10_000_000);
-            pragma Assert (Active = Chart.Moving);
+            Active := Moved (Active, Chart.Moving, Chart.Moving);
             Enter_Pulling;
          when Start =>
             Active := Moved (Active, Chart.Resting, Chart.Nowhere);
@@ -140,30 +123,24 @@ is
             Enter_Pulling;
          when Trip =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Moving,
-                 Self.Leaf in Cycle_States.Moving);
-            Active := Moved (Active, Chart.Moving, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
+              Moved (Active, Active_At_First, Chart.Nowhere,
+                 Before in Cycle_States.Moving);
             Self.Data.Condition := Fatigue_Rig.Tripped;
-            pragma Assert (Active = Chart.Nowhere);
+            Active := Moved (Active, Chart.Nowhere, Chart.Nowhere);
             Enter_Resting;
          when Halt =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Moving,
-                 Self.Leaf in Cycle_States.Moving);
-            Active := Moved (Active, Chart.Moving, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
+              Moved (Active, Active_At_First, Chart.Nowhere,
+                 Before in Cycle_States.Moving);
             Self.Data.Condition := Fatigue_Rig.Idle;
-            pragma Assert (Active = Chart.Nowhere);
+            Active := Moved (Active, Chart.Nowhere, Chart.Nowhere);
             Enter_Resting;
          when Done =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Moving,
-                 Self.Leaf in Cycle_States.Moving);
-            Active := Moved (Active, Chart.Moving, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
+              Moved (Active, Active_At_First, Chart.Nowhere,
+                 Before in Cycle_States.Moving);
             Self.Data.Condition := Fatigue_Rig.Done;
-            pragma Assert (Active = Chart.Nowhere);
+            Active := Moved (Active, Chart.Nowhere, Chart.Nowhere);
             Enter_Resting;
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
@@ -178,7 +155,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins);
+         Fired := Selected (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Ins, Fired);

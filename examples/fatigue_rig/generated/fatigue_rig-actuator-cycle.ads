@@ -50,8 +50,7 @@ is
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Cycle_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Cycle_States.Leaf) return Boolean is
      (case T is
         when At_Peak => Leaf = Cycle_States.Pulling,
         when At_Zero => Leaf = Cycle_States.Releasing,
@@ -61,7 +60,7 @@ is
    --  around it?
 
    function Enabled
-     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
@@ -88,10 +87,7 @@ is
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
-     (Chosen : Selection;
-      Self   : Region;
-      Now    : Occurrence;
-      Ins    : Inputs)
+     (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
@@ -104,14 +100,12 @@ is
    Initial_Data : constant Variables := (others => <>);
 
    function Never_Moved_At_Rest
-     (Leaf : Cycle_States.Leaf; Data : Variables)
-     return Boolean is
+     (Leaf : Cycle_States.Leaf; Data : Variables) return Boolean is
      (not (Leaf = Cycle_States.Resting and then Data.Opening /= 0));
    --  [Actuator.moved_at_rest] the condition of `never` is false.
 
    function Is_Safe
-     (Leaf : Cycle_States.Leaf; Data : Variables)
-     return Boolean is
+     (Leaf : Cycle_States.Leaf; Data : Variables) return Boolean is
      (Never_Moved_At_Rest (Leaf, Data));
    --  Each transition and each segment keeps it.
 
@@ -123,8 +117,7 @@ is
    subtype Safe_Region is Region with Predicate => Is_Kept (Safe_Region);
 
    function Guards_Hold
-     (T : Firing; Data : Variables; Ins : Inputs)
-     return Boolean is
+     (T : Firing; Data : Variables; Ins : Inputs) return Boolean is
      (case T is
         when At_Peak => Ins.Force.Value >= Ins.Peak,
         when At_Zero => Ins.Force.Value <= 0,

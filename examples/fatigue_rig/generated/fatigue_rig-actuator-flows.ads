@@ -11,7 +11,7 @@ is
       Valve      : out Fatigue_Rig.Valve;
       Send_Valve : out Boolean)
    with Global => null;
-   --  [Actuator.drive] budget 20_000 ns, every 5_000_000 ns
+   --  [Actuator.drive] WCET 20_000 ns, every 5_000_000 ns
 
    procedure Tell
      (Condition   : Fatigue_Rig.Condition;
@@ -19,5 +19,5 @@ is
       Report      : out Fatigue_Rig.Station_Report;
       Send_Report : out Boolean)
    with Global => null;
-   --  [Actuator.tell] budget 20_000 ns, every 50_000_000 ns
+   --  [Actuator.tell] WCET 20_000 ns, every 50_000_000 ns
 end Fatigue_Rig.Actuator.Flows;

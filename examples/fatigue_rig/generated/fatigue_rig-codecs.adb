@@ -6,8 +6,7 @@ package body Fatigue_Rig.Codecs
 with SPARK_Mode
 is
    function Bits_Of_Type_Order
-     (Item : Fatigue_Rig.Order)
-     return Interfaces.Unsigned_8 is
+     (Item : Fatigue_Rig.Order) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Fatigue_Rig.Order'Pos (Item)))
    with
      Post =>
@@ -15,8 +14,7 @@ is
        and then Value_Of_Type_Order (Bits_Of_Type_Order'Result) = Item;
 
    function Bits_Of_Type_Condition
-     (Item : Fatigue_Rig.Condition)
-     return Interfaces.Unsigned_8 is
+     (Item : Fatigue_Rig.Condition) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Fatigue_Rig.Condition'Pos (Item)))
    with
      Post =>
@@ -25,8 +23,7 @@ is
          = Item;
 
    function Bits_Of_Type_Force
-     (Item : Fatigue_Rig.Force)
-     return Interfaces.Unsigned_16
+     (Item : Fatigue_Rig.Force) return Interfaces.Unsigned_16
    with
      Post =>
        Bits_Of_Type_Force'Result <= 40_000
@@ -42,8 +39,7 @@ is
    end Bits_Of_Type_Force;
 
    function Bits_Of_Type_Valve
-     (Item : Fatigue_Rig.Valve)
-     return Interfaces.Unsigned_16
+     (Item : Fatigue_Rig.Valve) return Interfaces.Unsigned_16
    with
      Post =>
        Bits_Of_Type_Valve'Result <= 2_000
@@ -95,8 +91,7 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with
         Pre => Local_Value <= 16#1#,
@@ -250,8 +245,7 @@ is
       function Word_Of
         (Local_First  : Interfaces.Unsigned_8;
          Local_Second : Interfaces.Unsigned_8;
-         Local_Third  : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+         Local_Third  : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_First)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Second), 2)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Third), 4))
@@ -266,8 +260,7 @@ is
           and then Raw_Of_Third (Word_Of'Result) = Local_Third;
 
       function Pack
-        (Item : Fatigue_Rig.Rig_Report)
-        return Interfaces.Unsigned_64 is
+        (Item : Fatigue_Rig.Rig_Report) return Interfaces.Unsigned_64 is
          Local_First : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Condition (Item.First);
          Local_Second : constant Interfaces.Unsigned_8 :=
@@ -363,8 +356,7 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_16)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_16) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
@@ -442,8 +434,7 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_16)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_16) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with
         Pre => Local_Value <= 16#7FF#,

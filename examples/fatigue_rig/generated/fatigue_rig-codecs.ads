@@ -15,26 +15,22 @@ is
    use type Ravenchart.Number;
 
    function Value_Of_Type_Order
-     (Raw : Interfaces.Unsigned_8)
-     return Fatigue_Rig.Order is
+     (Raw : Interfaces.Unsigned_8) return Fatigue_Rig.Order is
      (Fatigue_Rig.Order'Val (Raw))
    with Pre => Raw <= 1;
 
    function Value_Of_Type_Condition
-     (Raw : Interfaces.Unsigned_8)
-     return Fatigue_Rig.Condition is
+     (Raw : Interfaces.Unsigned_8) return Fatigue_Rig.Condition is
      (Fatigue_Rig.Condition'Val (Raw))
    with Pre => Raw <= 3;
 
    function Value_Of_Type_Force
-     (Raw : Interfaces.Unsigned_16)
-     return Fatigue_Rig.Force is
+     (Raw : Interfaces.Unsigned_16) return Fatigue_Rig.Force is
      (Fatigue_Rig.Force (Ravenchart.Number (Raw) - 20_000))
    with Pre => Raw <= 40_000;
 
    function Value_Of_Type_Valve
-     (Raw : Interfaces.Unsigned_16)
-     return Fatigue_Rig.Valve is
+     (Raw : Interfaces.Unsigned_16) return Fatigue_Rig.Valve is
      (Fatigue_Rig.Valve (Ravenchart.Number (Raw) - 1_000))
    with Pre => Raw <= 2_000;
 
@@ -48,13 +44,11 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#1#));
 
       function Pack (Item : Fatigue_Rig.Order) return Interfaces.Unsigned_64
@@ -110,30 +104,25 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_First)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Second)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Third));
 
       function Raw_Of_First
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#3#));
 
       function Raw_Of_Second
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 2) and 16#3#));
 
       function Raw_Of_Third
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 4) and 16#3#));
 
       function Pack
-        (Item : Fatigue_Rig.Rig_Report)
-        return Interfaces.Unsigned_64
+        (Item : Fatigue_Rig.Rig_Report) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_First)
@@ -187,13 +176,11 @@ is
          Offset => (-20_000));
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_16 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_16 is
         (Interfaces.Unsigned_16 (Word and 16#FFFF#));
 
       function Pack (Item : Fatigue_Rig.Force) return Interfaces.Unsigned_64
@@ -234,13 +221,11 @@ is
          Offset => (-1_000));
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_16 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_16 is
         (Interfaces.Unsigned_16 (Word and 16#7FF#));
 
       function Pack (Item : Fatigue_Rig.Valve) return Interfaces.Unsigned_64

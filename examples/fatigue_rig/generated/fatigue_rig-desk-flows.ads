@@ -10,7 +10,7 @@ is
       Order      : out Fatigue_Rig.Order;
       Send_Order : out Boolean)
    with Global => null;
-   --  [Desk.pass_on] budget 20_000 ns, every 50_000_000 ns
+   --  [Desk.pass_on] WCET 20_000 ns, every 50_000_000 ns
 
    procedure Tell
      (First      : Desk.First_View;
@@ -19,5 +19,5 @@ is
       State      : out Fatigue_Rig.Rig_Report;
       Send_State : out Boolean)
    with Global => null;
-   --  [Desk.tell] budget 40_000 ns, every 50_000_000 ns
+   --  [Desk.tell] WCET 40_000 ns, every 50_000_000 ns
 end Fatigue_Rig.Desk.Flows;

@@ -167,12 +167,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Desk_1_Wanted, 0);
          when Desk.Wanted_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Desk_1_Wanted,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Desk_1_Wanted);
       end case;
       First_Mailbox.Take (First_Item, Status);
       Desk.First_Port.Handle
@@ -189,12 +185,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Desk_1_First, 0);
          when Desk.First_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Desk_1_First,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Desk_1_First);
       end case;
       Second_Mailbox.Take (Second_Item, Status);
       Desk.Second_Port.Handle
@@ -211,12 +203,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Desk_1_Second, 0);
          when Desk.Second_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Desk_1_Second,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Desk_1_Second);
       end case;
       Third_Mailbox.Take (Third_Item, Status);
       Desk.Third_Port.Handle
@@ -233,12 +221,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Desk_1_Third, 0);
          when Desk.Third_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Desk_1_Third,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Desk_1_Third);
       end case;
       Executed := Executed + Elements.Desk_1_Ports_Row;
    end Run_Ports;

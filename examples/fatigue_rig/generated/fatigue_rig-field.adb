@@ -35,17 +35,13 @@ is
       Controller.Send (Frame, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.State_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.State_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.State_Message);
       end if;
    end Send_State;
 
    function Frame_Of_Valve_1
-     (Item : Fatigue_Rig.Valve)
-     return Ravenchart.Can.Any_Frames.Any_Frame is
+     (Item : Fatigue_Rig.Valve) return Ravenchart.Can.Any_Frames.Any_Frame is
    begin
       return
         Ravenchart.Can.Any_Frames.Whole_Frame
@@ -68,18 +64,13 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Valve_1_Message,
          0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Valve_1_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Valve_1_Message);
       end if;
    end Send_Valve_1;
 
    function Frame_Of_Valve_2
-     (Item : Fatigue_Rig.Valve)
-     return Ravenchart.Can.Any_Frames.Any_Frame is
+     (Item : Fatigue_Rig.Valve) return Ravenchart.Can.Any_Frames.Any_Frame is
    begin
       return
         Ravenchart.Can.Any_Frames.Whole_Frame
@@ -102,18 +93,13 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Valve_2_Message,
          0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Valve_2_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Valve_2_Message);
       end if;
    end Send_Valve_2;
 
    function Frame_Of_Valve_3
-     (Item : Fatigue_Rig.Valve)
-     return Ravenchart.Can.Any_Frames.Any_Frame is
+     (Item : Fatigue_Rig.Valve) return Ravenchart.Can.Any_Frames.Any_Frame is
    begin
       return
         Ravenchart.Can.Any_Frames.Whole_Frame
@@ -136,12 +122,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Valve_3_Message,
          0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Valve_3_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Valve_3_Message);
       end if;
    end Send_Valve_3;
 end Fatigue_Rig.Field;

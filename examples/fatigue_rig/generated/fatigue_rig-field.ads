@@ -15,13 +15,11 @@ package Fatigue_Rig.Field
 with SPARK_Mode
 is
    function Accepts
-     (Id     : Ravenchart.Can.Identifier;
-      Format : Ravenchart.Can.Frame_Format)
+     (Id : Ravenchart.Can.Identifier; Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
         when Ravenchart.Can.Standard =>
-           Id
-           in Timing_Certificate.Field_Wanted_Id
+           Id in Timing_Certificate.Field_Wanted_Id
              | Timing_Certificate.Field_Cell_1_Id
              | Timing_Certificate.Field_Cell_2_Id
              | Timing_Certificate.Field_Cell_3_Id,
@@ -82,8 +80,7 @@ is
    --  [state] hand one frame to the controller; never blocks.
 
    function Frame_Of_Valve_1
-     (Item : Fatigue_Rig.Valve)
-     return Ravenchart.Can.Any_Frames.Any_Frame
+     (Item : Fatigue_Rig.Valve) return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
        Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Valve_1'Result,
@@ -96,8 +93,7 @@ is
    --  [valve_1] hand one frame to the controller; never blocks.
 
    function Frame_Of_Valve_2
-     (Item : Fatigue_Rig.Valve)
-     return Ravenchart.Can.Any_Frames.Any_Frame
+     (Item : Fatigue_Rig.Valve) return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
        Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Valve_2'Result,
@@ -110,8 +106,7 @@ is
    --  [valve_2] hand one frame to the controller; never blocks.
 
    function Frame_Of_Valve_3
-     (Item : Fatigue_Rig.Valve)
-     return Ravenchart.Can.Any_Frames.Any_Frame
+     (Item : Fatigue_Rig.Valve) return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
        Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Valve_3'Result,

@@ -14,5 +14,5 @@ is
       Sound      : out Boolean;
       Send_Sound : out Boolean)
    with Global => null;
-   --  [Load_Cell.measure] budget 30_000 ns, every 5_000_000 ns
+   --  [Load_Cell.measure] WCET 30_000 ns, every 5_000_000 ns
 end Fatigue_Rig.Load_Cell.Flows;

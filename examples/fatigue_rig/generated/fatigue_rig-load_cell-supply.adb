@@ -5,18 +5,21 @@
 package body Fatigue_Rig.Load_Cell.Supply
 with SPARK_Mode
 is
-   function Select_Transition
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (case Self.Leaf is
-        when Supply_States.Supplied =>
-           (if Now = On_Cell_Silent then Lose else None),
-        when Supply_States.Silent =>
-           (if Now = Conditions and then Ins.Raw.State = Ravenchart.Fresh
-               then Recover
-            elsif Now = On_Cell_Silent then Still_Silent
-            else None))
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -46,8 +49,7 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started and then Self.Leaf = Target (Chosen, Before.Leaf))
    with Ghost;
    --  Is the region after it as declared?
@@ -62,12 +64,12 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Before : constant Supply_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
 
@@ -79,14 +81,14 @@ is
 
       procedure Enter_Silent is
       begin
-         Self.Leaf := Supply_States.Silent;
          Active := Moved (Active, Chart.Nowhere, Chart.Silent);
          Self.Data.Lost := True;
       end Enter_Silent;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen, Before);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Enter_Silent;
          when Lose =>
             Active := Moved (Active, Chart.Supplied, Chart.Nowhere);
@@ -94,7 +96,6 @@ is
          when Recover =>
             Exit_Silent;
             Active := Moved (Active, Chart.Nowhere, Chart.Supplied);
-            Self.Leaf := Supply_States.Supplied;
          when Still_Silent =>
             null;
       end case;
@@ -110,7 +111,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins);
+         Fired := Selected (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Fired);

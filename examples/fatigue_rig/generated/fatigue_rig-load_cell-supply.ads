@@ -41,8 +41,7 @@ is
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Supply_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Supply_States.Leaf) return Boolean is
      (case T is
         when Lose => Leaf = Supply_States.Supplied,
         when Recover | Still_Silent => Leaf = Supply_States.Silent);
@@ -50,7 +49,7 @@ is
    --  around it?
 
    function Enabled
-     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
@@ -61,8 +60,7 @@ is
    --  The trigger and the guard of each transition.
 
    function Target
-     (T : Firing; Leaf : Supply_States.Leaf)
-     return Supply_States.Leaf is
+     (T : Firing; Leaf : Supply_States.Leaf) return Supply_States.Leaf is
      (case T is
         when Initial_Entry | Lose => Supply_States.Silent,
         when Recover => Supply_States.Supplied,
@@ -70,10 +68,7 @@ is
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
-     (Chosen : Selection;
-      Self   : Region;
-      Now    : Occurrence;
-      Ins    : Inputs)
+     (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition

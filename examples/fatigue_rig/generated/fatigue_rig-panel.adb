@@ -36,8 +36,7 @@ is
 
    procedure On_Deadline_Miss is
    begin
-      Health_Counts.Counters.Record_Fault (Ravenchart.Health.Deadline_Miss);
-      Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Panel_Processor,
-         Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Deadline_Miss));
+      Health_Counts.Faults.Report (Ravenchart.Health.Deadline_Miss,
+         Elements.Panel_Processor);
    end On_Deadline_Miss;
 end Fatigue_Rig.Panel;

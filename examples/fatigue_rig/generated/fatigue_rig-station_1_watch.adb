@@ -115,12 +115,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Station_1_Watch_Force, 0);
          when Watch.Force_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Station_1_Watch_Force,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Station_1_Watch_Force);
       end case;
       Sound_Mailbox.Take (Sound_Item, Status);
       Watch.Sound_Port.Handle
@@ -137,12 +133,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Station_1_Watch_Sound, 0);
          when Watch.Sound_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Station_1_Watch_Sound,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Station_1_Watch_Sound);
       end case;
       Executed := Executed + Elements.Station_1_Watch_Ports_Row;
    end Run_Ports;

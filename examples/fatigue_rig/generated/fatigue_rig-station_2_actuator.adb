@@ -161,12 +161,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Station_2_Actuator_Force, 0);
          when Actuator.Force_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Station_2_Actuator_Force,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Station_2_Actuator_Force);
       end case;
       Permit_Mailbox.Take (Permit_Item, Status);
       Actuator.Permit_Port.Handle
@@ -183,12 +179,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Station_2_Actuator_Permit, 0);
          when Actuator.Permit_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Station_2_Actuator_Permit,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Station_2_Actuator_Permit);
       end case;
       Order_Mailbox.Take (Order_Item, Status);
       Actuator.Order_Port.Handle
@@ -205,12 +197,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Station_2_Actuator_Order, 0);
          when Actuator.Order_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Station_2_Actuator_Order,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Station_2_Actuator_Order);
       end case;
       Executed := Executed + Elements.Station_2_Actuator_Ports_Row;
    end Run_Ports;

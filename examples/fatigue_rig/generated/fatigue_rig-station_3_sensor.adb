@@ -10,6 +10,7 @@ with Fatigue_Rig.Station_3_Watch;
 with Fatigue_Rig.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -56,6 +57,13 @@ is
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Supply_Offers is new Ravenchart.Offers
+     (Element_Type => Load_Cell.Event,
+      Put => Supply_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Station_3_Sensor_Supply,
+      Report => Health_Counts.Faults.Report);
+
    procedure Put_Raw (Item : Fatigue_Rig.Force) is
       Status : Ravenchart.Queueing.Put_Status;
       pragma Warnings (GNATprove, Off,
@@ -68,21 +76,10 @@ is
    end Put_Raw;
 
    procedure Offer (Item : Load_Cell.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
          when Load_Cell.Cell_Silent =>
-            Supply_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Station_3_Sensor_Supply,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Supply_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Station_3_Sensor_Cell_Silent, 0);
       end case;
@@ -126,12 +123,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Station_3_Sensor_Raw, 0);
          when Load_Cell.Raw_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Station_3_Sensor_Raw,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Station_3_Sensor_Raw);
             Offer (Load_Cell.Cell_Silent);
       end case;
       Executed := Executed + Elements.Station_3_Sensor_Ports_Row;

@@ -346,64 +346,80 @@ is
    function Field_Driver_Rx_Wanted_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Wanted_J, Field_Driver_Rx_Wanted_T,
          Field_Driver_Rx_Wanted_C)) with Static;
+
    function Field_Driver_Tx_State_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Tx_State_J, Field_Driver_Tx_State_T,
          Field_Driver_Tx_State_C, Field_Driver_Rx_Wanted_Up (W)))
    with Static;
+
    function Field_Driver_Rx_Cell_1_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Cell_1_J, Field_Driver_Rx_Cell_1_T,
          Field_Driver_Rx_Cell_1_C, Field_Driver_Tx_State_Up (W)))
    with Static;
+
    function Field_Driver_Rx_Cell_2_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Cell_2_J, Field_Driver_Rx_Cell_2_T,
          Field_Driver_Rx_Cell_2_C, Field_Driver_Rx_Cell_1_Up (W)))
    with Static;
+
    function Field_Driver_Rx_Cell_3_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Cell_3_J, Field_Driver_Rx_Cell_3_T,
          Field_Driver_Rx_Cell_3_C, Field_Driver_Rx_Cell_2_Up (W)))
    with Static;
+
    function Field_Driver_Tx_Valve_1_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Tx_Valve_1_J, Field_Driver_Tx_Valve_1_T,
          Field_Driver_Tx_Valve_1_C, Field_Driver_Rx_Cell_3_Up (W)))
    with Static;
+
    function Field_Driver_Tx_Valve_2_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Tx_Valve_2_J, Field_Driver_Tx_Valve_2_T,
          Field_Driver_Tx_Valve_2_C, Field_Driver_Tx_Valve_1_Up (W)))
    with Static;
+
    function Field_Driver_Tx_Valve_3_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Tx_Valve_3_J, Field_Driver_Tx_Valve_3_T,
          Field_Driver_Tx_Valve_3_C, Field_Driver_Tx_Valve_2_Up (W)))
    with Static;
+
    function Reception_Up (W : Window) return Time is
      (Demand (W, Reception_J, Reception_T, Reception_C,
          Field_Driver_Tx_Valve_3_Up (W))) with Static;
+
    function Stations_Up (W : Window) return Time is
      (Demand (W, Stations_J, Stations_T, Stations_C,
          Demand (W, Stations_J, 10 * Stations_T, Stations_C_10,
             Reception_Up (W)))) with Static;
+
    function Field_Driver_Tx_Valve_3_Rest (W : Window) return Time is
      (Demand (W, Field_Driver_Tx_Valve_3_J, Field_Driver_Tx_Valve_3_T,
          Field_Driver_Tx_Valve_3_C)) with Static;
+
    function Field_Driver_Tx_Valve_2_Rest (W : Window) return Time is
      (Demand (W, Field_Driver_Tx_Valve_2_J, Field_Driver_Tx_Valve_2_T,
          Field_Driver_Tx_Valve_2_C, Field_Driver_Tx_Valve_3_Rest (W)))
    with Static;
+
    function Field_Driver_Tx_Valve_1_Rest (W : Window) return Time is
      (Demand (W, Field_Driver_Tx_Valve_1_J, Field_Driver_Tx_Valve_1_T,
          Field_Driver_Tx_Valve_1_C, Field_Driver_Tx_Valve_2_Rest (W)))
    with Static;
+
    function Field_Driver_Rx_Cell_3_Rest (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Cell_3_J, Field_Driver_Rx_Cell_3_T,
          Field_Driver_Rx_Cell_3_C, Field_Driver_Tx_Valve_1_Rest (W)))
    with Static;
+
    function Field_Driver_Rx_Cell_2_Rest (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Cell_2_J, Field_Driver_Rx_Cell_2_T,
          Field_Driver_Rx_Cell_2_C, Field_Driver_Rx_Cell_3_Rest (W)))
    with Static;
+
    function Field_Driver_Rx_Cell_1_Rest (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Cell_1_J, Field_Driver_Rx_Cell_1_T,
          Field_Driver_Rx_Cell_1_C, Field_Driver_Rx_Cell_2_Rest (W)))
    with Static;
+
    function Field_Driver_Tx_State_Rest (W : Window) return Time is
      (Demand (W, Field_Driver_Tx_State_J, Field_Driver_Tx_State_T,
          Field_Driver_Tx_State_C, Field_Driver_Rx_Cell_1_Rest (W)))
@@ -425,6 +441,7 @@ is
 
    function Field_Bits (Stuffed : Positive) return Time is
      (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+
    function Field_Time_Of (Stuffed : Positive) return Time is
      ((Field_Bits (Stuffed) * 10**9 + (Field_Bit_Rate - 1)) / Field_Bit_Rate)
    with Static;
@@ -780,48 +797,63 @@ is
    function Field_Wanted_Up (W : Window) return Time is
      (Demand (W, Field_Wanted_J, Field_Wanted_T, Field_Wanted_C))
    with Static;
+
    function Field_State_Up (W : Window) return Time is
      (Demand (W, Field_State_R - Field_State_C, Field_State_T,
          Field_State_C, Field_Wanted_Up (W))) with Static;
+
    function Field_Cell_1_Up (W : Window) return Time is
      (Demand (W, Field_Cell_1_J, Field_Cell_1_T, Field_Cell_1_C,
          Field_State_Up (W))) with Static;
+
    function Field_Cell_2_Up (W : Window) return Time is
      (Demand (W, Field_Cell_2_J, Field_Cell_2_T, Field_Cell_2_C,
          Field_Cell_1_Up (W))) with Static;
+
    function Field_Cell_3_Up (W : Window) return Time is
      (Demand (W, Field_Cell_3_J, Field_Cell_3_T, Field_Cell_3_C,
          Field_Cell_2_Up (W))) with Static;
+
    function Field_Wanted_Up_Board (W : Window) return Time is
      (Demand (W, Field_Wanted_J, Field_Wanted_T, Field_Wanted_C))
    with Static;
+
    function Field_Cell_1_Up_Board (W : Window) return Time is
      (Demand (W, Field_Cell_1_J, Field_Cell_1_T, Field_Cell_1_C,
          Field_Wanted_Up_Board (W))) with Static;
+
    function Field_Cell_2_Up_Board (W : Window) return Time is
      (Demand (W, Field_Cell_2_J, Field_Cell_2_T, Field_Cell_2_C,
          Field_Cell_1_Up_Board (W))) with Static;
+
    function Field_Cell_3_Up_Board (W : Window) return Time is
      (Demand (W, Field_Cell_3_J, Field_Cell_3_T, Field_Cell_3_C,
          Field_Cell_2_Up_Board (W))) with Static;
+
    function Field_State_Up_Board (W : Window) return Time is
      (Demand (W, Field_State_J, Field_State_T, Field_State_C,
          Field_Cell_3_Up_Board (W))) with Static;
+
    function Field_Valve_1_Up_Board (W : Window) return Time is
      (Demand (W, Field_Valve_1_J, Field_Valve_1_T, Field_Valve_1_C,
          Field_State_Up_Board (W))) with Static;
+
    function Field_Valve_2_Up_Board (W : Window) return Time is
      (Demand (W, Field_Valve_2_J, Field_Valve_2_T, Field_Valve_2_C,
          Field_Valve_1_Up_Board (W))) with Static;
+
    function Field_Valve_3_Up_Board (W : Window) return Time is
      (Demand (W, Field_Valve_3_J, Field_Valve_3_T, Field_Valve_3_C,
          Field_Valve_2_Up_Board (W))) with Static;
+
    function Field_Valve_3_Rest_Board (W : Window) return Time is
      (Demand (W, Field_Valve_3_J, Field_Valve_3_T, Field_Valve_3_C))
    with Static;
+
    function Field_Valve_2_Rest_Board (W : Window) return Time is
      (Demand (W, Field_Valve_2_J, Field_Valve_2_T, Field_Valve_2_C,
          Field_Valve_3_Rest_Board (W))) with Static;
+
    function Field_Valve_1_Rest_Board (W : Window) return Time is
      (Demand (W, Field_Valve_1_J, Field_Valve_1_T, Field_Valve_1_C,
          Field_Valve_2_Rest_Board (W))) with Static;
@@ -1010,18 +1042,23 @@ is
    function Field_Wanted_Turn_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Wanted_R, Field_Wanted_T, Reception_T))
    with Static;
+
    function Field_Cell_1_Turn_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Cell_1_R, Field_Cell_1_T, Reception_T,
          Field_Wanted_Turn_Up (W))) with Static;
+
    function Field_Cell_2_Turn_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Cell_2_R, Field_Cell_2_T, Reception_T,
          Field_Cell_1_Turn_Up (W))) with Static;
+
    function Field_Cell_3_Turn_Up (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Cell_3_R, Field_Cell_3_T, Reception_T,
          Field_Cell_2_Turn_Up (W))) with Static;
+
    function Field_Cell_3_Turn_Rest (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Cell_3_R, Field_Cell_3_T, Reception_T))
    with Static;
+
    function Field_Cell_2_Turn_Rest (W : Window) return Time is
      (Demand (W, Field_Driver_Rx_Cell_2_R, Field_Cell_2_T, Reception_T,
          Field_Cell_3_Turn_Rest (W))) with Static;

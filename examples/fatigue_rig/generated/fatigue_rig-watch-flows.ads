@@ -11,5 +11,5 @@ is
       Permit      : out Boolean;
       Send_Permit : out Boolean)
    with Global => null;
-   --  [Watch.tell] budget 20_000 ns, every 5_000_000 ns
+   --  [Watch.tell] WCET 20_000 ns, every 5_000_000 ns
 end Fatigue_Rig.Watch.Flows;

@@ -5,22 +5,21 @@
 package body Fatigue_Rig.Watch.Guard
 with SPARK_Mode
 is
-   function Select_Transition
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (case Self.Leaf is
-        when Guard_States.Waiting =>
-           (if Now = Conditions and then Ins.Sound.Value then Supplied
-            else None),
-        when Guard_States.Watching =>
-           (if Now = Conditions and then not Ins.Sound.Value then Cell_Lost
-            elsif Now = Conditions
-               and then (Ins.Force.Value > Ins.Limit
-                  or else Ins.Force.Value < (-Ins.Limit))
-               then Overload
-            else None),
-        when Guard_States.Tripped => None)
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -43,8 +42,7 @@ is
    end Poll;
 
    function Is_Ready
-     (Self : Region; Ins : Inputs; Chosen : Firing)
-     return Boolean is
+     (Self : Region; Ins : Inputs; Chosen : Firing) return Boolean is
      (if Chosen = Initial_Entry
          then not Self.Started and then Self.Data = Initial_Data
       else Self.Started
@@ -73,26 +71,23 @@ is
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
 
       procedure Enter_Tripped is
       begin
-         Self.Leaf := Guard_States.Tripped;
          Active := Moved (Active, Chart.Nowhere, Chart.Tripped);
          Self.Data.Tripped := True;
       end Enter_Tripped;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Active := Moved (Active, Chart.Nowhere, Chart.Waiting);
-            Self.Leaf := Guard_States.Waiting;
          when Supplied =>
             Active := Moved (Active, Chart.Waiting, Chart.Watching);
-            Self.Leaf := Guard_States.Watching;
          when Cell_Lost | Overload =>
             Active := Moved (Active, Chart.Watching, Chart.Nowhere);
             Enter_Tripped;
@@ -109,7 +104,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins);
+         Fired := Selected (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Ins, Fired);

@@ -42,8 +42,7 @@ is
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Guard_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Guard_States.Leaf) return Boolean is
      (case T is
         when Supplied => Leaf = Guard_States.Waiting,
         when Cell_Lost | Overload => Leaf = Guard_States.Watching);
@@ -51,7 +50,7 @@ is
    --  around it?
 
    function Enabled
-     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
@@ -71,10 +70,7 @@ is
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
-     (Chosen : Selection;
-      Self   : Region;
-      Now    : Occurrence;
-      Ins    : Inputs)
+     (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
@@ -87,14 +83,12 @@ is
    Initial_Data : constant Variables := (others => <>);
 
    function Never_Forgotten
-     (Leaf : Guard_States.Leaf; Data : Variables)
-     return Boolean is
+     (Leaf : Guard_States.Leaf; Data : Variables) return Boolean is
      (not (Leaf = Guard_States.Tripped and then not Data.Tripped));
    --  [Watch.forgotten] the condition of `never` is false.
 
    function Is_Safe
-     (Leaf : Guard_States.Leaf; Data : Variables)
-     return Boolean is
+     (Leaf : Guard_States.Leaf; Data : Variables) return Boolean is
      (Never_Forgotten (Leaf, Data));
    --  Each transition and each segment keeps it.
 

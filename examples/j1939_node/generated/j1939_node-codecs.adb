@@ -5,12 +5,8 @@
 package body J1939_Node.Codecs
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Bits_Of_Type_Name_Half
-     (Item : J1939_Node.Name_Half)
-     return Interfaces.Unsigned_32
+     (Item : J1939_Node.Name_Half) return Interfaces.Unsigned_32
    with
      Post => Value_Of_Type_Name_Half (Bits_Of_Type_Name_Half'Result) = Item
    is
@@ -24,8 +20,7 @@ is
    end Bits_Of_Type_Name_Half;
 
    function Bits_Of_Type_Pgn
-     (Item : J1939_Node.Pgn)
-     return Interfaces.Unsigned_32
+     (Item : J1939_Node.Pgn) return Interfaces.Unsigned_32
    with
      Post =>
        Bits_Of_Type_Pgn'Result <= 262_143
@@ -41,8 +36,7 @@ is
    end Bits_Of_Type_Pgn;
 
    function Bits_Of_Type_Answer_Kind
-     (Item : J1939_Node.Answer_Kind)
-     return Interfaces.Unsigned_8 is
+     (Item : J1939_Node.Answer_Kind) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (J1939_Node.Answer_Kind'Pos (Item)))
    with
      Post =>
@@ -51,8 +45,7 @@ is
          = Item;
 
    function Bits_Of_Type_Address
-     (Item : J1939_Node.Address)
-     return Interfaces.Unsigned_8
+     (Item : J1939_Node.Address) return Interfaces.Unsigned_8
    with Post => Value_Of_Type_Address (Bits_Of_Type_Address'Result) = Item
    is
       Whole : constant Ravenchart.Number range 0 .. 255 :=
@@ -64,8 +57,7 @@ is
    end Bits_Of_Type_Address;
 
    function Bits_Of_Type_Coolant_Temperature
-     (Item : J1939_Node.Coolant_Temperature)
-     return Interfaces.Unsigned_8
+     (Item : J1939_Node.Coolant_Temperature) return Interfaces.Unsigned_8
    with
      Post =>
        Bits_Of_Type_Coolant_Temperature'Result <= 250
@@ -82,8 +74,7 @@ is
    end Bits_Of_Type_Coolant_Temperature;
 
    function Bits_Of_Type_Fan_Speed
-     (Item : J1939_Node.Fan_Speed)
-     return Interfaces.Unsigned_8
+     (Item : J1939_Node.Fan_Speed) return Interfaces.Unsigned_8
    with
      Post =>
        Bits_Of_Type_Fan_Speed'Result <= 250
@@ -99,8 +90,7 @@ is
    end Bits_Of_Type_Fan_Speed;
 
    function Bits_Of_Type_Fan_Rpm
-     (Item : J1939_Node.Fan_Rpm)
-     return Interfaces.Unsigned_16
+     (Item : J1939_Node.Fan_Rpm) return Interfaces.Unsigned_16
    with
      Post =>
        Bits_Of_Type_Fan_Rpm'Result <= 64_255
@@ -182,8 +172,7 @@ is
 
       function Word_Of
         (Local_Low  : Interfaces.Unsigned_32;
-         Local_High : Interfaces.Unsigned_32)
-        return Interfaces.Unsigned_64 is
+         Local_High : Interfaces.Unsigned_32) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Low)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_High), 32))
       with
@@ -269,16 +258,14 @@ is
       end Lemma_Value_Pgn;
 
       function Word_Of
-        (Local_Pgn : Interfaces.Unsigned_32)
-        return Interfaces.Unsigned_64 is
+        (Local_Pgn : Interfaces.Unsigned_32) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Pgn))
       with
         Pre => Local_Pgn <= 16#3FFFF#,
         Post => Raw_Of_Pgn (Word_Of'Result) = Local_Pgn;
 
       function Pack
-        (Item : J1939_Node.Pgn_Octets)
-        return Interfaces.Unsigned_64 is
+        (Item : J1939_Node.Pgn_Octets) return Interfaces.Unsigned_64 is
          Local_Pgn : constant Interfaces.Unsigned_32 :=
            Bits_Of_Type_Pgn (Item.Pgn);
          Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Pgn);
@@ -315,11 +302,10 @@ is
 
    package body Message_Acknowledgement is
       function Bits_Of_Signal_Group_Function
-        (Item : J1939_Node.Unused_8)
-        return Interfaces.Unsigned_8
+        (Item : J1939_Node.Unused_8) return Interfaces.Unsigned_8
       with
         Post =>
-          Bits_Of_Signal_Group_Function'Result >= 255
+          Bits_Of_Signal_Group_Function'Result = 255
           and then Value_Of_Signal_Group_Function
               (Bits_Of_Signal_Group_Function'Result)
             = Item
@@ -334,11 +320,10 @@ is
       end Bits_Of_Signal_Group_Function;
 
       function Bits_Of_Signal_Spare
-        (Item : J1939_Node.Unused_16)
-        return Interfaces.Unsigned_16
+        (Item : J1939_Node.Unused_16) return Interfaces.Unsigned_16
       with
         Post =>
-          Bits_Of_Signal_Spare'Result >= 65_535
+          Bits_Of_Signal_Spare'Result = 65_535
           and then Value_Of_Signal_Spare (Bits_Of_Signal_Spare'Result)
             = Item
       is
@@ -401,11 +386,11 @@ is
       with
         Ghost,
         Post =>
-          (Raw >= 255)
+          (Raw = 255)
           = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Group_Function)
-             in 255 .. 255)
-          and then (if Raw >= 255
+             = 255)
+          and then (if Raw = 255
                 then Ravenchart.Can.Layouts.Counted
                      (Interfaces.Unsigned_64 (Raw), Signal_Group_Function)
                    = Ravenchart.Number
@@ -436,11 +421,11 @@ is
       with
         Ghost,
         Post =>
-          (Raw >= 65_535)
+          (Raw = 65_535)
           = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Spare)
-             in 65_535 .. 65_535)
-          and then (if Raw >= 65_535
+             = 65_535)
+          and then (if Raw = 65_535
                 then Ravenchart.Can.Layouts.Counted
                      (Interfaces.Unsigned_64 (Raw), Signal_Spare)
                    = Ravenchart.Number (Value_Of_Signal_Spare (Raw)))
@@ -547,8 +532,7 @@ is
           and then Raw_Of_Pgn (Word_Of'Result) = Local_Pgn;
 
       function Pack
-        (Item : J1939_Node.Acknowledgement)
-        return Interfaces.Unsigned_64 is
+        (Item : J1939_Node.Acknowledgement) return Interfaces.Unsigned_64 is
          Local_Kind : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Answer_Kind (Item.Kind);
          Local_Group_Function : constant Interfaces.Unsigned_8 :=
@@ -601,8 +585,8 @@ is
          Lemma_Value_Pgn (Local_Pgn);
          Valid :=
            Local_Kind <= 3
-           and then Local_Group_Function >= 255
-           and then Local_Spare >= 65_535
+           and then Local_Group_Function = 255
+           and then Local_Spare = 65_535
            and then Local_Pgn <= 262_143;
          if Valid then
             Item :=
@@ -664,8 +648,7 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
@@ -709,8 +692,7 @@ is
 
    package body Message_Fan_Drive_State is
       function Bits_Of_Signal_State
-        (Item : J1939_Node.Drive_State)
-        return Interfaces.Unsigned_8 is
+        (Item : J1939_Node.Drive_State) return Interfaces.Unsigned_8 is
         (case Item is
            when J1939_Node.Fan_Off => 0,
            when J1939_Node.Coolant_Too_Hot => 4,
@@ -722,11 +704,10 @@ is
             = Item;
 
       function Bits_Of_Signal_Spare_4
-        (Item : J1939_Node.Unused_4)
-        return Interfaces.Unsigned_8
+        (Item : J1939_Node.Unused_4) return Interfaces.Unsigned_8
       with
         Post =>
-          Bits_Of_Signal_Spare_4'Result in 15 .. 15
+          Bits_Of_Signal_Spare_4'Result = 15
           and then Value_Of_Signal_Spare_4 (Bits_Of_Signal_Spare_4'Result)
             = Item
       is
@@ -740,11 +721,10 @@ is
       end Bits_Of_Signal_Spare_4;
 
       function Bits_Of_Signal_Spare_32
-        (Item : J1939_Node.Unused_32)
-        return Interfaces.Unsigned_32
+        (Item : J1939_Node.Unused_32) return Interfaces.Unsigned_32
       with
         Post =>
-          Bits_Of_Signal_Spare_32'Result >= 4_294_967_295
+          Bits_Of_Signal_Spare_32'Result = 4_294_967_295
           and then Value_Of_Signal_Spare_32 (Bits_Of_Signal_Spare_32'Result)
             = Item
       is
@@ -842,11 +822,11 @@ is
         Ghost,
         Pre => Raw <= 16#F#,
         Post =>
-          (Raw in 15 .. 15)
+          (Raw = 15)
           = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Spare_4)
-             in 15 .. 15)
-          and then (if Raw in 15 .. 15
+             = 15)
+          and then (if Raw = 15
                 then Ravenchart.Can.Layouts.Counted
                      (Interfaces.Unsigned_64 (Raw), Signal_Spare_4)
                    = Ravenchart.Number (Value_Of_Signal_Spare_4 (Raw)))
@@ -910,11 +890,11 @@ is
       with
         Ghost,
         Post =>
-          (Raw >= 4_294_967_295)
+          (Raw = 4_294_967_295)
           = (Ravenchart.Can.Layouts.Counted (Interfaces.Unsigned_64 (Raw),
                 Signal_Spare_32)
-             in 4_294_967_295 .. 4_294_967_295)
-          and then (if Raw >= 4_294_967_295
+             = 4_294_967_295)
+          and then (if Raw = 4_294_967_295
                 then Ravenchart.Can.Layouts.Counted
                      (Interfaces.Unsigned_64 (Raw), Signal_Spare_32)
                    = Ravenchart.Number (Value_Of_Signal_Spare_32 (Raw)))
@@ -953,8 +933,7 @@ is
           and then Raw_Of_Spare_32 (Word_Of'Result) = Local_Spare_32;
 
       function Pack
-        (Item : J1939_Node.Fan_Drive)
-        return Interfaces.Unsigned_64 is
+        (Item : J1939_Node.Fan_Drive) return Interfaces.Unsigned_64 is
          Local_Speed : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Fan_Speed (Item.Speed);
          Local_State : constant Interfaces.Unsigned_8 :=
@@ -1009,9 +988,9 @@ is
          Valid :=
            Local_Speed <= 250
            and then Local_State in 0 | 4 | 7
-           and then Local_Spare_4 in 15 .. 15
+           and then Local_Spare_4 = 15
            and then Local_Rpm <= 64_255
-           and then Local_Spare_32 >= 4_294_967_295;
+           and then Local_Spare_32 = 4_294_967_295;
          if Valid then
             Item :=
               (Speed => Value_Of_Type_Fan_Speed (Local_Speed),

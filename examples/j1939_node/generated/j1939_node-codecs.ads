@@ -9,9 +9,6 @@ with Ravenchart.Can.Layouts;
 package J1939_Node.Codecs
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Interfaces.Unsigned_16;
    use type Interfaces.Unsigned_32;
    use type Interfaces.Unsigned_64;
@@ -19,42 +16,35 @@ is
    use type Ravenchart.Number;
 
    function Value_Of_Type_Name_Half
-     (Raw : Interfaces.Unsigned_32)
-     return J1939_Node.Name_Half is
+     (Raw : Interfaces.Unsigned_32) return J1939_Node.Name_Half is
      (J1939_Node.Name_Half (Ravenchart.Number (Raw)));
 
    function Value_Of_Type_Pgn
-     (Raw : Interfaces.Unsigned_32)
-     return J1939_Node.Pgn is
+     (Raw : Interfaces.Unsigned_32) return J1939_Node.Pgn is
      (J1939_Node.Pgn (Ravenchart.Number (Raw)))
    with Pre => Raw <= 262_143;
 
    function Value_Of_Type_Answer_Kind
-     (Raw : Interfaces.Unsigned_8)
-     return J1939_Node.Answer_Kind is
+     (Raw : Interfaces.Unsigned_8) return J1939_Node.Answer_Kind is
      (J1939_Node.Answer_Kind'Val (Raw))
    with Pre => Raw <= 3;
 
    function Value_Of_Type_Address
-     (Raw : Interfaces.Unsigned_8)
-     return J1939_Node.Address is
+     (Raw : Interfaces.Unsigned_8) return J1939_Node.Address is
      (J1939_Node.Address (Ravenchart.Number (Raw)));
 
    function Value_Of_Type_Coolant_Temperature
-     (Raw : Interfaces.Unsigned_8)
-     return J1939_Node.Coolant_Temperature is
+     (Raw : Interfaces.Unsigned_8) return J1939_Node.Coolant_Temperature is
      (J1939_Node.Coolant_Temperature (Ravenchart.Number (Raw) - 40))
    with Pre => Raw <= 250;
 
    function Value_Of_Type_Fan_Speed
-     (Raw : Interfaces.Unsigned_8)
-     return J1939_Node.Fan_Speed is
+     (Raw : Interfaces.Unsigned_8) return J1939_Node.Fan_Speed is
      (J1939_Node.Fan_Speed (Ravenchart.Number (Raw)))
    with Pre => Raw <= 250;
 
    function Value_Of_Type_Fan_Rpm
-     (Raw : Interfaces.Unsigned_16)
-     return J1939_Node.Fan_Rpm is
+     (Raw : Interfaces.Unsigned_16) return J1939_Node.Fan_Rpm is
      (J1939_Node.Fan_Rpm (Ravenchart.Number (Raw)))
    with Pre => Raw <= 64_255;
 
@@ -76,19 +66,16 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Low)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_High));
 
       function Raw_Of_Low
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32 (Word and 16#FFFFFFFF#));
 
       function Raw_Of_High
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 32) and 16#FFFFFFFF#));
 
@@ -138,18 +125,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Pgn));
 
       function Raw_Of_Pgn
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32 (Word and 16#3FFFF#));
 
       function Pack
-        (Item : J1939_Node.Pgn_Octets)
-        return Interfaces.Unsigned_64
+        (Item : J1939_Node.Pgn_Octets) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Pgn)
@@ -220,8 +204,7 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Kind)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Group_Function)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Spare)
@@ -229,48 +212,40 @@ is
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Pgn));
 
       function Raw_Of_Kind
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#FF#));
 
       function Raw_Of_Group_Function
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 8) and 16#FF#));
 
       function Raw_Of_Spare
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_16 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_16 is
         (Interfaces.Unsigned_16
            (Interfaces.Shift_Right (Word, 16) and 16#FFFF#));
 
       function Raw_Of_Addressee
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8
            (Interfaces.Shift_Right (Word, 32) and 16#FF#));
 
       function Raw_Of_Pgn
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 40) and 16#FFFFFF#));
 
       function Value_Of_Signal_Group_Function
-        (Raw : Interfaces.Unsigned_8)
-        return J1939_Node.Unused_8 is
+        (Raw : Interfaces.Unsigned_8) return J1939_Node.Unused_8 is
         (J1939_Node.Unused_8 (Ravenchart.Number (Raw)))
-      with Pre => Raw >= 255;
+      with Pre => Raw = 255;
 
       function Value_Of_Signal_Spare
-        (Raw : Interfaces.Unsigned_16)
-        return J1939_Node.Unused_16 is
+        (Raw : Interfaces.Unsigned_16) return J1939_Node.Unused_16 is
         (J1939_Node.Unused_16 (Ravenchart.Number (Raw)))
-      with Pre => Raw >= 65_535;
+      with Pre => Raw = 65_535;
 
       function Pack
-        (Item : J1939_Node.Acknowledgement)
-        return Interfaces.Unsigned_64
+        (Item : J1939_Node.Acknowledgement) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Kind)
@@ -300,9 +275,9 @@ is
           = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Kind) in 0 .. 3
              and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Group_Function)
-               in 255 .. 255
+               = 255
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Spare)
-               in 65_535 .. 65_535
+               = 65_535
              and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Addressee)
                in 0 .. 255
@@ -341,13 +316,11 @@ is
          Offset => (-40));
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#FF#));
 
       function Pack
@@ -398,8 +371,7 @@ is
          Offset => 0);
 
       function Code_Of_State
-        (Item : J1939_Node.Drive_State)
-        return Ravenchart.Number is
+        (Item : J1939_Node.Drive_State) return Ravenchart.Number is
         (case Item is
            when J1939_Node.Fan_Off => 0,
            when J1939_Node.Coolant_Too_Hot => 4,
@@ -430,8 +402,7 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Speed)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_State)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Spare_4)
@@ -439,55 +410,46 @@ is
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Spare_32));
 
       function Raw_Of_Speed
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#FF#));
 
       function Raw_Of_State
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 8) and 16#F#));
 
       function Raw_Of_Spare_4
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 12) and 16#F#));
 
       function Raw_Of_Rpm
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_16 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_16 is
         (Interfaces.Unsigned_16
            (Interfaces.Shift_Right (Word, 16) and 16#FFFF#));
 
       function Raw_Of_Spare_32
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 32) and 16#FFFFFFFF#));
 
       function Value_Of_Signal_State
-        (Raw : Interfaces.Unsigned_8)
-        return J1939_Node.Drive_State is
+        (Raw : Interfaces.Unsigned_8) return J1939_Node.Drive_State is
         (if Raw = 0 then J1939_Node.Fan_Off
          elsif Raw = 4 then J1939_Node.Coolant_Too_Hot
          else J1939_Node.Default_Operation)
       with Pre => Raw in 0 | 4 | 7;
 
       function Value_Of_Signal_Spare_4
-        (Raw : Interfaces.Unsigned_8)
-        return J1939_Node.Unused_4 is
+        (Raw : Interfaces.Unsigned_8) return J1939_Node.Unused_4 is
         (J1939_Node.Unused_4 (Ravenchart.Number (Raw)))
-      with Pre => Raw in 15 .. 15;
+      with Pre => Raw = 15;
 
       function Value_Of_Signal_Spare_32
-        (Raw : Interfaces.Unsigned_32)
-        return J1939_Node.Unused_32 is
+        (Raw : Interfaces.Unsigned_32) return J1939_Node.Unused_32 is
         (J1939_Node.Unused_32 (Ravenchart.Number (Raw)))
-      with Pre => Raw >= 4_294_967_295;
+      with Pre => Raw = 4_294_967_295;
 
       function Pack
-        (Item : J1939_Node.Fan_Drive)
-        return Interfaces.Unsigned_64
+        (Item : J1939_Node.Fan_Drive) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Speed)
@@ -520,12 +482,12 @@ is
                in 0 | 4 | 7
              and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Spare_4)
-               in 15 .. 15
+               = 15
              and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Rpm)
                in 0 .. 64_255
              and then Ravenchart.Can.Layouts.Number_In (Word,
                   Signal_Spare_32)
-               in 4_294_967_295 .. 4_294_967_295)
+               = 4_294_967_295)
           and then (if Valid
                 then Ravenchart.Can.Layouts.Number_In (Word, Signal_Speed)
                    = Ravenchart.Number (Item.Speed)

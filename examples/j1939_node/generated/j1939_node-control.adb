@@ -12,9 +12,6 @@ with Ravenchart.Traces;
 package body J1939_Node.Control
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
@@ -35,9 +32,7 @@ is
 
    procedure On_Deadline_Miss is
    begin
-      Health_Counts.Counters.Record_Fault (Ravenchart.Health.Deadline_Miss);
-      Trace.Buffer.Note (Ravenchart.Traces.Fault,
-         Elements.Control_Processor,
-         Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Deadline_Miss));
+      Health_Counts.Faults.Report (Ravenchart.Health.Deadline_Miss,
+         Elements.Control_Processor);
    end On_Deadline_Miss;
 end J1939_Node.Control;

@@ -11,6 +11,7 @@ with J1939_Node.Line;
 with J1939_Node.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -19,9 +20,6 @@ with System;
 package body J1939_Node.Fan
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [fan.rival]
    package Rival_Mailbox is new Ravenchart.Queues
      (Element_Type => J1939_Node.Name,
@@ -29,6 +27,13 @@ is
       Capacity => 4,
       Ceiling => System.Default_Priority + 3,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Rival_Offers is new Ravenchart.Offers
+     (Element_Type => J1939_Node.Name,
+      Put => Rival_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Fan_Rival,
+      Report => Health_Counts.Faults.Report);
 
    Rival_Port : Fan_Controller.Rival_View;
 
@@ -40,6 +45,13 @@ is
       Ceiling => System.Default_Priority + 3,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Request_To_All_Offers is new Ravenchart.Offers
+     (Element_Type => J1939_Node.Pgn_Octets,
+      Put => Request_To_All_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Fan_Request_To_All,
+      Report => Health_Counts.Faults.Report);
+
    Request_To_All_Port : Fan_Controller.Request_To_All_View;
 
    --  [fan.request_to_us]
@@ -50,6 +62,13 @@ is
       Ceiling => System.Default_Priority + 3,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Request_To_Us_Offers is new Ravenchart.Offers
+     (Element_Type => J1939_Node.Pgn_Octets,
+      Put => Request_To_Us_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Fan_Request_To_Us,
+      Report => Health_Counts.Faults.Report);
+
    Request_To_Us_Port : Fan_Controller.Request_To_Us_View;
 
    --  [fan.request_by_null]
@@ -59,6 +78,13 @@ is
       Capacity => 4,
       Ceiling => System.Default_Priority + 3,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Request_By_Null_Offers is new Ravenchart.Offers
+     (Element_Type => J1939_Node.Pgn_Octets,
+      Put => Request_By_Null_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Fan_Request_By_Null,
+      Report => Health_Counts.Faults.Report);
 
    Request_By_Null_Port : Fan_Controller.Request_By_Null_View;
 
@@ -109,6 +135,13 @@ is
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Address_Offers is new Ravenchart.Offers
+     (Element_Type => Fan_Controller.Event,
+      Put => Address_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Fan_Address,
+      Report => Health_Counts.Faults.Report);
+
    --  [fan.Answers]
    Answers_Region : Fan_Controller.Answers.Region;
 
@@ -124,74 +157,38 @@ is
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
-   procedure Put_Rival (Item : J1939_Node.Name) is
-      Status : Ravenchart.Queueing.Put_Status;
+   package Answers_Offers is new Ravenchart.Offers
+     (Element_Type => Fan_Controller.Event,
+      Put => Answers_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Fan_Answers,
+      Report => Health_Counts.Faults.Report);
 
-      use type Ravenchart.Queueing.Put_Status;
+   procedure Put_Rival (Item : J1939_Node.Name) is
    begin
-      Rival_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Fan_Rival, 0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Fan_Rival,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Rival_Offers.Offer (Item);
    end Put_Rival;
 
    procedure Put_Request_To_All (Item : J1939_Node.Pgn_Octets) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
-      Request_To_All_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Fan_Request_To_All, 0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Fan_Request_To_All,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Request_To_All_Offers.Offer (Item);
    end Put_Request_To_All;
 
    procedure Put_Request_To_Us (Item : J1939_Node.Pgn_Octets) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
-      Request_To_Us_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Fan_Request_To_Us, 0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Fan_Request_To_Us,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Request_To_Us_Offers.Offer (Item);
    end Put_Request_To_Us;
 
    procedure Put_Request_By_Null (Item : J1939_Node.Pgn_Octets) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
-      Request_By_Null_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Fan_Request_By_Null, 0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Fan_Request_By_Null,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Request_By_Null_Offers.Offer (Item);
    end Put_Request_By_Null;
 
    procedure Put_Engine (Item : J1939_Node.Coolant_Temperature) is
@@ -205,75 +202,24 @@ is
    end Put_Engine;
 
    procedure Offer (Item : Fan_Controller.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item.Name is
          when Fan_Controller.Claimed_Too =>
-            Address_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Fan_Address,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Address_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Fan_Claimed_Too, 0);
          when Fan_Controller.Asked_All =>
-            Address_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Fan_Address,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
-            Answers_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Fan_Answers,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Address_Offers.Offer (Item);
+            Answers_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Fan_Asked_All, 0);
          when Fan_Controller.Asked_Us =>
-            Address_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Fan_Address,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
-            Answers_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Fan_Answers,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Address_Offers.Offer (Item);
+            Answers_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Fan_Asked_Us, 0);
          when Fan_Controller.Asked_By_Null =>
-            Address_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Fan_Address,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Address_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Fan_Asked_By_Null, 0);
       end case;
@@ -339,11 +285,8 @@ is
                 Value_Name => Rival_Port.Value,
                 others => <>));
          when Fan_Controller.Rival_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Fan_Rival,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Fan_Rival);
       end case;
       Request_To_All_Mailbox.Take (Request_To_All_Item, Status);
       Fan_Controller.Request_To_All_Port.Handle
@@ -363,12 +306,8 @@ is
                 Value_Pgn_Octets => Request_To_All_Port.Value,
                 others => <>));
          when Fan_Controller.Request_To_All_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Fan_Request_To_All,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Fan_Request_To_All);
       end case;
       Request_To_Us_Mailbox.Take (Request_To_Us_Item, Status);
       Fan_Controller.Request_To_Us_Port.Handle
@@ -388,12 +327,8 @@ is
                 Value_Pgn_Octets => Request_To_Us_Port.Value,
                 others => <>));
          when Fan_Controller.Request_To_Us_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Fan_Request_To_Us,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Fan_Request_To_Us);
       end case;
       Request_By_Null_Mailbox.Take (Request_By_Null_Item, Status);
       Fan_Controller.Request_By_Null_Port.Handle
@@ -413,12 +348,8 @@ is
                 Value_Pgn_Octets => Request_By_Null_Port.Value,
                 others => <>));
          when Fan_Controller.Request_By_Null_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Fan_Request_By_Null,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Fan_Request_By_Null);
       end case;
       Engine_Mailbox.Take (Engine_Item, Status);
       Fan_Controller.Engine_Port.Handle
@@ -435,11 +366,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Fan_Engine, 0);
          when Fan_Controller.Engine_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Fan_Engine,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Fan_Engine);
       end case;
       Executed := Executed + Elements.Fan_Ports_Row;
    end Run_Ports;

@@ -8,9 +8,6 @@ with J1939_Node.Elements;
 package J1939_Node.Fan
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Element_Id;
 
    procedure Put_Rival (Item : J1939_Node.Name);

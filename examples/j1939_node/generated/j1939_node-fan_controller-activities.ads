@@ -9,5 +9,5 @@ is
      (Engine  : Fan_Controller.Engine_View;
       Setting : in out J1939_Node.Fan_Setting)
    with Global => null;
-   --  [Fan_Controller.regulate] budget 100_000 ns, every 100_000_000 ns
+   --  [Fan_Controller.regulate] WCET 100_000 ns, every 100_000_000 ns
 end J1939_Node.Fan_Controller.Activities;

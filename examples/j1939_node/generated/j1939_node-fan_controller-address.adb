@@ -5,60 +5,29 @@
 package body J1939_Node.Fan_Controller.Address
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
-   function Around_Contending
-     (Now : Occurrence; Ins : Inputs; Item : Event)
-     return Selection is
-     (if Now = On_Claimed_Too
-         and then (Item.Value_Name.High < Ins.Name_High
-            or else (Item.Value_Name.High = Ins.Name_High
-               and then Item.Value_Name.Low < Ins.Name_Low))
-         then Yield
-      elsif Now = On_Claimed_Too
-         and then (Item.Value_Name.High > Ins.Name_High
-            or else (Item.Value_Name.High = Ins.Name_High
-               and then Item.Value_Name.Low > Ins.Name_Low))
-         then Defend
-      elsif Now = On_Asked_All and then Item.Value_Pgn_Octets.Pgn = 60_928
-         then Tell_All
-      elsif Now = On_Asked_Us and then Item.Value_Pgn_Octets.Pgn = 60_928
-         then Tell_Us
-      elsif Now = On_Asked_By_Null
-         and then Item.Value_Pgn_Octets.Pgn = 60_928
-         then Tell_Null
-      else None);
-
-   function Select_Transition
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
-     (case Self.Leaf is
-        when Address_States.Before =>
-           (if Now = Expiry_Of_Claim then Claim else None),
-        when Address_States.Claiming =>
-           (if Now = Expiry_Of_Granted then Granted
-            else Around_Contending (Now, Ins, Item)),
-        when Address_States.Claimed => Around_Contending (Now, Ins, Item),
-        when Address_States.Yielding =>
-           (if Now = Expiry_Of_Give_Up then Give_Up else None),
-        when Address_States.Without_Address =>
-           (if Now = On_Asked_All
-               and then Item.Value_Pgn_Octets.Pgn = 60_928
-               then Tell_Lost
-            elsif Now = On_Asked_By_Null
-               and then Item.Value_Pgn_Octets.Pgn = 60_928
-               then Tell_Lost_Null
-            else None))
-   with
-     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
+     return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins, Item)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins, Item)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
    is
       type Node is
         (Nowhere, Before, Claiming, Claimed, Yielding, Without_Address,
-         Contending, Disorder);
+         Disorder);
 
       function Innermost (Self : Region) return Node is
         (if Self.Started
@@ -99,22 +68,14 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
-     (Self.Timers (1)
-      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-           Before.Timers (1))
-      and then Self.Timers (2)
-        = Timer_After (2, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-             Before.Timers (2))
-      and then Self.Timers (3)
-        = Timer_After (3, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-             Before.Timers (3))) with Ghost;
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
+     (Self.Timers
+      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Leaf,
+           Self.Leaf)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started
       and then Self.Leaf = Target (Chosen, Before.Leaf)
       and then Is_Lasting (Before, Self, Chosen)) with Ghost;
@@ -134,101 +95,49 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Active_At_First : constant Chart.Node := Active with Ghost;
+      Before : constant Address_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
-        (if Self.Started and then Active_Node = From_Node then To_Node
+         To_Node     : Chart.Node;
+         In_Order    : Boolean := True) return Chart.Node is
+        (if Self.Started and then Active_Node = From_Node and then In_Order
+            then To_Node
          else Chart.Disorder) with Ghost;
-
-      procedure Exit_Before is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Moved (Active, Chart.Before, Chart.Nowhere);
-      end Exit_Before;
-
-      procedure Exit_Claiming is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active := Moved (Active, Chart.Claiming, Chart.Contending);
-      end Exit_Claiming;
-
-      procedure Exit_Yielding is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (3));
-         Active := Moved (Active, Chart.Yielding, Chart.Nowhere);
-      end Exit_Yielding;
-
-      procedure Leave_Contending is
-      begin
-         case Address_States.Contending'(Self.Leaf) is
-            when Address_States.Claiming =>
-               Exit_Claiming;
-            when Address_States.Claimed =>
-               Active := Moved (Active, Chart.Claimed, Chart.Contending);
-         end case;
-      end Leave_Contending;
-
-      procedure Enter_Before is
-      begin
-         Self.Leaf := Address_States.Before;
-         Ravenchart.Timers.Arm (Self.Timers (1), 20);
-         Active := Moved (Active, Chart.Nowhere, Chart.Before);
-      end Enter_Before;
-
-      procedure Enter_Claiming is
-      begin
-         Self.Leaf := Address_States.Claiming;
-         Ravenchart.Timers.Arm (Self.Timers (2), 25);
-         Active := Moved (Active, Chart.Contending, Chart.Claiming);
-      end Enter_Claiming;
-
-      procedure Enter_Yielding is
-      begin
-         Self.Leaf := Address_States.Yielding;
-         Ravenchart.Timers.Arm (Self.Timers (3), 4);
-         Active := Moved (Active, Chart.Nowhere, Chart.Yielding);
-      end Enter_Yielding;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen, Before);
+      Self.Timers :=
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Leaf);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
-            Enter_Before;
+            Active := Moved (Active, Chart.Nowhere, Chart.Before);
          when Granted =>
-            Exit_Claiming;
-            Active := Moved (Active, Chart.Contending, Chart.Claimed);
-            Self.Leaf := Address_States.Claimed;
+            Active := Moved (Active, Chart.Claiming, Chart.Claimed);
          when Claim =>
-            Exit_Before;
-            pragma Assert (Active = Chart.Nowhere);
+            Active := Moved (Active, Chart.Before, Chart.Nowhere);
             Box.Claim :=
               J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
             Box.Claim_Sent := True;
-            pragma Assert (Active = Chart.Nowhere);
-            Active := Moved (Active, Chart.Nowhere, Chart.Contending);
-            Enter_Claiming;
+            Active := Moved (Active, Chart.Nowhere, Chart.Claiming);
          when Yield =>
-            Leave_Contending;
-            Active := Moved (Active, Chart.Contending, Chart.Nowhere);
-            Enter_Yielding;
+            Active :=
+              Moved (Active, Active_At_First, Chart.Yielding,
+                 Before in Address_States.Contending);
          when Defend | Tell_All | Tell_Us | Tell_Null =>
             Box.Claim :=
               J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
             Box.Claim_Sent := True;
          when Give_Up =>
-            Exit_Yielding;
-            pragma Assert (Active = Chart.Nowhere);
+            Active := Moved (Active, Chart.Yielding, Chart.Nowhere);
             Box.Cannot_Claim :=
               J1939_Node.Name'(Low => Ins.Name_Low, High => Ins.Name_High);
             Box.Cannot_Claim_Sent := True;
-            pragma Assert (Active = Chart.Nowhere);
             Active := Moved (Active, Chart.Nowhere, Chart.Without_Address);
-            Self.Leaf := Address_States.Without_Address;
          when Tell_Lost | Tell_Lost_Null =>
-            Active := Moved (Active, Chart.Without_Address, Chart.Nowhere);
-            Enter_Yielding;
+            Active := Moved (Active, Chart.Without_Address, Chart.Yielding);
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
@@ -244,7 +153,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins, Item);
+         Fired := Selected (Self, Now, Ins, Item);
       end if;
       if Fired /= None then
          Fire (Self, Ins, Box, Fired);

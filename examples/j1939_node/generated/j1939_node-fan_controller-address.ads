@@ -7,9 +7,6 @@ with Ravenchart.Timers;
 package J1939_Node.Fan_Controller.Address
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Address_States.Leaf;
    use type Ravenchart.Timers.Timer;
    use type Ravenchart.Timers.Timer_Array;
@@ -54,16 +51,31 @@ is
       Cannot_Claim_Sent : Boolean := False;
    end record;
 
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 3);
+
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is (Nothing, Inside_Contending, Everything, Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Granted => Inside_Contending,
+        when Claim | Yield | Give_Up | Tell_Lost | Tell_Lost_Null =>
+           Everything,
+        when Defend | Tell_All | Tell_Us | Tell_Null => Nothing);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
    --  The region's own state.
    type Region is record
       Started : Boolean := False;
       Leaf    : Address_States.Leaf := Address_States.Before;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 3);
+      Timers  : Time_Outs;
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Address_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Address_States.Leaf) return Boolean is
      (case T is
         when Granted => Leaf = Address_States.Claiming,
         when Claim => Leaf = Address_States.Before,
@@ -80,8 +92,7 @@ is
       Self : Region;
       Now  : Occurrence;
       Ins  : Inputs;
-      Item : Event)
-     return Boolean is
+      Item : Event) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
            when Granted => Now = Expiry_Of_Granted,
@@ -112,8 +123,7 @@ is
    --  The trigger and the guard of each transition.
 
    function Target
-     (T : Firing; Leaf : Address_States.Leaf)
-     return Address_States.Leaf is
+     (T : Firing; Leaf : Address_States.Leaf) return Address_States.Leaf is
      (case T is
         when Initial_Entry => Address_States.Before,
         when Granted => Address_States.Claimed,
@@ -123,44 +133,24 @@ is
         when Give_Up => Address_States.Without_Address);
    --  The leaf it leads to; that of a composite is its default.
 
-   --  The innermost region that holds all that a transition leaves and
-   --  enters.
-   type Domain is (Nothing, Inside_Contending, Everything, Beginning);
-
-   function Domain_Of (T : Firing) return Domain is
-     (case T is
-        when Initial_Entry => Beginning,
-        when Granted => Inside_Contending,
-        when Claim | Yield | Give_Up | Tell_Lost | Tell_Lost_Null =>
-           Everything,
-        when Defend | Tell_All | Tell_Us | Tell_Null => Nothing);
-   --  Everything active inside it is left, and what is active then is
-   --  entered.
-
-   function Timer_After
-     (I      : Positive;
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Address_States.Leaf;
-      After  : Address_States.Leaf;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
-              D /= Beginning and then Before = Address_States.Before,
-              After = Address_States.Before, Ravenchart.Timers.Started (20)),
-        when 2 =>
-           Ravenchart.Timers.Moved (Timer,
-              D in Inside_Contending | Everything | Beginning,
-              D /= Beginning and then Before = Address_States.Claiming,
-              After = Address_States.Claiming,
-              Ravenchart.Timers.Started (25)),
-        when 3 =>
-           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
-              D /= Beginning and then Before = Address_States.Yielding,
-              After = Address_States.Yielding,
-              Ravenchart.Timers.Started (4)),
-        when others => Timer);
+      After  : Address_States.Leaf) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1), D in Everything | Beginning,
+            D /= Beginning and then Before = Address_States.Before,
+            After = Address_States.Before, Ravenchart.Timers.Started (20)),
+       2 =>
+         Ravenchart.Timers.Moved (Timers (2),
+            D in Inside_Contending | Everything | Beginning,
+            D /= Beginning and then Before = Address_States.Claiming,
+            After = Address_States.Claiming, Ravenchart.Timers.Started (25)),
+       3 =>
+         Ravenchart.Timers.Moved (Timers (3), D in Everything | Beginning,
+            D /= Beginning and then Before = Address_States.Yielding,
+            After = Address_States.Yielding, Ravenchart.Timers.Started (4))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
@@ -169,8 +159,7 @@ is
       Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs;
-      Item   : Event)
-     return Boolean is
+      Item   : Event) return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
           and then Enabled (Chosen, Self, Now, Ins, Item)))
@@ -231,14 +220,8 @@ is
           else Is_Selection (Fired, Self'Old, Now, Ins, Item))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old)
-             and then Self.Timers (1)
-               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (1))
-             and then Self.Timers (2)
-               = Timer_After (2, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (2))
-             and then Self.Timers (3)
-               = Timer_After (3, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (3)));
+             and then Self.Timers
+               = Timers_After (Self.Timers'Old, Domain_Of (Fired),
+                    Self.Leaf'Old, Self.Leaf));
    --  One run-to-completion step.
 end J1939_Node.Fan_Controller.Address;

@@ -5,36 +5,22 @@
 package body J1939_Node.Fan_Controller.Answers
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
-   function Select_Transition
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
-     (case Self.Leaf is
-        when Answers_States.Silent =>
-           (if Now = Conditions
-               and then Ins.Address = Address_States.Claimed
-               then With_Address
-            else None),
-        when Answers_States.Sending =>
-           (if Now = Conditions
-               and then not (Ins.Address = Address_States.Claimed)
-               then Without_Address
-            elsif Now = Expiry_Of_Cyclic then Cyclic
-            elsif Now = On_Asked_All
-               and then Item.Value_Pgn_Octets.Pgn = 65_213
-               then Answer_All
-            elsif Now = On_Asked_Us
-               and then Item.Value_Pgn_Octets.Pgn = 65_213
-               then Answer
-            elsif Now = On_Asked_Us
-               and then Item.Value_Pgn_Octets.Pgn /= 65_213
-               and then Item.Value_Pgn_Octets.Pgn /= 60_928
-               then Refuse
-            else None))
-   with
-     Post => Is_Selection (Select_Transition'Result, Self, Now, Ins, Item);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
+     return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins, Item)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins, Item)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -76,16 +62,14 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
-     (Self.Timers (1)
-      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-           Before.Timers (1))) with Ghost;
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
+     (Self.Timers
+      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Leaf,
+           Self.Leaf)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started
       and then Self.Leaf = Target (Chosen, Before.Leaf)
       and then Is_Lasting (Before, Self, Chosen)) with Ghost;
@@ -105,40 +89,26 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Before : constant Answers_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
-
-      procedure Exit_Sending is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Moved (Active, Chart.Sending, Chart.Nowhere);
-      end Exit_Sending;
-
-      procedure Enter_Sending is
-      begin
-         Self.Leaf := Answers_States.Sending;
-         Ravenchart.Timers.Arm (Self.Timers (1), 100, 100);
-         Active := Moved (Active, Chart.Nowhere, Chart.Sending);
-      end Enter_Sending;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen, Before);
+      Self.Timers :=
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Leaf);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Active := Moved (Active, Chart.Nowhere, Chart.Silent);
-            Self.Leaf := Answers_States.Silent;
          when With_Address =>
-            Active := Moved (Active, Chart.Silent, Chart.Nowhere);
-            Enter_Sending;
+            Active := Moved (Active, Chart.Silent, Chart.Sending);
          when Without_Address =>
-            Exit_Sending;
-            Active := Moved (Active, Chart.Nowhere, Chart.Silent);
-            Self.Leaf := Answers_States.Silent;
+            Active := Moved (Active, Chart.Sending, Chart.Silent);
          when Cyclic | Answer_All | Answer =>
             Self.Data.Due :=
               (if Self.Data.Due = 255 then 0 else Self.Data.Due + 1);
@@ -165,7 +135,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins, Item);
+         Fired := Selected (Self, Now, Ins, Item);
       end if;
       if Fired /= None then
          Fire (Self, Item, Box, Fired);

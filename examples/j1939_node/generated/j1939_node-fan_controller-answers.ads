@@ -7,9 +7,6 @@ with Ravenchart.Timers;
 package J1939_Node.Fan_Controller.Answers
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Answers_States.Leaf;
    use type Ravenchart.Timers.Timer;
    use type Ravenchart.Timers.Timer_Array;
@@ -53,17 +50,30 @@ is
       Acknowledgement_Sent : Boolean := False;
    end record;
 
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 1);
+
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is (Nothing, Everything, Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when With_Address | Without_Address => Everything,
+        when Cyclic | Answer_All | Answer | Refuse => Nothing);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
    --  The region's own state.
    type Region is record
       Started : Boolean := False;
       Leaf    : Answers_States.Leaf := Answers_States.Silent;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
+      Timers  : Time_Outs;
       Data    : Variables;
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Answers_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Answers_States.Leaf) return Boolean is
      (case T is
         when With_Address => Leaf = Answers_States.Silent,
         when Without_Address | Cyclic | Answer_All | Answer | Refuse =>
@@ -76,8 +86,7 @@ is
       Self : Region;
       Now  : Occurrence;
       Ins  : Inputs;
-      Item : Event)
-     return Boolean is
+      Item : Event) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
            when With_Address =>
@@ -97,40 +106,23 @@ is
    --  The trigger and the guard of each transition.
 
    function Target
-     (T : Firing; Leaf : Answers_States.Leaf)
-     return Answers_States.Leaf is
+     (T : Firing; Leaf : Answers_States.Leaf) return Answers_States.Leaf is
      (case T is
         when Initial_Entry | Without_Address => Answers_States.Silent,
         when With_Address => Answers_States.Sending,
         when Cyclic | Answer_All | Answer | Refuse => Leaf);
    --  The leaf it leads to; that of a composite is its default.
 
-   --  The innermost region that holds all that a transition leaves and
-   --  enters.
-   type Domain is (Nothing, Everything, Beginning);
-
-   function Domain_Of (T : Firing) return Domain is
-     (case T is
-        when Initial_Entry => Beginning,
-        when With_Address | Without_Address => Everything,
-        when Cyclic | Answer_All | Answer | Refuse => Nothing);
-   --  Everything active inside it is left, and what is active then is
-   --  entered.
-
-   function Timer_After
-     (I      : Positive;
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Answers_States.Leaf;
-      After  : Answers_States.Leaf;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
-              D /= Beginning and then Before = Answers_States.Sending,
-              After = Answers_States.Sending,
-              Ravenchart.Timers.Started (100, 100)),
-        when others => Timer);
+      After  : Answers_States.Leaf) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1), D in Everything | Beginning,
+            D /= Beginning and then Before = Answers_States.Sending,
+            After = Answers_States.Sending,
+            Ravenchart.Timers.Started (100, 100))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
@@ -139,8 +131,7 @@ is
       Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs;
-      Item   : Event)
-     return Boolean is
+      Item   : Event) return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
           and then Enabled (Chosen, Self, Now, Ins, Item)))
@@ -196,8 +187,8 @@ is
           else Is_Selection (Fired, Self'Old, Now, Ins, Item))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired, Self.Leaf'Old)
-             and then Self.Timers (1)
-               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (1)));
+             and then Self.Timers
+               = Timers_After (Self.Timers'Old, Domain_Of (Fired),
+                    Self.Leaf'Old, Self.Leaf));
    --  One run-to-completion step.
 end J1939_Node.Fan_Controller.Answers;

@@ -5,9 +5,6 @@
 package body J1939_Node.Fan_Controller.Flows
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Number;
 
    procedure Tell

@@ -12,5 +12,5 @@ is
       State      : out J1939_Node.Fan_Drive;
       Send_State : out Boolean)
    with Global => null;
-   --  [Fan_Controller.tell] budget 100_000 ns, every 10_000_000 ns
+   --  [Fan_Controller.tell] WCET 100_000 ns, every 10_000_000 ns
 end J1939_Node.Fan_Controller.Flows;

@@ -8,9 +8,6 @@ with J1939_Node.Timing_Certificate;
 package J1939_Node.Host_Probe
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    package Probe is new Ravenchart.Host_Probes
      (Name => "board.probe",
       Period => Timing_Certificate.Board_Probe_T,

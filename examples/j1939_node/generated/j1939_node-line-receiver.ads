@@ -7,9 +7,6 @@ with J1939_Node.Elements;
 package J1939_Node.Line.Receiver
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    procedure Wait;
    --  [line.receive.release] suspend until a frame is there.
 

@@ -11,12 +11,8 @@ with Ravenchart.Traces;
 package body J1939_Node.Line
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Frame_Of_Claim
-     (Item : J1939_Node.Name)
-     return Ravenchart.Can.Any_Frames.Any_Frame is
+     (Item : J1939_Node.Name) return Ravenchart.Can.Any_Frames.Any_Frame is
    begin
       return
         Ravenchart.Can.Any_Frames.Whole_Frame
@@ -38,17 +34,13 @@ is
       Controller.Send (Frame, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Claim_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Claim_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Claim_Message);
       end if;
    end Send_Claim;
 
    function Frame_Of_Cannot_Claim
-     (Item : J1939_Node.Name)
-     return Ravenchart.Can.Any_Frames.Any_Frame is
+     (Item : J1939_Node.Name) return Ravenchart.Can.Any_Frames.Any_Frame is
    begin
       return
         Ravenchart.Can.Any_Frames.Whole_Frame
@@ -71,12 +63,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent,
          Elements.Cannot_Claim_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Cannot_Claim_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Cannot_Claim_Message);
       end if;
    end Send_Cannot_Claim;
 
@@ -106,12 +94,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent,
          Elements.Acknowledgement_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Acknowledgement_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Acknowledgement_Message);
       end if;
    end Send_Acknowledgement;
 
@@ -141,12 +125,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent,
          Elements.Fan_Drive_State_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Fan_Drive_State_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Fan_Drive_State_Message);
       end if;
    end Send_Fan_Drive_State;
 end J1939_Node.Line;

@@ -14,18 +14,13 @@ with System;
 package J1939_Node.Line
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Accepts
-     (Id     : Ravenchart.Can.Identifier;
-      Format : Ravenchart.Can.Frame_Format)
+     (Id : Ravenchart.Can.Identifier; Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
         when Ravenchart.Can.Standard => False,
         when Ravenchart.Can.Extended =>
-           Id
-           in Timing_Certificate.Line_Rival_Claim_Id
+           Id in Timing_Certificate.Line_Rival_Claim_Id
              | Timing_Certificate.Line_Request_To_All_Id
              | Timing_Certificate.Line_Request_To_Us_Id
              | Timing_Certificate.Line_Request_Without_Address_Id
@@ -81,8 +76,7 @@ is
    use type Interfaces.Unsigned_64;
 
    function Frame_Of_Claim
-     (Item : J1939_Node.Name)
-     return Ravenchart.Can.Any_Frames.Any_Frame
+     (Item : J1939_Node.Name) return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
        Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Claim'Result,
@@ -95,8 +89,7 @@ is
    --  [claim] hand one frame to the controller; never blocks.
 
    function Frame_Of_Cannot_Claim
-     (Item : J1939_Node.Name)
-     return Ravenchart.Can.Any_Frames.Any_Frame
+     (Item : J1939_Node.Name) return Ravenchart.Can.Any_Frames.Any_Frame
    with
      Post =>
        Ravenchart.Can.Layouts.Is_Framed (Frame_Of_Cannot_Claim'Result,

@@ -10,9 +10,6 @@ with Ravenchart.Response_Times;
 package J1939_Node.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "27d9e88d5ba24da307d094a68e26e6985015a9992297e7bac05f313851a2bf00";
@@ -209,85 +206,101 @@ is
 
    function Board_Probe_Up (W : Window) return Time is
      (Demand (W, Board_Probe_J, Board_Probe_T, Board_Probe_C)) with Static;
+
    function Line_Driver_Tx_Claim_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Claim_J, Line_Driver_Tx_Claim_T,
          Line_Driver_Tx_Claim_C, Board_Probe_Up (W))) with Static;
+
    function Line_Driver_Rx_Rival_Claim_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Rival_Claim_J, Line_Driver_Rx_Rival_Claim_T,
          Line_Driver_Rx_Rival_Claim_C, Line_Driver_Tx_Claim_Up (W)))
    with Static;
+
    function Line_Driver_Tx_Cannot_Claim_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Cannot_Claim_J,
          Line_Driver_Tx_Cannot_Claim_T, Line_Driver_Tx_Cannot_Claim_C,
          Line_Driver_Rx_Rival_Claim_Up (W))) with Static;
+
    function Line_Driver_Rx_Request_To_All_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Request_To_All_J,
          Line_Driver_Rx_Request_To_All_T, Line_Driver_Rx_Request_To_All_C,
          Line_Driver_Tx_Cannot_Claim_Up (W))) with Static;
+
    function Line_Driver_Rx_Request_To_Us_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Request_To_Us_J,
          Line_Driver_Rx_Request_To_Us_T, Line_Driver_Rx_Request_To_Us_C,
          Line_Driver_Rx_Request_To_All_Up (W))) with Static;
+
    function Line_Driver_Rx_Request_Without_Address_Up
-     (W : Window)
-     return Time is
+     (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Request_Without_Address_J,
          Line_Driver_Rx_Request_Without_Address_T,
          Line_Driver_Rx_Request_Without_Address_C,
          Line_Driver_Rx_Request_To_Us_Up (W))) with Static;
+
    function Line_Driver_Tx_Acknowledgement_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Acknowledgement_J,
          Line_Driver_Tx_Acknowledgement_T, Line_Driver_Tx_Acknowledgement_C,
          Line_Driver_Rx_Request_Without_Address_Up (W))) with Static;
+
    function Line_Driver_Rx_Engine_Temperature_1_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Engine_Temperature_1_J,
          Line_Driver_Rx_Engine_Temperature_1_T,
          Line_Driver_Rx_Engine_Temperature_1_C,
          Line_Driver_Tx_Acknowledgement_Up (W))) with Static;
+
    function Line_Driver_Tx_Fan_Drive_State_Up (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Fan_Drive_State_J,
          Line_Driver_Tx_Fan_Drive_State_T, Line_Driver_Tx_Fan_Drive_State_C,
          Line_Driver_Rx_Engine_Temperature_1_Up (W))) with Static;
+
    function Reception_Up (W : Window) return Time is
      (Demand (W, Reception_J, Reception_T, Reception_C,
          Line_Driver_Tx_Fan_Drive_State_Up (W))) with Static;
+
    function Protocol_Up (W : Window) return Time is
      (Demand (W, Protocol_J, Protocol_T, Protocol_C, Reception_Up (W)))
    with Static;
+
    function Line_Driver_Tx_Fan_Drive_State_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Fan_Drive_State_J,
          Line_Driver_Tx_Fan_Drive_State_T, Line_Driver_Tx_Fan_Drive_State_C))
    with Static;
+
    function Line_Driver_Rx_Engine_Temperature_1_Rest
-     (W : Window)
-     return Time is
+     (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Engine_Temperature_1_J,
          Line_Driver_Rx_Engine_Temperature_1_T,
          Line_Driver_Rx_Engine_Temperature_1_C,
          Line_Driver_Tx_Fan_Drive_State_Rest (W))) with Static;
+
    function Line_Driver_Tx_Acknowledgement_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Acknowledgement_J,
          Line_Driver_Tx_Acknowledgement_T, Line_Driver_Tx_Acknowledgement_C,
          Line_Driver_Rx_Engine_Temperature_1_Rest (W))) with Static;
+
    function Line_Driver_Rx_Request_Without_Address_Rest
-     (W : Window)
-     return Time is
+     (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Request_Without_Address_J,
          Line_Driver_Rx_Request_Without_Address_T,
          Line_Driver_Rx_Request_Without_Address_C,
          Line_Driver_Tx_Acknowledgement_Rest (W))) with Static;
+
    function Line_Driver_Rx_Request_To_Us_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Request_To_Us_J,
          Line_Driver_Rx_Request_To_Us_T, Line_Driver_Rx_Request_To_Us_C,
          Line_Driver_Rx_Request_Without_Address_Rest (W))) with Static;
+
    function Line_Driver_Rx_Request_To_All_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Request_To_All_J,
          Line_Driver_Rx_Request_To_All_T, Line_Driver_Rx_Request_To_All_C,
          Line_Driver_Rx_Request_To_Us_Rest (W))) with Static;
+
    function Line_Driver_Tx_Cannot_Claim_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Tx_Cannot_Claim_J,
          Line_Driver_Tx_Cannot_Claim_T, Line_Driver_Tx_Cannot_Claim_C,
          Line_Driver_Rx_Request_To_All_Rest (W))) with Static;
+
    function Line_Driver_Rx_Rival_Claim_Rest (W : Window) return Time is
      (Demand (W, Line_Driver_Rx_Rival_Claim_J, Line_Driver_Rx_Rival_Claim_T,
          Line_Driver_Rx_Rival_Claim_C, Line_Driver_Tx_Cannot_Claim_Rest (W)))
@@ -310,6 +323,7 @@ is
 
    function Line_Bits (Stuffed : Positive) return Time is
      (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+
    function Line_Time_Of (Stuffed : Positive) return Time is
      ((Line_Bits (Stuffed) * 10**9 + (Line_Bit_Rate - 1)) / Line_Bit_Rate)
    with Static;
@@ -653,69 +667,88 @@ is
    function Line_Acknowledgement_Up (W : Window) return Time is
      (Demand (W, Line_Acknowledgement_R - Line_Acknowledgement_C,
          Line_Acknowledgement_T, Line_Acknowledgement_C)) with Static;
+
    function Line_Request_To_Us_Up (W : Window) return Time is
      (Demand (W, Line_Request_To_Us_J, Line_Request_To_Us_T,
          Line_Request_To_Us_C, Line_Acknowledgement_Up (W))) with Static;
+
    function Line_Request_To_All_Up (W : Window) return Time is
      (Demand (W, Line_Request_To_All_J, Line_Request_To_All_T,
          Line_Request_To_All_C, Line_Request_To_Us_Up (W))) with Static;
+
    function Line_Request_Without_Address_Up (W : Window) return Time is
      (Demand (W, Line_Request_Without_Address_J,
          Line_Request_Without_Address_T, Line_Request_Without_Address_C,
          Line_Request_To_All_Up (W))) with Static;
+
    function Line_Rival_Claim_Up (W : Window) return Time is
      (Demand (W, Line_Rival_Claim_J, Line_Rival_Claim_T, Line_Rival_Claim_C,
          Line_Request_Without_Address_Up (W))) with Static;
+
    function Line_Cannot_Claim_Up (W : Window) return Time is
      (Demand (W, Line_Cannot_Claim_R - Line_Cannot_Claim_C,
          Line_Cannot_Claim_T, Line_Cannot_Claim_C, Line_Rival_Claim_Up (W)))
    with Static;
+
    function Line_Fan_Drive_State_Up (W : Window) return Time is
      (Demand (W, Line_Fan_Drive_State_R - Line_Fan_Drive_State_C,
          Line_Fan_Drive_State_T, Line_Fan_Drive_State_C,
          Line_Cannot_Claim_Up (W))) with Static;
+
    function Line_Engine_Temperature_1_Up (W : Window) return Time is
      (Demand (W, Line_Engine_Temperature_1_J, Line_Engine_Temperature_1_T,
          Line_Engine_Temperature_1_C, Line_Fan_Drive_State_Up (W)))
    with Static;
+
    function Line_Request_To_Us_Up_Board (W : Window) return Time is
      (Demand (W, Line_Request_To_Us_J, Line_Request_To_Us_T,
          Line_Request_To_Us_C)) with Static;
+
    function Line_Request_To_All_Up_Board (W : Window) return Time is
      (Demand (W, Line_Request_To_All_J, Line_Request_To_All_T,
          Line_Request_To_All_C, Line_Request_To_Us_Up_Board (W)))
    with Static;
+
    function Line_Request_Without_Address_Up_Board (W : Window) return Time is
      (Demand (W, Line_Request_Without_Address_J,
          Line_Request_Without_Address_T, Line_Request_Without_Address_C,
          Line_Request_To_All_Up_Board (W))) with Static;
+
    function Line_Rival_Claim_Up_Board (W : Window) return Time is
      (Demand (W, Line_Rival_Claim_J, Line_Rival_Claim_T, Line_Rival_Claim_C,
          Line_Request_Without_Address_Up_Board (W))) with Static;
+
    function Line_Engine_Temperature_1_Up_Board (W : Window) return Time is
      (Demand (W, Line_Engine_Temperature_1_J, Line_Engine_Temperature_1_T,
          Line_Engine_Temperature_1_C, Line_Rival_Claim_Up_Board (W)))
    with Static;
+
    function Line_Acknowledgement_Up_Board (W : Window) return Time is
      (Demand (W, Line_Acknowledgement_J, Line_Acknowledgement_T,
          Line_Acknowledgement_C, Line_Engine_Temperature_1_Up_Board (W)))
    with Static;
+
    function Line_Cannot_Claim_Up_Board (W : Window) return Time is
      (Demand (W, Line_Cannot_Claim_J, Line_Cannot_Claim_T,
          Line_Cannot_Claim_C, Line_Acknowledgement_Up_Board (W)))
    with Static;
+
    function Line_Fan_Drive_State_Up_Board (W : Window) return Time is
      (Demand (W, Line_Fan_Drive_State_J, Line_Fan_Drive_State_T,
          Line_Fan_Drive_State_C, Line_Cannot_Claim_Up_Board (W)))
    with Static;
+
    function Line_Claim_Up_Board (W : Window) return Time is
      (Demand (W, Line_Claim_J, Line_Claim_T, Line_Claim_C,
          Line_Fan_Drive_State_Up_Board (W))) with Static;
+
    function Line_Claim_Rest_Board (W : Window) return Time is
      (Demand (W, Line_Claim_J, Line_Claim_T, Line_Claim_C)) with Static;
+
    function Line_Fan_Drive_State_Rest_Board (W : Window) return Time is
      (Demand (W, Line_Fan_Drive_State_J, Line_Fan_Drive_State_T,
          Line_Fan_Drive_State_C, Line_Claim_Rest_Board (W))) with Static;
+
    function Line_Cannot_Claim_Rest_Board (W : Window) return Time is
      (Demand (W, Line_Cannot_Claim_J, Line_Cannot_Claim_T,
          Line_Cannot_Claim_C, Line_Fan_Drive_State_Rest_Board (W)))

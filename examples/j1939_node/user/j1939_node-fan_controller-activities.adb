@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The speed of the fan, written by hand: it grows with the temperature of
 --  the coolant, and is full where that is not known.
 

@@ -10,6 +10,7 @@ with Infusion_System.Trace;
 with Infusion_System.Ward;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -18,9 +19,6 @@ with System;
 package body Infusion_System.Bed
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [bed.line]
    package Line_Mailbox is new Ravenchart.Queues
      (Element_Type => Infusion_System.Line,
@@ -43,6 +41,13 @@ is
       Capacity => 4,
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Panel_Offers is new Ravenchart.Offers
+     (Element_Type => Infusion_System.Press,
+      Put => Panel_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Bed_Panel,
+      Report => Health_Counts.Faults.Report);
 
    Panel_Port : Pump.Panel_View;
 
@@ -90,6 +95,13 @@ is
       Ceiling => System.Default_Priority + 1,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Infusion_Offers is new Ravenchart.Offers
+     (Element_Type => Pump.Event,
+      Put => Infusion_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Bed_Infusion,
+      Report => Health_Counts.Faults.Report);
+
    --  [bed.turn] completes Turning
    package Turn_Visit_Board is new Ravenchart.Blackboards
      (Element_Type => Ravenchart.Event_Count,
@@ -127,6 +139,13 @@ is
       Ceiling => System.Default_Priority + 1,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Keys_Offers is new Ravenchart.Offers
+     (Element_Type => Pump.Event,
+      Put => Keys_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Bed_Keys,
+      Report => Health_Counts.Faults.Report);
+
    procedure Put_Line (Item : Infusion_System.Line) is
       Status : Ravenchart.Queueing.Put_Status;
       pragma Warnings (GNATprove, Off,
@@ -138,121 +157,44 @@ is
    end Put_Line;
 
    procedure Put_Panel (Item : Infusion_System.Press) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
-      Panel_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Bed_Panel, 0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Bed_Panel,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Panel_Offers.Offer (Item);
    end Put_Panel;
 
    procedure Offer (Item : Pump.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item.Name is
          when Pump.Pressed =>
-            Keys_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Bed_Keys,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Keys_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Bed_Pressed, 0);
          when Pump.Sensor_Lost =>
-            Infusion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Bed_Infusion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Infusion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Bed_Sensor_Lost, 0);
          when Pump.Start =>
-            Infusion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Bed_Infusion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Infusion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Bed_Start,
                0);
          when Pump.Stop =>
-            Infusion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Bed_Infusion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Infusion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Bed_Stop,
                0);
          when Pump.Silence =>
-            Infusion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Bed_Infusion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Infusion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Bed_Silence, 0);
          when Pump.Resume =>
-            Infusion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Bed_Infusion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Infusion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Bed_Resume, 0);
          when Pump.New_Portion =>
-            Infusion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Bed_Infusion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Infusion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Bed_New_Portion, 0);
          when Pump.New_Volume =>
-            Infusion_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Bed_Infusion,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Infusion_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Bed_New_Volume, 0);
       end case;
@@ -295,11 +237,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled, Elements.Bed_Line,
                0);
          when Pump.Line_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Bed_Line,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Bed_Line);
             Offer (Pump.Event'(Name => Pump.Sensor_Lost, others => <>));
       end case;
       Panel_Mailbox.Take (Panel_Item, Status);
@@ -320,11 +259,8 @@ is
                 Value_Press => Panel_Port.Value,
                 others => <>));
          when Pump.Panel_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Bed_Panel,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Bed_Panel);
       end case;
       Executed := Executed + Elements.Bed_Ports_Row;
    end Run_Ports;
@@ -375,7 +311,7 @@ is
 
    procedure Step_Infusion (Ins : Pump.Infusion.Inputs) is
       Now : Pump.Infusion.Occurrence;
-      Fired : Pump.Infusion.Firing_List;
+      Fired : Pump.Infusion.Firings.List;
 
       use type Pump.Infusion_States.Leaf;
       use type Pump.Infusion.Occurrence;
@@ -418,13 +354,10 @@ is
                  (Infusion_Region.Place.In_Motor));
          end if;
       end if;
-      if Infusion_Region.Lost then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Bed_Infusion,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-         Infusion_Region.Lost := False;
+      if Infusion_Region.Deferred.Lost then
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Bed_Infusion);
+         Infusion_Region.Deferred.Lost := False;
       end if;
    end Step_Infusion;
 

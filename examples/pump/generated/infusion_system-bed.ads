@@ -8,9 +8,6 @@ with Infusion_System.Elements;
 package Infusion_System.Bed
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Element_Id;
 
    procedure Put_Line (Item : Infusion_System.Line);

@@ -5,12 +5,8 @@
 package body Infusion_System.Codecs
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Bits_Of_Type_Line
-     (Item : Infusion_System.Line)
-     return Interfaces.Unsigned_8 is
+     (Item : Infusion_System.Line) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Infusion_System.Line'Pos (Item)))
    with
      Post =>
@@ -18,8 +14,7 @@ is
        and then Value_Of_Type_Line (Bits_Of_Type_Line'Result) = Item;
 
    function Bits_Of_Type_Portion
-     (Item : Infusion_System.Portion)
-     return Interfaces.Unsigned_16
+     (Item : Infusion_System.Portion) return Interfaces.Unsigned_16
    with
      Post =>
        Bits_Of_Type_Portion'Result <= 500
@@ -35,8 +30,7 @@ is
    end Bits_Of_Type_Portion;
 
    function Bits_Of_Type_Key
-     (Item : Infusion_System.Key)
-     return Interfaces.Unsigned_8 is
+     (Item : Infusion_System.Key) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Infusion_System.Key'Pos (Item)))
    with
      Post =>
@@ -44,8 +38,7 @@ is
        and then Value_Of_Type_Key (Bits_Of_Type_Key'Result) = Item;
 
    function Bits_Of_Type_Volume
-     (Item : Infusion_System.Volume)
-     return Interfaces.Unsigned_32
+     (Item : Infusion_System.Volume) return Interfaces.Unsigned_32
    with
      Post =>
        Bits_Of_Type_Volume'Result <= 1_000_000
@@ -61,8 +54,7 @@ is
    end Bits_Of_Type_Volume;
 
    function Bits_Of_Type_Lamp
-     (Item : Infusion_System.Lamp)
-     return Interfaces.Unsigned_8 is
+     (Item : Infusion_System.Lamp) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Infusion_System.Lamp'Pos (Item)))
    with
      Post =>
@@ -70,8 +62,7 @@ is
        and then Value_Of_Type_Lamp (Bits_Of_Type_Lamp'Result) = Item;
 
    function Bits_Of_Type_Boolean
-     (Item : Boolean)
-     return Interfaces.Unsigned_8 is
+     (Item : Boolean) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Boolean'Pos (Item)))
    with
      Post =>
@@ -115,16 +106,14 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with
         Pre => Local_Value <= 16#3#,
         Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
       function Pack
-        (Item : Infusion_System.Line)
-        return Interfaces.Unsigned_64 is
+        (Item : Infusion_System.Line) return Interfaces.Unsigned_64 is
          Local_Value : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Line (Item);
          Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
@@ -197,16 +186,14 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_16)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_16) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with
         Pre => Local_Value <= 16#1FF#,
         Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
       function Pack
-        (Item : Infusion_System.Portion)
-        return Interfaces.Unsigned_64 is
+        (Item : Infusion_System.Portion) return Interfaces.Unsigned_64 is
          Local_Value : constant Interfaces.Unsigned_16 :=
            Bits_Of_Type_Portion (Item);
          Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
@@ -326,8 +313,7 @@ is
           and then Raw_Of_Amount (Word_Of'Result) = Local_Amount;
 
       function Pack
-        (Item : Infusion_System.Press)
-        return Interfaces.Unsigned_64 is
+        (Item : Infusion_System.Press) return Interfaces.Unsigned_64 is
          Local_Key : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Key (Item.Key);
          Local_Amount : constant Interfaces.Unsigned_32 :=
@@ -482,8 +468,7 @@ is
       function Word_Of
         (Local_Given  : Interfaces.Unsigned_32;
          Local_Lamp   : Interfaces.Unsigned_8;
-         Local_Buzzer : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+         Local_Buzzer : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Given)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Lamp), 20)
          or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Buzzer),
@@ -499,8 +484,7 @@ is
           and then Raw_Of_Buzzer (Word_Of'Result) = Local_Buzzer;
 
       function Pack
-        (Item : Infusion_System.View)
-        return Interfaces.Unsigned_64 is
+        (Item : Infusion_System.View) return Interfaces.Unsigned_64 is
          Local_Given : constant Interfaces.Unsigned_32 :=
            Bits_Of_Type_Volume (Item.Given);
          Local_Lamp : constant Interfaces.Unsigned_8 :=

@@ -9,9 +9,6 @@ with Ravenchart.Can.Layouts;
 package Infusion_System.Codecs
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Interfaces.Unsigned_16;
    use type Interfaces.Unsigned_32;
    use type Interfaces.Unsigned_64;
@@ -19,38 +16,32 @@ is
    use type Ravenchart.Number;
 
    function Value_Of_Type_Line
-     (Raw : Interfaces.Unsigned_8)
-     return Infusion_System.Line is
+     (Raw : Interfaces.Unsigned_8) return Infusion_System.Line is
      (Infusion_System.Line'Val (Raw))
    with Pre => Raw <= 2;
 
    function Value_Of_Type_Portion
-     (Raw : Interfaces.Unsigned_16)
-     return Infusion_System.Portion is
+     (Raw : Interfaces.Unsigned_16) return Infusion_System.Portion is
      (Infusion_System.Portion (Ravenchart.Number (Raw)))
    with Pre => Raw <= 500;
 
    function Value_Of_Type_Key
-     (Raw : Interfaces.Unsigned_8)
-     return Infusion_System.Key is
+     (Raw : Interfaces.Unsigned_8) return Infusion_System.Key is
      (Infusion_System.Key'Val (Raw))
    with Pre => Raw <= 5;
 
    function Value_Of_Type_Volume
-     (Raw : Interfaces.Unsigned_32)
-     return Infusion_System.Volume is
+     (Raw : Interfaces.Unsigned_32) return Infusion_System.Volume is
      (Infusion_System.Volume (Ravenchart.Number (Raw)))
    with Pre => Raw <= 1_000_000;
 
    function Value_Of_Type_Lamp
-     (Raw : Interfaces.Unsigned_8)
-     return Infusion_System.Lamp is
+     (Raw : Interfaces.Unsigned_8) return Infusion_System.Lamp is
      (Infusion_System.Lamp'Val (Raw))
    with Pre => Raw <= 2;
 
    function Value_Of_Type_Boolean
-     (Raw : Interfaces.Unsigned_8)
-     return Boolean is
+     (Raw : Interfaces.Unsigned_8) return Boolean is
      (Boolean'Val (Raw))
    with Pre => Raw <= 1;
 
@@ -64,18 +55,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#3#));
 
       function Pack
-        (Item : Infusion_System.Line)
-        return Interfaces.Unsigned_64
+        (Item : Infusion_System.Line) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
@@ -112,18 +100,15 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_16 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_16 is
         (Interfaces.Unsigned_16 (Word and 16#1FF#));
 
       function Pack
-        (Item : Infusion_System.Portion)
-        return Interfaces.Unsigned_64
+        (Item : Infusion_System.Portion) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
@@ -169,25 +154,21 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Key)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Amount));
 
       function Raw_Of_Key
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#7#));
 
       function Raw_Of_Amount
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 3) and 16#FFFFF#));
 
       function Pack
-        (Item : Infusion_System.Press)
-        return Interfaces.Unsigned_64
+        (Item : Infusion_System.Press) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Key)
@@ -249,30 +230,25 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Given)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Lamp)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Buzzer));
 
       function Raw_Of_Given
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32 (Word and 16#FFFFF#));
 
       function Raw_Of_Lamp
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 20) and 16#3#));
 
       function Raw_Of_Buzzer
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 22) and 16#1#));
 
       function Pack
-        (Item : Infusion_System.View)
-        return Interfaces.Unsigned_64
+        (Item : Infusion_System.View) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Given)

@@ -10,9 +10,6 @@ with System;
 package Infusion_System.Control
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [control.table] the activities, in the order in which they run
    type Row is
      (Bed_Ports, Bed_Keys, Bed_Infusion, Bed_Turn, Bed_Fill, Bed_Drive,

@@ -5,13 +5,10 @@
 package body Infusion_System.Pump.Flows
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Number;
 
    procedure Turn
-     (Tested     : in out Infusion_System.Turns; Raise_Done : out Boolean) is
+     (Tested : in out Infusion_System.Turns; Raise_Done : out Boolean) is
    begin
       Raise_Done := False;
       if Tested < 10 then
@@ -22,7 +19,7 @@ is
    end Turn;
 
    procedure Fill
-     (Filled     : in out Infusion_System.Turns; Raise_Done : out Boolean) is
+     (Filled : in out Infusion_System.Turns; Raise_Done : out Boolean) is
    begin
       Raise_Done := False;
       if Filled < 10 then

@@ -6,21 +6,21 @@ package Infusion_System.Pump.Flows
 with SPARK_Mode
 is
    procedure Turn
-     (Tested     : in out Infusion_System.Turns; Raise_Done : out Boolean)
+     (Tested : in out Infusion_System.Turns; Raise_Done : out Boolean)
    with Global => null;
-   --  [Pump.turn] budget 50_000 ns, every 100_000_000 ns, while in Turning
+   --  [Pump.turn] WCET 50_000 ns, every 100_000_000 ns, while in Turning
 
    procedure Fill
-     (Filled     : in out Infusion_System.Turns; Raise_Done : out Boolean)
+     (Filled : in out Infusion_System.Turns; Raise_Done : out Boolean)
    with Global => null;
-   --  [Pump.fill] budget 50_000 ns, every 100_000_000 ns, while in Filling
+   --  [Pump.fill] WCET 50_000 ns, every 100_000_000 ns, while in Filling
 
    procedure Drive
      (Speed      : Infusion_System.Portion;
       Motor      : out Infusion_System.Portion;
       Send_Motor : out Boolean)
    with Global => null;
-   --  [Pump.drive] budget 50_000 ns, every 50_000_000 ns
+   --  [Pump.drive] WCET 50_000 ns, every 50_000_000 ns
 
    procedure Show
      (Given        : Infusion_System.Volume;
@@ -29,5 +29,5 @@ is
       Display      : out Infusion_System.View;
       Send_Display : out Boolean)
    with Global => null;
-   --  [Pump.show] budget 50_000 ns, every 200_000_000 ns
+   --  [Pump.show] WCET 50_000 ns, every 200_000_000 ns
 end Infusion_System.Pump.Flows;

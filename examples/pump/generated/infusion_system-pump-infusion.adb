@@ -5,187 +5,69 @@
 package body Infusion_System.Pump.Infusion
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Event_Count;
 
-   function Select_Motor
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
-     (if Self.Place.Top = Infusion_States.Self_Test
-         then (case Self.Place.In_Motor is
-               when Infusion_States.Turning =>
-                  (if Now = Completion_Of_Turning then Turned else None),
-               when Infusion_States.Motor_Good => None)
-      else None)
+   function Selected
+     (First : Transition;
+      Last  : Transition;
+      Self  : Region;
+      Now   : Occurrence;
+      Ins   : Inputs;
+      Item  : Event) return Selection
    with
      Post =>
-       Is_Selection (Select_Motor'Result, Motor_Transition'First,
-          Motor_Transition'Last, Self, Now, Ins, Item);
+       Is_Selection (Selected'Result, First, Last, Self, Now, Ins, Item)
+   is
+   begin
+      for T in Transition range First .. Last loop
+         if Enabled (T, Self, Now, Ins, Item) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in First .. T =>
+                not Enabled (J, Self, Now, Ins, Item)));
+      end loop;
+      return None;
+   end Selected;
 
-   function Select_Sensor
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
-     (if Self.Place.Top = Infusion_States.Self_Test
-         then (case Self.Place.In_Sensor is
-               when Infusion_States.Listening =>
-                  (if Now = Conditions
-                      and then Ins.Line.State = Ravenchart.Fresh
-                      then Heard
-                   else None),
-               when Infusion_States.Sensor_Good => None)
-      else None)
-   with
-     Post =>
-       Is_Selection (Select_Sensor'Result, Sensor_Transition'First,
-          Sensor_Transition'Last, Self, Now, Ins, Item);
-
-   function Around_Infusing
-     (Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (if Now = On_Stop then Stop
-      elsif Now = On_Sensor_Lost then Lost
-      elsif Now = Conditions
-         and then Ins.Line.Value /= Infusion_System.Clear
-         then Trouble
-      else None);
-
-   function Around_Running (Now : Occurrence; Ins : Inputs) return Selection is
-     (if Now = Completion_Of_Running then Finished
-      else Around_Infusing (Now, Ins));
-
-   function Around_Giving
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (if Now = Expiry_Of_Beat then Beat
-      elsif Now = Conditions and then Self.Data.Given >= Self.Data.Volume
-         then Enough
-      else Around_Running (Now, Ins));
-
-   function Around_Alarm (Now : Occurrence) return Selection is
-     (if Now = On_Resume then Resume
-      elsif Now = On_Stop then Give_Up
-      elsif Now = On_New_Portion then Defer_New_Portion_In_Alarm
-      else None);
-
-   function In_Where_It_Was
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
-     (if Now = Passing and then Self.Past.Known_In_Infusing
-         then Restore_Where_It_Was
-      elsif Now = Passing then Default_Of_Where_It_Was
-      else Around_Infusing (Now, Ins))
-   with
-     Pre => Self.Place.Top = Infusion_States.Where_It_Was,
-     Post =>
-       Is_Selection (In_Where_It_Was'Result, Top_Transition'First,
-          Top_Transition'Last, Self, Now, Ins, Item);
-
-   function In_Infusing
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
-     (case Infusion_States.Infusing'(Self.Place.Top) is
-        when Infusion_States.Filling =>
-           (if Now = Completion_Of_Filling then Filled_Up
-            elsif Now = On_New_Portion then Defer_New_Portion_In_Filling
-            else Around_Running (Now, Ins)),
-        when Infusion_States.Loading =>
-           (if Now = Conditions and then Self.Data.Given >= Ins.Loading
-               then Loaded
-            elsif Now = On_New_Portion then Defer_New_Portion_In_Loading
-            else Around_Giving (Self, Now, Ins)),
-        when Infusion_States.Maintaining =>
-           (if Now = On_New_Portion and then Item.Value_Portion > 0
-               then Change
-            else Around_Giving (Self, Now, Ins)),
-        when Infusion_States.All_Given => Around_Running (Now, Ins),
-        when Infusion_States.Trickling => Around_Infusing (Now, Ins),
-        when Infusion_States.Where_It_Was =>
-           In_Where_It_Was (Self, Now, Ins, Item))
-   with
-     Pre => Self.Place.Top in Infusion_States.Infusing,
-     Post =>
-       Is_Selection (In_Infusing'Result, Top_Transition'First,
-          Top_Transition'Last, Self, Now, Ins, Item);
-
-   function In_Alarm
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
-     (case Infusion_States.Alarm'(Self.Place.Top) is
-        when Infusion_States.Sounding =>
-           (if Now = On_Silence then Hush else Around_Alarm (Now)),
-        when Infusion_States.Silent =>
-           (if Now = Expiry_Of_Remind then Remind else Around_Alarm (Now)))
-   with
-     Pre => Self.Place.Top in Infusion_States.Alarm,
-     Post =>
-       Is_Selection (In_Alarm'Result, Top_Transition'First,
-          Top_Transition'Last, Self, Now, Ins, Item);
-
-   function In_May_Go_On
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
-     (if Now = Passing
-         and then Ins.Line.State = Ravenchart.Fresh
-         and then Ins.Line.Value = Infusion_System.Clear
-         then Go_On
-      elsif Now = Passing then Not_Yet
-      else None)
-   with
-     Pre => Self.Place.Top = Infusion_States.May_Go_On,
-     Post =>
-       Is_Selection (In_May_Go_On'Result, Top_Transition'First,
-          Top_Transition'Last, Self, Now, Ins, Item);
-
-   function Select_Top
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
-     return Selection is
-     (case Self.Place.Top is
-        when Infusion_States.Self_Test =>
-           (if Now = Completion_Of_Self_Test then Ready
-            elsif Now = Expiry_Of_Again then Again
-            elsif Now = On_New_Portion then Defer_New_Portion_In_Self_Test
-            elsif Now = On_New_Volume then Defer_New_Volume_In_Self_Test
-            else None),
-        when Infusion_States.Programming =>
-           (if Now = On_New_Portion then Order_Portion
-            elsif Now = On_New_Volume then Order_Volume
-            elsif Now = On_Start
-               and then Self.Data.Portion > 0
-               and then Self.Data.Volume > 0
-               then Start
-            else None),
-        when Infusion_States.Infusing => In_Infusing (Self, Now, Ins, Item),
-        when Infusion_States.Alarm => In_Alarm (Self, Now, Ins, Item),
-        when Infusion_States.May_Go_On =>
-           In_May_Go_On (Self, Now, Ins, Item))
-   with
-     Post =>
-       Is_Selection (Select_Top'Result, Top_Transition'First,
-          Top_Transition'Last, Self, Now, Ins, Item);
-
-   function Select_Segment
-     (Self : Region; Ins : Inputs; Item : Event)
-     return Transition is
-     (if Self.Place.Top = Infusion_States.Where_It_Was
-         then In_Where_It_Was (Self, Passing, Ins, Item)
-      else In_May_Go_On (Self, Passing, Ins, Item))
+   function Next_Segment
+     (Self : Region; Ins : Inputs; Item : Event) return Transition
    with
      Pre => Segments_Left (Self.Place) > 0,
      Post =>
-       Enabled (Select_Segment'Result, Self, Passing, Ins, Item)
-       and then Is_Segment (Select_Segment'Result);
+       Enabled (Next_Segment'Result, Self, Passing, Ins, Item)
+       and then Is_Segment (Next_Segment'Result)
+   is
+   begin
+      pragma Assert
+        ((if Self.Place.Top = Infusion_States.Where_It_Was
+             then Enabled (Restore_Where_It_Was, Self, Passing, Ins, Item)
+                or else Enabled (Default_Of_Where_It_Was, Self, Passing,
+                     Ins, Item)));
+      pragma Assert
+        ((if Self.Place.Top = Infusion_States.May_Go_On
+             then Enabled (Go_On, Self, Passing, Ins, Item)
+                or else Enabled (Not_Yet, Self, Passing, Ins, Item)));
+      return
+        Selected (Transition'First, Transition'Last, Self, Passing, Ins,
+           Item);
+   end Next_Segment;
 
    function Choose
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
      return Choice is
       C : Choice;
    begin
-      C.Motor := Select_Motor (Self, Now, Ins, Item);
-      C.Sensor := Select_Sensor (Self, Now, Ins, Item);
+      C.Motor :=
+        Selected (Motor_Transition'First, Motor_Transition'Last, Self, Now,
+           Ins, Item);
+      C.Sensor :=
+        Selected (Sensor_Transition'First, Sensor_Transition'Last, Self,
+           Now, Ins, Item);
       if C.Motor = None and then C.Sensor = None then
-         C.Top := Select_Top (Self, Now, Ins, Item);
+         C.Top :=
+           Selected (Top_Transition'First, Top_Transition'Last, Self, Now,
+              Ins, Item);
       end if;
       return C;
    end Choose;
@@ -199,22 +81,32 @@ is
          Where_It_Was, Sounding, Silent, May_Go_On, Infusing, Running,
          Giving, Alarm, Disorder);
 
-      function Innermost_Motor (Self : Region) return Node is
-        (if Self.Started and then Self.Place.Top = Infusion_States.Self_Test
-            then Node'Val
-                 (Infusion_States.Motor_Leaf'Pos (Self.Place.In_Motor) + 1)
-         else Nowhere);
+      type Nodes is record
+         Motor  : Node;
+         Sensor : Node;
+         Top    : Node;
+      end record;
 
-      function Innermost_Sensor (Self : Region) return Node is
-        (if Self.Started and then Self.Place.Top = Infusion_States.Self_Test
-            then Node'Val
-                 (Infusion_States.Sensor_Leaf'Pos (Self.Place.In_Sensor) + 3)
-         else Nowhere);
-
-      function Innermost_Top (Self : Region) return Node is
-        (if Self.Started
-            then Node'Val (Infusion_States.Leaf'Pos (Self.Place.Top) + 5)
-         else Nowhere);
+      function Innermost (Self : Region) return Nodes is
+        ((Motor =>
+            (if Self.Started
+                and then Self.Place.Top = Infusion_States.Self_Test
+                then Node'Val
+                     (Infusion_States.Motor_Leaf'Pos (Self.Place.In_Motor)
+                      + 1)
+             else Nowhere),
+          Sensor =>
+            (if Self.Started
+                and then Self.Place.Top = Infusion_States.Self_Test
+                then Node'Val
+                     (Infusion_States.Sensor_Leaf'Pos (Self.Place.In_Sensor)
+                      + 3)
+             else Nowhere),
+          Top =>
+            (if Self.Started
+                then Node'Val
+                     (Infusion_States.Leaf'Pos (Self.Place.Top) + 5)
+             else Nowhere)));
    end Chart;
 
    procedure Notice_Turning
@@ -250,9 +142,9 @@ is
    end Tick;
 
    procedure Poll
-     (Self : in out Region; Now  : out Occurrence; Item : out Event) is
+     (Self : in out Region; Now : out Occurrence; Item : out Event) is
       Due : Natural;
-      Released : Natural;
+      Released : Boolean;
    begin
       Item := Pump.No_Event;
       if not Self.Started then
@@ -279,30 +171,10 @@ is
             when 3 =>
                Now := Expiry_Of_Remind;
             when others =>
-               Now := Conditions;
-               Released := 0;
-               for I in 1 .. Deferrals.Count (Self.Deferred) loop
-                  pragma Loop_Invariant
-                    (Released = 0
-                     and then (for all J in 1 .. I - 1 =>
-                           not Is_Due (Self.Deferred, Self.Place,
-                              Self.Freed, J)));
-                  if Is_Due (Self.Deferred, Self.Place, Self.Freed, I) then
-                     Released := I;
-                     exit;
-                  end if;
-               end loop;
-               if Released > 0 then
-                  pragma Assert
-                    (Is_Released (Self.Deferred, Self.Place, Self.Freed,
-                        Released));
-                  Now :=
-                    To_Occurrence
-                      (Deferrals.Element (Self.Deferred, Released));
-                  Item := Deferrals.Element (Self.Deferred, Released);
-                  Deferrals.Remove (Self.Deferred, Released);
-                  Self.Freed := Freed_Without (Released, Self.Freed);
-               end if;
+               Deferrals.Take_Due (Self.Deferred, Self.Place, Item,
+                  Released);
+               Now :=
+                 (if Released then To_Occurrence (Item) else Conditions);
          end case;
       end if;
    end Poll;
@@ -321,35 +193,20 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self   : Region; Item   : Event; Chosen : Firing)
+     (Before : Region; Self : Region; Item : Event; Chosen : Firing)
      return Boolean is
-     (Self.Timers (1)
-      = Timer_After (1, Domain_Of (Chosen), Before.Place, Self.Place,
-           Before.Timers (1))
-      and then Self.Timers (2)
-        = Timer_After (2, Domain_Of (Chosen), Before.Place, Self.Place,
-             Before.Timers (2))
-      and then Self.Timers (3)
-        = Timer_After (3, Domain_Of (Chosen), Before.Place, Self.Place,
-             Before.Timers (3))
-      and then (if Before.Started
-            then Self.Past
-               = Remembered (Domain_Of (Chosen), Before.Place, Before.Past)
-         else Self.Past = Before.Past)
-      and then Self.Freed
-        = Freed_After (Domain_Of (Chosen), Before.Place,
-             Deferrals.Count (Before.Deferred), Before.Freed)
-      and then (if Is_Deferral (Chosen)
-            then Deferrals.Is_Appended (Before.Deferred, Item,
-                  Self.Deferred)
-               and then Self.Lost
-                 = (Before.Lost or Deferrals.Count (Before.Deferred) = 4)
-         else Self.Deferred = Before.Deferred
-            and then Self.Lost = Before.Lost)) with Ghost;
+     (Self.Timers
+      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Place,
+           Self.Place)
+      and then Self.Past
+        = Remembered (Domain_Of (Chosen), Before.Place, Before.Past)
+      and then Deferrals.Is_Changed (Before.Deferred, Self.Deferred,
+           Is_Deferral (Chosen), Item, Domain_Of (Chosen), Before.Place))
+   with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self   : Region; Item   : Event; Chosen : Firing)
+     (Before : Region; Self : Region; Item : Event; Chosen : Firing)
      return Boolean is
      (Self.Started
       and then Self.Place = Target (Chosen, Before.Place, Before.Past)
@@ -359,212 +216,135 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Fired);
 
    procedure Fire
-     (Self   : in out Region;
-      Ins    : Inputs;
-      Item   : Event;
-      Chosen : Firing)
+     (Self : in out Region; Ins : Inputs; Item : Event; Chosen : Firing)
    with
      Pre => Is_Ready (Self, Ins, Item, Chosen),
      Post =>
        Is_Fired (Self'Old, Self, Item, Chosen)
        and then Is_Safe (Self.Place, Self.Data)
    is
+      use type Chart.Nodes;
       use type Chart.Node;
 
-      Active_Motor : Chart.Node := Chart.Innermost_Motor (Self) with Ghost;
-      Active_Sensor : Chart.Node :=
-        Chart.Innermost_Sensor (Self)
-      with Ghost;
-      Active_Top : Chart.Node := Chart.Innermost_Top (Self) with Ghost;
+      Active : Chart.Nodes := Chart.Innermost (Self) with Ghost;
+      Active_At_First : constant Chart.Nodes := Active with Ghost;
+      Before : constant Infusion_States.Configuration := Self.Place;
       Past : constant Memory := Self.Past;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
          To_Node     : Chart.Node;
-         In_Order    : Boolean := True)
-        return Chart.Node is
+         In_Order    : Boolean := True) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node and then In_Order
             then To_Node
          else Chart.Disorder) with Ghost;
 
       procedure Exit_Self_Test is
       begin
-         Ravenchart.Timers.Disarm (Self.Timers (1));
          Self.Completed_Self_Test := False;
-         Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
-         Self.Freed.New_Volume := Deferrals.Count (Self.Deferred);
-         Active_Top :=
-           Moved (Active_Top, Chart.Self_Test, Chart.Nowhere,
-              Active_Motor = Chart.Nowhere
-              and then Active_Sensor = Chart.Nowhere);
+         Active.Top :=
+           Moved (Active.Top, Chart.Self_Test, Chart.Nowhere,
+              Active.Motor = Chart.Nowhere
+              and then Active.Sensor = Chart.Nowhere);
       end Exit_Self_Test;
 
       procedure Exit_Turning is
       begin
          Self.Data.Speed := 0;
          Self.Completed_Turning := False;
-         Active_Motor := Moved (Active_Motor, Chart.Turning, Chart.Nowhere);
+         Active.Motor := Moved (Active.Motor, Chart.Turning, Chart.Nowhere);
       end Exit_Turning;
 
       procedure Exit_Infusing is
       begin
          Self.Data.Speed := 0;
-         Active_Top := Moved (Active_Top, Chart.Infusing, Chart.Nowhere);
+         Active.Top := Moved (Active.Top, Chart.Infusing, Chart.Nowhere);
       end Exit_Infusing;
 
       procedure Exit_Running is
       begin
          Self.Completed_Running := False;
-         Active_Top := Moved (Active_Top, Chart.Running, Chart.Infusing);
+         Active.Top := Moved (Active.Top, Chart.Running, Chart.Infusing);
       end Exit_Running;
 
       procedure Exit_Filling is
       begin
          Self.Completed_Filling := False;
-         Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
-         Self.Past.Last_In_Infusing := Infusion_States.Filling;
-         Self.Past.Known_In_Infusing := True;
-         Active_Top := Moved (Active_Top, Chart.Filling, Chart.Running);
+         Active.Top := Moved (Active.Top, Chart.Filling, Chart.Running);
       end Exit_Filling;
-
-      procedure Exit_Giving is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active_Top := Moved (Active_Top, Chart.Giving, Chart.Running);
-      end Exit_Giving;
-
-      procedure Exit_Loading is
-      begin
-         Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
-         Self.Past.Last_In_Infusing := Infusion_States.Loading;
-         Self.Past.Known_In_Infusing := True;
-         Active_Top := Moved (Active_Top, Chart.Loading, Chart.Giving);
-      end Exit_Loading;
-
-      procedure Exit_Maintaining is
-      begin
-         Self.Past.Last_In_Infusing := Infusion_States.Maintaining;
-         Self.Past.Known_In_Infusing := True;
-         Active_Top := Moved (Active_Top, Chart.Maintaining, Chart.Giving);
-      end Exit_Maintaining;
-
-      procedure Exit_All_Given is
-      begin
-         Self.Past.Last_In_Infusing := Infusion_States.All_Given;
-         Self.Past.Known_In_Infusing := True;
-         Active_Top := Moved (Active_Top, Chart.All_Given, Chart.Running);
-      end Exit_All_Given;
-
-      procedure Exit_Trickling is
-      begin
-         Self.Past.Last_In_Infusing := Infusion_States.Trickling;
-         Self.Past.Known_In_Infusing := True;
-         Active_Top := Moved (Active_Top, Chart.Trickling, Chart.Infusing);
-      end Exit_Trickling;
 
       procedure Exit_Alarm is
       begin
          Self.Data.Buzzer := False;
-         Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
-         Active_Top := Moved (Active_Top, Chart.Alarm, Chart.Nowhere);
+         Active.Top := Moved (Active.Top, Chart.Alarm, Chart.Nowhere);
       end Exit_Alarm;
-
-      procedure Exit_Silent is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (3));
-         Active_Top := Moved (Active_Top, Chart.Silent, Chart.Alarm);
-      end Exit_Silent;
-
-      procedure Leave_Alarm is
-      begin
-         case Infusion_States.Alarm'(Self.Place.Top) is
-            when Infusion_States.Sounding =>
-               Active_Top :=
-                 Moved (Active_Top, Chart.Sounding, Chart.Alarm);
-            when Infusion_States.Silent =>
-               Exit_Silent;
-         end case;
-      end Leave_Alarm;
-
-      procedure Leave_Giving is
-      begin
-         case Infusion_States.Giving'(Self.Place.Top) is
-            when Infusion_States.Loading =>
-               Exit_Loading;
-            when Infusion_States.Maintaining =>
-               Exit_Maintaining;
-         end case;
-      end Leave_Giving;
 
       procedure Leave_Running is
       begin
-         case Infusion_States.Running'(Self.Place.Top) is
+         case Infusion_States.Running'(Before.Top) is
             when Infusion_States.Filling =>
                Exit_Filling;
             when Infusion_States.Giving =>
-               Leave_Giving;
-               Exit_Giving;
+               Active.Top :=
+                 Moved (Active.Top, Active_At_First.Top, Chart.Running,
+                    Before.Top in Infusion_States.Giving);
             when Infusion_States.All_Given =>
-               Exit_All_Given;
+               Active.Top :=
+                 Moved (Active.Top, Chart.All_Given, Chart.Running);
          end case;
       end Leave_Running;
 
       procedure Leave_Infusing is
       begin
-         case Infusion_States.Infusing'(Self.Place.Top) is
+         case Infusion_States.Infusing'(Before.Top) is
             when Infusion_States.Running =>
                Leave_Running;
                Exit_Running;
             when Infusion_States.Trickling =>
-               Exit_Trickling;
+               Active.Top :=
+                 Moved (Active.Top, Chart.Trickling, Chart.Infusing);
             when Infusion_States.Where_It_Was =>
-               Active_Top :=
-                 Moved (Active_Top, Chart.Where_It_Was, Chart.Infusing);
+               Active.Top :=
+                 Moved (Active.Top, Chart.Where_It_Was, Chart.Infusing);
          end case;
       end Leave_Infusing;
 
       procedure Leave_Motor is
       begin
-         case Self.Place.In_Motor is
+         case Before.In_Motor is
             when Infusion_States.Turning =>
                Exit_Turning;
             when Infusion_States.Motor_Good =>
-               Active_Motor :=
-                 Moved (Active_Motor, Chart.Motor_Good, Chart.Nowhere);
+               Active.Motor :=
+                 Moved (Active.Motor, Chart.Motor_Good, Chart.Nowhere);
          end case;
       end Leave_Motor;
 
       procedure Enter_Self_Test is
       begin
-         Self.Place.Top := Infusion_States.Self_Test;
-         Self.Place.In_Motor := Infusion_States.Turning;
-         Self.Place.In_Sensor := Infusion_States.Listening;
-         Ravenchart.Timers.Arm (Self.Timers (1), 100);
-         Active_Top :=
-           Moved (Active_Top, Chart.Nowhere, Chart.Self_Test,
-              Active_Motor = Chart.Nowhere
-              and then Active_Sensor = Chart.Nowhere);
+         Active.Top :=
+           Moved (Active.Top, Chart.Nowhere, Chart.Self_Test,
+              Active.Motor = Chart.Nowhere
+              and then Active.Sensor = Chart.Nowhere);
          Self.Data.Lamp := Infusion_System.Flashing;
       end Enter_Self_Test;
 
       procedure Enter_Turning is
       begin
-         Self.Place.In_Motor := Infusion_States.Turning;
          Self.Visits_Turning := Ravenchart.Next (Self.Visits_Turning);
          Self.Done_In.Turning := False;
-         Active_Motor :=
-           Moved (Active_Motor, Chart.Nowhere, Chart.Turning,
-              Active_Top = Chart.Self_Test);
+         Active.Motor :=
+           Moved (Active.Motor, Chart.Nowhere, Chart.Turning,
+              Active.Top = Chart.Self_Test);
          Self.Data.Speed := 10;
       end Enter_Turning;
 
       procedure Enter_Motor_Good is
       begin
-         Self.Place.In_Motor := Infusion_States.Motor_Good;
-         Active_Motor :=
-           Moved (Active_Motor, Chart.Nowhere, Chart.Motor_Good,
-              Active_Top = Chart.Self_Test);
+         Active.Motor :=
+           Moved (Active.Motor, Chart.Nowhere, Chart.Motor_Good,
+              Active.Top = Chart.Self_Test);
          if Self.Place.In_Sensor = Infusion_States.Sensor_Good then
             Self.Completed_Self_Test := True;
          end if;
@@ -572,10 +352,9 @@ is
 
       procedure Enter_Sensor_Good is
       begin
-         Self.Place.In_Sensor := Infusion_States.Sensor_Good;
-         Active_Sensor :=
-           Moved (Active_Sensor, Chart.Nowhere, Chart.Sensor_Good,
-              Active_Top = Chart.Self_Test);
+         Active.Sensor :=
+           Moved (Active.Sensor, Chart.Nowhere, Chart.Sensor_Good,
+              Active.Top = Chart.Self_Test);
          if Self.Place.In_Motor = Infusion_States.Motor_Good then
             Self.Completed_Self_Test := True;
          end if;
@@ -583,376 +362,228 @@ is
 
       procedure Enter_Programming is
       begin
-         Self.Place.Top := Infusion_States.Programming;
-         Active_Top := Moved (Active_Top, Chart.Nowhere, Chart.Programming);
+         Active.Top := Moved (Active.Top, Chart.Nowhere, Chart.Programming);
          Self.Data.Lamp := Infusion_System.Dark;
       end Enter_Programming;
 
       procedure Enter_Infusing is
       begin
-         Active_Top := Moved (Active_Top, Chart.Nowhere, Chart.Infusing);
+         Active.Top := Moved (Active.Top, Chart.Nowhere, Chart.Infusing);
          Self.Data.Lamp := Infusion_System.Steady;
       end Enter_Infusing;
 
       procedure Enter_Filling is
       begin
-         Self.Place.Top := Infusion_States.Filling;
          Self.Visits_Filling := Ravenchart.Next (Self.Visits_Filling);
          Self.Done_In.Filling := False;
-         Active_Top := Moved (Active_Top, Chart.Running, Chart.Filling);
+         Active.Top := Moved (Active.Top, Chart.Running, Chart.Filling);
          Self.Data.Speed := 100;
       end Enter_Filling;
 
-      procedure Enter_Giving is
-      begin
-         Ravenchart.Timers.Arm (Self.Timers (2), 20, 20);
-         Active_Top := Moved (Active_Top, Chart.Running, Chart.Giving);
-      end Enter_Giving;
-
       procedure Enter_Loading is
       begin
-         Self.Place.Top := Infusion_States.Loading;
-         Active_Top := Moved (Active_Top, Chart.Giving, Chart.Loading);
+         Active.Top := Moved (Active.Top, Chart.Giving, Chart.Loading);
          Self.Data.Speed :=
            Infusion_System.Unit_Ul'Min (2 * Self.Data.Portion, 500);
       end Enter_Loading;
 
       procedure Enter_Maintaining is
       begin
-         Self.Place.Top := Infusion_States.Maintaining;
-         Active_Top := Moved (Active_Top, Chart.Giving, Chart.Maintaining);
+         Active.Top := Moved (Active.Top, Chart.Giving, Chart.Maintaining);
          Self.Data.Speed := Self.Data.Portion;
       end Enter_Maintaining;
 
       procedure Enter_All_Given is
       begin
-         Self.Place.Top := Infusion_States.All_Given;
-         Active_Top := Moved (Active_Top, Chart.Running, Chart.All_Given);
+         Active.Top := Moved (Active.Top, Chart.Running, Chart.All_Given);
          Self.Completed_Running := True;
       end Enter_All_Given;
 
       procedure Enter_Trickling is
       begin
-         Self.Place.Top := Infusion_States.Trickling;
-         Active_Top := Moved (Active_Top, Chart.Infusing, Chart.Trickling);
+         Active.Top := Moved (Active.Top, Chart.Infusing, Chart.Trickling);
          Self.Data.Speed := Ins.Trickle;
       end Enter_Trickling;
 
       procedure Enter_Alarm is
       begin
-         Active_Top := Moved (Active_Top, Chart.Nowhere, Chart.Alarm);
+         Active.Top := Moved (Active.Top, Chart.Nowhere, Chart.Alarm);
          Self.Data.Lamp := Infusion_System.Flashing;
       end Enter_Alarm;
 
       procedure Enter_Sounding is
       begin
-         Self.Place.Top := Infusion_States.Sounding;
-         Active_Top := Moved (Active_Top, Chart.Alarm, Chart.Sounding);
+         Active.Top := Moved (Active.Top, Chart.Alarm, Chart.Sounding);
          Self.Data.Buzzer := True;
       end Enter_Sounding;
 
       procedure Enter_Silent is
       begin
-         Self.Place.Top := Infusion_States.Silent;
-         Ravenchart.Timers.Arm (Self.Timers (3), 600);
-         Active_Top := Moved (Active_Top, Chart.Alarm, Chart.Silent);
+         Active.Top := Moved (Active.Top, Chart.Alarm, Chart.Silent);
          Self.Data.Buzzer := False;
       end Enter_Silent;
-
-      function Is_Agreed return Boolean is
-        (Active_Motor = Chart.Innermost_Motor (Self)
-         and then Active_Sensor = Chart.Innermost_Sensor (Self)
-         and then Active_Top = Chart.Innermost_Top (Self)) with Ghost;
-
-      subtype From_Turned is Selection range Turned .. Filled_Up;
-
-      procedure Fire_From_Turned (Chosen : From_Turned)
-      with
-        Pre =>
-          Is_Ready (Self, Ins, Item, Chosen)
-          and then Self.Past = Past
-          and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Item, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
-      is
-      begin
-         case Chosen is
-            when Turned =>
-               Exit_Turning;
-               Enter_Motor_Good;
-            when Heard =>
-               Active_Sensor :=
-                 Moved (Active_Sensor, Chart.Listening, Chart.Nowhere);
-               Enter_Sensor_Good;
-            when Loaded =>
-               Exit_Loading;
-               Enter_Maintaining;
-            when Change =>
-               Exit_Maintaining;
-               pragma Assert
-                 (Active_Top = Chart.Giving
-                  and then Active_Motor = Chart.Innermost_Motor (Self)
-                  and then Active_Sensor = Chart.Innermost_Sensor (Self));
-               Self.Data.Portion := Item.Value_Portion;
-               pragma Assert
-                 (Active_Top = Chart.Giving
-                  and then Active_Motor = Chart.Innermost_Motor (Self)
-                  and then Active_Sensor = Chart.Innermost_Sensor (Self));
-               Enter_Maintaining;
-            when Defer_New_Portion_In_Loading =>
-               if Deferrals.Count (Self.Deferred) = 4 then
-                  Self.Lost := True;
-               else
-                  Deferrals.Append (Self.Deferred, Item);
-               end if;
-            when Filled_Up =>
-               Exit_Filling;
-               Enter_Giving;
-               Enter_Loading;
-         end case;
-      end Fire_From_Turned;
-
-      subtype From_Beat is Selection range Beat .. Remind;
-
-      procedure Fire_From_Beat (Chosen : From_Beat)
-      with
-        Pre =>
-          Is_Ready (Self, Ins, Item, Chosen)
-          and then Self.Past = Past
-          and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Item, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
-      is
-      begin
-         case Chosen is
-            when Beat =>
-               Self.Data.Given :=
-                 Infusion_System.Unit_Ul'Min
-                   (Self.Data.Given + Self.Data.Speed, Self.Data.Volume);
-            when Enough =>
-               Leave_Giving;
-               Exit_Giving;
-               Enter_All_Given;
-            when Defer_New_Portion_In_Filling =>
-               if Deferrals.Count (Self.Deferred) = 4 then
-                  Self.Lost := True;
-               else
-                  Deferrals.Append (Self.Deferred, Item);
-               end if;
-            when Finished =>
-               Leave_Running;
-               Exit_Running;
-               Enter_Trickling;
-            when Hush =>
-               Active_Top :=
-                 Moved (Active_Top, Chart.Sounding, Chart.Alarm);
-               Enter_Silent;
-            when Remind =>
-               Exit_Silent;
-               Enter_Sounding;
-         end case;
-      end Fire_From_Beat;
-
-      subtype From_Restore_Where_It_Was is
-        Selection
-        range Restore_Where_It_Was
-        .. Order_Volume;
-
-      procedure Fire_From_Restore_Where_It_Was
-        (Chosen : From_Restore_Where_It_Was)
-      with
-        Pre =>
-          Is_Ready (Self, Ins, Item, Chosen)
-          and then Self.Past = Past
-          and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Item, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
-      is
-      begin
-         case Chosen is
-            when Restore_Where_It_Was =>
-               Active_Top :=
-                 Moved (Active_Top, Chart.Where_It_Was, Chart.Infusing);
-               if Past.Known_In_Infusing then
-                  case Past.Last_In_Infusing is
-                     when Infusion_States.Filling
-                        | Infusion_States.All_Given
-                        | Infusion_States.Where_It_Was =>
-                        Active_Top :=
-                          Moved (Active_Top, Chart.Infusing, Chart.Running);
-                        Enter_Filling;
-                     when Infusion_States.Loading =>
-                        Active_Top :=
-                          Moved (Active_Top, Chart.Infusing, Chart.Running);
-                        Enter_Giving;
-                        Enter_Loading;
-                     when Infusion_States.Maintaining =>
-                        Active_Top :=
-                          Moved (Active_Top, Chart.Infusing, Chart.Running);
-                        Enter_Giving;
-                        Enter_Maintaining;
-                     when Infusion_States.Trickling =>
-                        Enter_Trickling;
-                  end case;
-               else
-                  Active_Top :=
-                    Moved (Active_Top, Chart.Infusing, Chart.Running);
-                  Enter_Filling;
-               end if;
-            when Default_Of_Where_It_Was =>
-               Active_Top :=
-                 Moved (Active_Top, Chart.Where_It_Was, Chart.Running);
-               Enter_Filling;
-            when Ready =>
-               Leave_Motor;
-               Active_Sensor :=
-                 Moved (Active_Sensor, Chart.Innermost_Sensor (Self),
-                    Chart.Nowhere,
-                    Self.Place.Top = Infusion_States.Self_Test);
-               Exit_Self_Test;
-               Enter_Programming;
-            when Again =>
-               Leave_Motor;
-               Active_Sensor :=
-                 Moved (Active_Sensor, Chart.Innermost_Sensor (Self),
-                    Chart.Nowhere,
-                    Self.Place.Top = Infusion_States.Self_Test);
-               Exit_Self_Test;
-               Enter_Self_Test;
-               Enter_Turning;
-               Active_Sensor :=
-                 Moved (Active_Sensor, Chart.Nowhere, Chart.Listening,
-                    Active_Top = Chart.Self_Test);
-               Self.Place.In_Sensor := Infusion_States.Listening;
-            when Order_Portion =>
-               Self.Data.Portion := Item.Value_Portion;
-            when Order_Volume =>
-               Self.Data.Volume := Item.Value_Volume;
-         end case;
-      end Fire_From_Restore_Where_It_Was;
-
-      subtype From_Start is Selection range Start .. Give_Up;
-
-      procedure Fire_From_Start (Chosen : From_Start)
-      with
-        Pre =>
-          Is_Ready (Self, Ins, Item, Chosen)
-          and then Self.Past = Past
-          and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Item, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
-      is
-      begin
-         case Chosen is
-            when Start =>
-               Active_Top :=
-                 Moved (Active_Top, Chart.Programming, Chart.Nowhere);
-               pragma Assert
-                 (Active_Top = Chart.Nowhere
-                  and then Active_Motor = Chart.Nowhere
-                  and then Active_Sensor = Chart.Nowhere);
-               Self.Data.Given := 0;
-               pragma Assert
-                 (Active_Top = Chart.Nowhere
-                  and then Active_Motor = Chart.Nowhere
-                  and then Active_Sensor = Chart.Nowhere);
-               Enter_Infusing;
-               Active_Top :=
-                 Moved (Active_Top, Chart.Infusing, Chart.Running);
-               Enter_Filling;
-            when Stop =>
-               Leave_Infusing;
-               Exit_Infusing;
-               Enter_Programming;
-            when Lost | Trouble =>
-               Leave_Infusing;
-               Exit_Infusing;
-               Enter_Alarm;
-               Enter_Sounding;
-            when Resume =>
-               Leave_Alarm;
-               Exit_Alarm;
-               Active_Top :=
-                 Moved (Active_Top, Chart.Nowhere, Chart.May_Go_On);
-               Self.Place.Top := Infusion_States.May_Go_On;
-            when Give_Up =>
-               Leave_Alarm;
-               Exit_Alarm;
-               Enter_Programming;
-         end case;
-      end Fire_From_Start;
-
-      subtype From_Defer_New_Portion_In_Self_Test is
-        Selection
-        range Defer_New_Portion_In_Self_Test
-        .. Not_Yet;
-
-      procedure Fire_From_Defer_New_Portion_In_Self_Test
-        (Chosen : From_Defer_New_Portion_In_Self_Test)
-      with
-        Pre =>
-          Is_Ready (Self, Ins, Item, Chosen)
-          and then Self.Past = Past
-          and then Is_Agreed,
-        Post =>
-          Is_Fired (Self'Old, Self, Item, Chosen)
-          and then Is_Safe (Self.Place, Self.Data)
-          and then Is_Agreed
-      is
-      begin
-         case Chosen is
-            when Defer_New_Portion_In_Self_Test
-               | Defer_New_Volume_In_Self_Test
-               | Defer_New_Portion_In_Alarm =>
-               if Deferrals.Count (Self.Deferred) = 4 then
-                  Self.Lost := True;
-               else
-                  Deferrals.Append (Self.Deferred, Item);
-               end if;
-            when Go_On =>
-               Active_Top :=
-                 Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
-               Enter_Infusing;
-               Active_Top :=
-                 Moved (Active_Top, Chart.Infusing, Chart.Where_It_Was);
-               Self.Place.Top := Infusion_States.Where_It_Was;
-            when Not_Yet =>
-               Active_Top :=
-                 Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
-               Enter_Alarm;
-               Enter_Sounding;
-         end case;
-      end Fire_From_Defer_New_Portion_In_Self_Test;
    begin
+      Self.Started := True;
+      Self.Place := Target (Chosen, Before, Past);
+      Self.Timers :=
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Place);
+      Self.Past := Remembered (Domain_Of (Chosen), Before, Self.Past);
+      Deferrals.Change (Self.Deferred, Is_Deferral (Chosen), Item,
+         Domain_Of (Chosen), Before);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Enter_Self_Test;
             Enter_Turning;
-            Active_Sensor :=
-              Moved (Active_Sensor, Chart.Nowhere, Chart.Listening,
-                 Active_Top = Chart.Self_Test);
-            Self.Place.In_Sensor := Infusion_States.Listening;
-         when Turned .. Filled_Up =>
-            Fire_From_Turned (Chosen);
-         when Beat .. Remind =>
-            Fire_From_Beat (Chosen);
-         when Restore_Where_It_Was .. Order_Volume =>
-            Fire_From_Restore_Where_It_Was (Chosen);
-         when Start .. Give_Up =>
-            Fire_From_Start (Chosen);
-         when Defer_New_Portion_In_Self_Test .. Not_Yet =>
-            Fire_From_Defer_New_Portion_In_Self_Test (Chosen);
+            Active.Sensor :=
+              Moved (Active.Sensor, Chart.Nowhere, Chart.Listening,
+                 Active.Top = Chart.Self_Test);
+         when Turned =>
+            Exit_Turning;
+            Enter_Motor_Good;
+         when Heard =>
+            Active.Sensor :=
+              Moved (Active.Sensor, Chart.Listening, Chart.Nowhere);
+            Enter_Sensor_Good;
+         when Loaded =>
+            Active.Top := Moved (Active.Top, Chart.Loading, Chart.Giving);
+            Enter_Maintaining;
+         when Change =>
+            Active.Top :=
+              Moved (Active.Top, Chart.Maintaining, Chart.Giving);
+            Self.Data.Portion := Item.Value_Portion;
+            Active.Top := Moved (Active.Top, Chart.Giving, Chart.Giving);
+            Enter_Maintaining;
+         when Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
+            | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
+            | Defer_New_Portion_In_Alarm =>
+            null;
+         when Filled_Up =>
+            Exit_Filling;
+            Active.Top := Moved (Active.Top, Chart.Running, Chart.Giving);
+            Enter_Loading;
+         when Beat =>
+            Self.Data.Given :=
+              Infusion_System.Unit_Ul'Min
+                (Self.Data.Given + Self.Data.Speed, Self.Data.Volume);
+         when Enough =>
+            Active.Top :=
+              Moved (Active.Top, Active_At_First.Top, Chart.Running,
+                 Before.Top in Infusion_States.Giving);
+            Enter_All_Given;
+         when Finished =>
+            Leave_Running;
+            Exit_Running;
+            Enter_Trickling;
+         when Hush =>
+            Active.Top := Moved (Active.Top, Chart.Sounding, Chart.Alarm);
+            Enter_Silent;
+         when Remind =>
+            Active.Top := Moved (Active.Top, Chart.Silent, Chart.Alarm);
+            Enter_Sounding;
+         when Restore_Where_It_Was =>
+            Active.Top :=
+              Moved (Active.Top, Chart.Where_It_Was, Chart.Infusing);
+            if Past.Known_In_Infusing then
+               case Past.Last_In_Infusing is
+                  when Infusion_States.Filling | Infusion_States.All_Given
+                     | Infusion_States.Where_It_Was =>
+                     Active.Top :=
+                       Moved (Active.Top, Chart.Infusing, Chart.Running);
+                     Enter_Filling;
+                  when Infusion_States.Loading =>
+                     Active.Top :=
+                       Moved (Active.Top, Chart.Infusing, Chart.Running);
+                     Active.Top :=
+                       Moved (Active.Top, Chart.Running, Chart.Giving);
+                     Enter_Loading;
+                  when Infusion_States.Maintaining =>
+                     Active.Top :=
+                       Moved (Active.Top, Chart.Infusing, Chart.Running);
+                     Active.Top :=
+                       Moved (Active.Top, Chart.Running, Chart.Giving);
+                     Enter_Maintaining;
+                  when Infusion_States.Trickling =>
+                     Enter_Trickling;
+               end case;
+            else
+               Active.Top :=
+                 Moved (Active.Top, Chart.Infusing, Chart.Running);
+               Enter_Filling;
+            end if;
+         when Default_Of_Where_It_Was =>
+            Active.Top :=
+              Moved (Active.Top, Chart.Where_It_Was, Chart.Running);
+            Enter_Filling;
+         when Ready =>
+            Leave_Motor;
+            Active.Sensor :=
+              Moved (Active.Sensor, Active_At_First.Sensor, Chart.Nowhere,
+                 Before.Top = Infusion_States.Self_Test);
+            Exit_Self_Test;
+            Enter_Programming;
+         when Again =>
+            Leave_Motor;
+            Active.Sensor :=
+              Moved (Active.Sensor, Active_At_First.Sensor, Chart.Nowhere,
+                 Before.Top = Infusion_States.Self_Test);
+            Exit_Self_Test;
+            Enter_Self_Test;
+            Enter_Turning;
+            Active.Sensor :=
+              Moved (Active.Sensor, Chart.Nowhere, Chart.Listening,
+                 Active.Top = Chart.Self_Test);
+         when Order_Portion =>
+            Self.Data.Portion := Item.Value_Portion;
+         when Order_Volume =>
+            Self.Data.Volume := Item.Value_Volume;
+         when Start =>
+            Active.Top :=
+              Moved (Active.Top, Chart.Programming, Chart.Nowhere,
+                 Active.Motor = Chart.Nowhere
+                 and then Active.Sensor = Chart.Nowhere);
+            Self.Data.Given := 0;
+            Active.Top :=
+              Moved (Active.Top, Chart.Nowhere, Chart.Nowhere,
+                 Active.Motor = Chart.Nowhere
+                 and then Active.Sensor = Chart.Nowhere);
+            Enter_Infusing;
+            Active.Top := Moved (Active.Top, Chart.Infusing, Chart.Running);
+            Enter_Filling;
+         when Stop =>
+            Leave_Infusing;
+            Exit_Infusing;
+            Enter_Programming;
+         when Lost | Trouble =>
+            Leave_Infusing;
+            Exit_Infusing;
+            Enter_Alarm;
+            Enter_Sounding;
+         when Resume =>
+            Active.Top :=
+              Moved (Active.Top, Active_At_First.Top, Chart.Alarm,
+                 Before.Top in Infusion_States.Alarm);
+            Exit_Alarm;
+            Active.Top :=
+              Moved (Active.Top, Chart.Nowhere, Chart.May_Go_On);
+         when Give_Up =>
+            Active.Top :=
+              Moved (Active.Top, Active_At_First.Top, Chart.Alarm,
+                 Before.Top in Infusion_States.Alarm);
+            Exit_Alarm;
+            Enter_Programming;
+         when Go_On =>
+            Active.Top :=
+              Moved (Active.Top, Chart.May_Go_On, Chart.Nowhere);
+            Enter_Infusing;
+            Active.Top :=
+              Moved (Active.Top, Chart.Infusing, Chart.Where_It_Was);
+         when Not_Yet =>
+            Active.Top :=
+              Moved (Active.Top, Chart.May_Go_On, Chart.Nowhere);
+            Enter_Alarm;
+            Enter_Sounding;
       end case;
-      pragma Assert (Is_Agreed);
+      pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step
@@ -960,51 +591,40 @@ is
       Now   : Occurrence;
       Ins   : Inputs;
       Item  : Event;
-      Fired : out Firing_List) is
+      Fired : out Firings.List) is
       C : Choice;
 
       procedure Fire_Whole (T : Firing)
       with
         Pre => Is_Ready (Self, Ins, Item, T) and then Fired.Count <= 6,
         Post =>
-          Fired.Count in Fired.Count'Old + 1 .. Fired.Count'Old + 3
+          Firings.Is_Added (Fired'Old, T, Fired)
           and then Self.Started
-          and then Fired.Items (Fired.Count'Old + 1) = T
-          and then (for all J in 1 .. Fired.Count'Old =>
-                Fired.Items (J) = Fired.Items'Old (J))
-          and then (for all J in Fired.Count'Old + 2 .. Fired.Count =>
-                Is_Segment (Fired.Items (J)))
           and then Segments_Left (Self.Place) = 0
           and then Is_Safe (Self.Place, Self.Data)
       is
-         Before : constant Firing_List := Fired with Ghost;
+         Before : constant Firings.List := Fired with Ghost;
          Segment : Selection;
       begin
          Fire (Self, Ins, Item, T);
-         Fired.Count := Fired.Count + 1;
-         Fired.Items (Fired.Count) := T;
+         Firings.Add (Fired, T);
          for I in 1 .. 2 loop
             pragma Loop_Invariant
               (Fired.Count = Before.Count + I
+               and then Firings.Is_Added (Before, T, Fired)
                and then Self.Started
-               and then Fired.Items (Before.Count + 1) = T
-               and then (for all J in 1 .. Before.Count =>
-                     Fired.Items (J) = Before.Items (J))
-               and then (for all J in Before.Count + 2 .. Fired.Count =>
-                     Is_Segment (Fired.Items (J)))
                and then Segments_Left (Self.Place) <= 3 - I
                and then Is_Safe (Self.Place, Self.Data));
             if Segments_Left (Self.Place) = 0 then
                exit;
             end if;
-            Segment := Select_Segment (Self, Ins, Item);
+            Segment := Next_Segment (Self, Ins, Item);
             Fire (Self, Ins, Item, Segment);
-            Fired.Count := Fired.Count + 1;
-            Fired.Items (Fired.Count) := Segment;
+            Firings.Add (Fired, Segment);
          end loop;
       end Fire_Whole;
    begin
-      Fired := (Count => 0, Items => (others => None));
+      Fired := Firings.Nothing;
       if Now = Start_Of_Region then
          Fire_Whole (Initial_Entry);
       else
@@ -1018,8 +638,8 @@ is
             pragma Assert
               (Fired.Count <= 3
                and then Is_Of_Choice (Fired, C, Motor_Transition'Last)
-               and then Is_Ordered (Fired)
-               and then (if C.Motor /= None then Has (Fired, C.Motor)));
+               and then (if C.Motor /= None
+                     then Firings.Has (Fired, C.Motor)));
             if C.Sensor /= None and then In_Source (C.Sensor, Self.Place)
             then
                Fire_Whole (C.Sensor);
@@ -1027,18 +647,12 @@ is
             pragma Assert
               (Fired.Count <= 6
                and then Is_Of_Choice (Fired, C, Sensor_Transition'Last)
-               and then Is_Ordered (Fired)
-               and then (if C.Motor /= None then Has (Fired, C.Motor)
-                  elsif C.Sensor /= None then Has (Fired, C.Sensor)));
+               and then (if C.Motor /= None
+                     then Firings.Has (Fired, C.Motor)
+                  elsif C.Sensor /= None then Firings.Has (Fired, C.Sensor)));
             if C.Top /= None and then In_Source (C.Top, Self.Place) then
                Fire_Whole (C.Top);
             end if;
-            pragma Assert
-              (Is_Of_Choice (Fired, C, Top_Transition'Last)
-               and then Is_Ordered (Fired)
-               and then (if C.Motor /= None then Has (Fired, C.Motor)
-                  elsif C.Sensor /= None then Has (Fired, C.Sensor)
-                  elsif C.Top /= None then Has (Fired, C.Top)));
          end if;
       end if;
    end Step;

@@ -6,14 +6,12 @@ pragma Ada_2022;
 pragma Warnings (Off, "*array aggregate using*");
 
 with Ravenchart.Timers;
-with Ravenchart.Event_Lists;
+with Ravenchart.Deferrals;
+with Ravenchart.Firing_Lists;
 
 package Infusion_System.Pump.Infusion
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Infusion_States.Leaf;
    use type Infusion_States.Configuration;
    use type Infusion_States.Motor_Leaf;
@@ -102,25 +100,7 @@ is
       Known_In_Infusing : Boolean := False;
    end record;
 
-   package Deferrals is new Ravenchart.Event_Lists
-     (Event => Pump.Event, Null_Event => Pump.No_Event, Capacity => 4);
-
-   use type Deferrals.List;
-
-   --  Of each event those among the first so many were kept when an exit
-   --  freed it.
-   type Freed_Events is record
-      New_Portion : Natural := 0;
-      New_Volume  : Natural := 0;
-   end record;
-
-   type Firing_Array is array (1 .. 9) of Selection;
-
-   --  What one step has fired, in order; None behind the last.
-   type Firing_List is record
-      Count : Natural range 0 .. 9 := 0;
-      Items : Firing_Array := (others => None);
-   end record;
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 3);
 
    --  Is the do activity of an active state done?
    type Done_States is record
@@ -128,12 +108,89 @@ is
       Filling : Boolean := False;
    end record;
 
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is
+     (Nothing, Inside_Motor, Inside_Sensor, Inside_Infusing, Inside_Running,
+      Inside_Giving, Inside_Alarm, Everything, Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Turned => Inside_Motor,
+        when Heard => Inside_Sensor,
+        when Loaded | Change => Inside_Giving,
+        when Defer_New_Portion_In_Loading | Beat
+           | Defer_New_Portion_In_Filling | Order_Portion | Order_Volume
+           | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
+           | Defer_New_Portion_In_Alarm =>
+           Nothing,
+        when Filled_Up | Enough => Inside_Running,
+        when Finished | Restore_Where_It_Was | Default_Of_Where_It_Was =>
+           Inside_Infusing,
+        when Hush | Remind => Inside_Alarm,
+        when Ready | Again | Start | Stop | Lost | Trouble | Resume
+           | Give_Up | Go_On | Not_Yet =>
+           Everything);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
+   function Name_Of (Item : Event) return Event_Name is (Item.Name);
+
+   function Is_Deferred
+     (Name : Event_Name; Place : Infusion_States.Configuration)
+     return Boolean is
+     (case Name is
+        when New_Portion =>
+           Place.Top = Infusion_States.Self_Test
+           or else Place.Top = Infusion_States.Filling
+           or else Place.Top = Infusion_States.Loading
+           or else Place.Top in Infusion_States.Alarm,
+        when New_Volume => Place.Top = Infusion_States.Self_Test,
+        when others => False);
+   --  Does an active state defer it?
+
+   function Is_Freed
+     (Name : Event_Name; D : Domain; Place : Infusion_States.Configuration)
+     return Boolean is
+     (case Name is
+        when New_Portion =>
+           (D = Everything and then Place.Top = Infusion_States.Self_Test)
+           or else (D in Inside_Running | Inside_Infusing | Everything
+              and then Place.Top = Infusion_States.Filling)
+           or else (D in Inside_Giving | Inside_Running | Inside_Infusing
+                | Everything
+              and then Place.Top = Infusion_States.Loading)
+           or else (D = Everything
+              and then Place.Top in Infusion_States.Alarm),
+        when New_Volume =>
+           D = Everything and then Place.Top = Infusion_States.Self_Test,
+        when others => False);
+   --  Is a state exited that defers it? Then it is due, whatever is
+   --  entered.
+
+   function Is_Deferral (T : Selection) return Boolean is
+     (T in Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
+        | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
+        | Defer_New_Portion_In_Alarm);
+
+   package Deferrals is new Ravenchart.Deferrals
+     (Event => Pump.Event,
+      Null_Event => Pump.No_Event,
+      Event_Name => Pump.Event_Name,
+      Name_Of => Name_Of,
+      Capacity => 4,
+      Configuration => Infusion_States.Configuration,
+      Is_Deferred => Is_Deferred,
+      Domain => Domain,
+      Is_Freed => Is_Freed);
+
    --  The region's own state.
    type Region is record
       Started             : Boolean := False;
       Place               : Infusion_States.Configuration;
       Past                : Memory;
-      Timers              : Ravenchart.Timers.Timer_Array (1 .. 3);
+      Timers              : Time_Outs;
       Completed_Self_Test : Boolean := False;
       Completed_Turning   : Boolean := False;
       Completed_Running   : Boolean := False;
@@ -141,15 +198,23 @@ is
       Done_In             : Done_States;
       Visits_Turning      : Ravenchart.Event_Count := 0;
       Visits_Filling      : Ravenchart.Event_Count := 0;
-      Deferred            : Deferrals.List;
-      Freed               : Freed_Events;
-      Lost                : Boolean := False;
+      Deferred            : Deferrals.Store;
       Data                : Variables;
    end record;
 
+   function Is_Segment (T : Selection) return Boolean is
+     (T in Restore_Where_It_Was | Default_Of_Where_It_Was | Go_On | Not_Yet);
+   --  Does it go on from a choice or history?
+
+   package Firings is new Ravenchart.Firing_Lists
+     (Selection => Selection,
+      No_Selection => None,
+      Is_Segment => Is_Segment,
+      Most_Segments => 2,
+      Capacity => 9);
+
    function In_Source
-     (T : Transition; Place : Infusion_States.Configuration)
-     return Boolean is
+     (T : Transition; Place : Infusion_States.Configuration) return Boolean is
      (case T is
         when Turned =>
            Place.Top = Infusion_States.Self_Test
@@ -185,8 +250,7 @@ is
       Self : Region;
       Now  : Occurrence;
       Ins  : Inputs;
-      Item : Event)
-     return Boolean is
+      Item : Event) return Boolean is
      (In_Source (T, Self.Place)
       and then (case T is
            when Turned => Now = Completion_Of_Turning,
@@ -247,7 +311,7 @@ is
    --  The leaf that deep history enters in Infusing.
 
    function Target
-     (T     : Firing; Place : Infusion_States.Configuration; Past  : Memory)
+     (T : Firing; Place : Infusion_States.Configuration; Past : Memory)
      return Infusion_States.Configuration is
      (case T is
         when Initial_Entry | Again =>
@@ -281,76 +345,43 @@ is
         when Go_On => (Place with delta Top => Infusion_States.Where_It_Was));
    --  The leaves it leads to; those of a composite are its defaults.
 
-   --  The innermost region that holds all that a transition leaves and
-   --  enters.
-   type Domain is
-     (Nothing, Inside_Motor, Inside_Sensor, Inside_Infusing, Inside_Running,
-      Inside_Giving, Inside_Alarm, Everything, Beginning);
-
-   function Domain_Of (T : Firing) return Domain is
-     (case T is
-        when Initial_Entry => Beginning,
-        when Turned => Inside_Motor,
-        when Heard => Inside_Sensor,
-        when Loaded | Change => Inside_Giving,
-        when Defer_New_Portion_In_Loading | Beat
-           | Defer_New_Portion_In_Filling | Order_Portion | Order_Volume
-           | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
-           | Defer_New_Portion_In_Alarm =>
-           Nothing,
-        when Filled_Up | Enough => Inside_Running,
-        when Finished | Restore_Where_It_Was | Default_Of_Where_It_Was =>
-           Inside_Infusing,
-        when Hush | Remind => Inside_Alarm,
-        when Ready | Again | Start | Stop | Lost | Trouble | Resume
-           | Give_Up | Go_On | Not_Yet =>
-           Everything);
-   --  Everything active inside it is left, and what is active then is
-   --  entered.
-
-   function Timer_After
-     (I      : Positive;
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Infusion_States.Configuration;
-      After  : Infusion_States.Configuration;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
-              D /= Beginning and then Before.Top = Infusion_States.Self_Test,
-              After.Top = Infusion_States.Self_Test,
-              Ravenchart.Timers.Started (100)),
-        when 2 =>
-           Ravenchart.Timers.Moved (Timer,
-              D in Inside_Running | Inside_Infusing | Everything | Beginning,
-              D /= Beginning and then Before.Top in Infusion_States.Giving,
-              After.Top in Infusion_States.Giving,
-              Ravenchart.Timers.Started (20, 20)),
-        when 3 =>
-           Ravenchart.Timers.Moved (Timer,
-              D in Inside_Alarm | Everything | Beginning,
-              D /= Beginning and then Before.Top = Infusion_States.Silent,
-              After.Top = Infusion_States.Silent,
-              Ravenchart.Timers.Started (600)),
-        when others => Timer);
+      After  : Infusion_States.Configuration) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1), D in Everything | Beginning,
+            D /= Beginning and then Before.Top = Infusion_States.Self_Test,
+            After.Top = Infusion_States.Self_Test,
+            Ravenchart.Timers.Started (100)),
+       2 =>
+         Ravenchart.Timers.Moved (Timers (2),
+            D in Inside_Running | Inside_Infusing | Everything | Beginning,
+            D /= Beginning and then Before.Top in Infusion_States.Giving,
+            After.Top in Infusion_States.Giving,
+            Ravenchart.Timers.Started (20, 20)),
+       3 =>
+         Ravenchart.Timers.Moved (Timers (3),
+            D in Inside_Alarm | Everything | Beginning,
+            D /= Beginning and then Before.Top = Infusion_States.Silent,
+            After.Top = Infusion_States.Silent,
+            Ravenchart.Timers.Started (600))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
    function Remembered
-     (D     : Domain; Place : Infusion_States.Configuration; Past  : Memory)
+     (D : Domain; Place : Infusion_States.Configuration; Past : Memory)
      return Memory is
      ((Last_In_Infusing =>
-         (if D
-             in Inside_Running | Inside_Giving | Inside_Infusing
+         (if D in Inside_Running | Inside_Giving | Inside_Infusing
                | Everything
              and then Place.Top in Infusion_States.Infusing
              and then Place.Top /= Infusion_States.Where_It_Was
              then Place.Top
           else Past.Last_In_Infusing),
        Known_In_Infusing =>
-         (if D
-             in Inside_Running | Inside_Giving | Inside_Infusing
+         (if D in Inside_Running | Inside_Giving | Inside_Infusing
                | Everything
              and then Place.Top in Infusion_States.Infusing
              and then Place.Top /= Infusion_States.Where_It_Was
@@ -359,31 +390,6 @@ is
    --  What histories know then: the leaf that was left, nothing after a
    --  final state.
 
-   function Freed_After
-     (D     : Domain;
-      Place : Infusion_States.Configuration;
-      Count : Natural;
-      Freed : Freed_Events)
-     return Freed_Events is
-     ((New_Portion =>
-         (if (D = Everything and then Place.Top = Infusion_States.Self_Test)
-             or else (D in Inside_Running | Inside_Infusing | Everything
-                and then Place.Top = Infusion_States.Filling)
-             or else (D
-                in Inside_Giving | Inside_Running | Inside_Infusing
-                  | Everything
-                and then Place.Top = Infusion_States.Loading)
-             or else (D = Everything
-                and then Place.Top in Infusion_States.Alarm)
-             then Count
-          else Freed.New_Portion),
-       New_Volume =>
-         (if D = Everything and then Place.Top = Infusion_States.Self_Test
-             then Count
-          else Freed.New_Volume)));
-   --  Each exit of a state frees the events that it defers, of those kept
-   --  till then.
-
    function Is_Selection
      (Chosen : Selection;
       First  : Transition;
@@ -391,8 +397,7 @@ is
       Self   : Region;
       Now    : Occurrence;
       Ins    : Inputs;
-      Item   : Event)
-     return Boolean is
+      Item   : Event) return Boolean is
      ((Chosen = None
        or else (Chosen in First .. Last
           and then Enabled (Chosen, Self, Now, Ins, Item)))
@@ -406,8 +411,7 @@ is
       Self : Region;
       Now  : Occurrence;
       Ins  : Inputs;
-      Item : Event)
-     return Boolean is
+      Item : Event) return Boolean is
      (Is_Selection (C.Motor, Motor_Transition'First, Motor_Transition'Last,
          Self, Now, Ins, Item)
       and then Is_Selection (C.Sensor, Sensor_Transition'First,
@@ -419,118 +423,35 @@ is
    --  Each lane's first; none where a lane inside it has one.
 
    function Segments_Left
-     (Place : Infusion_States.Configuration)
-     return Natural is
+     (Place : Infusion_States.Configuration) return Natural is
      (if Place.Top = Infusion_States.May_Go_On then 2
       elsif Place.Top = Infusion_States.Where_It_Was then 1
       else 0);
    --  How many segments follow at most; none but in a choice or history.
 
-   function Is_Deferred
-     (Item : Event; Place : Infusion_States.Configuration)
-     return Boolean is
-     (case Item.Name is
-        when New_Portion =>
-           Place.Top = Infusion_States.Self_Test
-           or else Place.Top = Infusion_States.Filling
-           or else Place.Top = Infusion_States.Loading
-           or else Place.Top in Infusion_States.Alarm,
-        when New_Volume => Place.Top = Infusion_States.Self_Test,
-        when others => False);
-   --  Does an active state defer it?
-
-   function Freed_Up_To (Item : Event; Freed : Freed_Events) return Natural is
-     (case Item.Name is
-        when New_Portion => Freed.New_Portion,
-        when New_Volume => Freed.New_Volume,
-        when others => 0);
-   --  Among how many of the oldest was it kept when a state that defers it
-   --  was exited?
-
-   function Is_Due
-     (Kept  : Deferrals.List;
-      Place : Infusion_States.Configuration;
-      Freed : Freed_Events;
-      I     : Positive)
-     return Boolean is
-     (I <= Deferrals.Count (Kept)
-      and then (not Is_Deferred (Deferrals.Element (Kept, I), Place)
-         or else I <= Freed_Up_To (Deferrals.Element (Kept, I), Freed)));
-   --  Does no active state defer it, or was one exited that does?
-
-   function Is_Released
-     (Kept  : Deferrals.List;
-      Place : Infusion_States.Configuration;
-      Freed : Freed_Events;
-      I     : Positive)
-     return Boolean is
-     (Is_Due (Kept, Place, Freed, I)
-      and then (for all J in 1 .. I - 1 =>
-            not Is_Due (Kept, Place, Freed, J))) with Ghost;
-   --  Is it the oldest that is due?
-
-   function Freed_Without
-     (I : Positive; Freed : Freed_Events)
-     return Freed_Events is
-     ((New_Portion =>
-         (if I <= Freed.New_Portion then Freed.New_Portion - 1
-          else Freed.New_Portion),
-       New_Volume =>
-         (if I <= Freed.New_Volume then Freed.New_Volume - 1
-          else Freed.New_Volume)));
-   --  What is freed when the event in this place is taken out.
-
-   function Is_Deferral (T : Selection) return Boolean is
-     (T
-      in Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
-        | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
-        | Defer_New_Portion_In_Alarm);
-
-   function Is_Segment (T : Selection) return Boolean is
-     (T in Restore_Where_It_Was | Default_Of_Where_It_Was | Go_On | Not_Yet);
-   --  Does it go on from a choice or history?
-
-   function Is_Only (Fired : Firing_List; T : Selection) return Boolean is
-     (Fired.Count > 0
-      and then Fired.Items (1) = T
-      and then (for all I in 2 .. Fired.Count =>
-            Is_Segment (Fired.Items (I)))) with Ghost;
-   --  Is that fired, with the segments of its way, and nothing else?
-
    function Choose
-     (Self : Region; Now  : Occurrence; Ins  : Inputs; Item : Event)
+     (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
      return Choice
    with Post => Is_Choice (Choose'Result, Self, Now, Ins, Item);
    --  The transitions that one occurrence asks for.
 
-   function Has (Fired : Firing_List; T : Selection) return Boolean is
-     (for some I in 1 .. Fired.Count => Fired.Items (I) = T) with Ghost;
-
    function Is_Of_Choice
-     (Fired : Firing_List; C : Choice; Last : Selection)
-     return Boolean is
-     (for all I in 1 .. Fired.Count =>
-         Is_Segment (Fired.Items (I))
-         or else (Fired.Items (I) <= Last
-            and then Fired.Items (I) in C.Motor | C.Sensor | C.Top))
+     (Fired : Firings.List; C : Choice; Last : Selection) return Boolean is
+     (Firings.Is_Ordered (Fired)
+      and then (for all I in 1 .. Fired.Count =>
+            Is_Segment (Fired.Items (I))
+            or else (Fired.Items (I) <= Last
+               and then Fired.Items (I) in C.Motor | C.Sensor | C.Top)))
    with Ghost;
-   --  Is what has fired chosen, and none of it after Last?
+   --  Is what has fired chosen, in the order of the lanes, and none of it
+   --  after Last?
 
-   function Is_Ordered (Fired : Firing_List) return Boolean is
-     (for all I in 1 .. Fired.Count =>
-         Is_Segment (Fired.Items (I))
-         or else (for all J in 1 .. I - 1 =>
-               Is_Segment (Fired.Items (J))
-               or else Fired.Items (J) < Fired.Items (I))) with Ghost;
-   --  Do the lanes fire in their order?
-
-   function Follows (Fired : Firing_List; C : Choice) return Boolean is
-     (if Is_Deferral (C.Top) then Is_Only (Fired, C.Top)
+   function Follows (Fired : Firings.List; C : Choice) return Boolean is
+     (if Is_Deferral (C.Top) then Firings.Is_Only (Fired, C.Top)
       else Is_Of_Choice (Fired, C, Top_Transition'Last)
-         and then Is_Ordered (Fired)
-         and then (if C.Motor /= None then Has (Fired, C.Motor)
-            elsif C.Sensor /= None then Has (Fired, C.Sensor)
-            elsif C.Top /= None then Has (Fired, C.Top))) with Ghost;
+         and then (if C.Motor /= None then Firings.Has (Fired, C.Motor)
+            elsif C.Sensor /= None then Firings.Has (Fired, C.Sensor)
+            elsif C.Top /= None then Firings.Has (Fired, C.Top))) with Ghost;
    --  A deferral is fired alone. Otherwise what is chosen is fired, lane by
    --  lane, and nothing else; a lane inside a state that transitions leave
    --  may be overtaken by an earlier one.
@@ -639,7 +560,7 @@ is
         when others => Conditions);
 
    procedure Poll
-     (Self : in out Region; Now  : out Occurrence; Item : out Event)
+     (Self : in out Region; Now : out Occurrence; Item : out Event)
    with
      Post =>
        (Self.Place = Self.Place'Old
@@ -675,21 +596,10 @@ is
                  elsif (for some I in Self.Timers'Range =>
                         Ravenchart.Timers.Is_Due (Self.Timers'Old (I)))
                     then Now in Expiry_Of_Again .. Expiry_Of_Remind
-                 elsif (for some I in 1 .. 4 =>
-                        Is_Released (Self.Deferred'Old, Self.Place,
-                           Self.Freed'Old, I))
-                    then (for all I in 1 .. 4 =>
-                           (if Is_Released (Self.Deferred'Old, Self.Place,
-                                  Self.Freed'Old, I)
-                               then Now
-                                  = To_Occurrence
-                                      (Deferrals.Element (Self.Deferred'Old,
-                                          I))
-                                  and then Item
-                                    = Deferrals.Element (Self.Deferred'Old,
-                                         I)
-                                  and then Self.Freed
-                                    = Freed_Without (I, Self.Freed'Old)))
+                 elsif Deferrals.Due (Self.Deferred'Old, Self.Place) > 0
+                    then Deferrals.Is_Taken (Self.Deferred'Old, Self.Place,
+                          Item, Self.Deferred)
+                       and then Now = To_Occurrence (Item)
                  else Now = Conditions));
    --  Its start, a completion, the time-out that is due or a deferred event
    --  that is due again; Conditions when there is none.
@@ -699,7 +609,7 @@ is
       Now   : Occurrence;
       Ins   : Inputs;
       Item  : Event;
-      Fired : out Firing_List)
+      Fired : out Firings.List)
    with
      Pre =>
        Is_Kept (Self) and then (Now = Start_Of_Region) = not Self.Started,
@@ -709,7 +619,8 @@ is
        and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
        and then (if Segments_Left (Self.Place'Old) = 0
              then Segments_Left (Self.Place) = 0)
-       and then ((Now = Start_Of_Region and Is_Only (Fired, Initial_Entry))
+       and then ((Now = Start_Of_Region
+           and Firings.Is_Only (Fired, Initial_Entry))
           or (Now /= Start_Of_Region
              and Follows (Fired, Choose (Self'Old, Now, Ins, Item))));
    --  One run-to-completion step.

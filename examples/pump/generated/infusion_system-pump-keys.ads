@@ -5,8 +5,7 @@
 package Infusion_System.Pump.Keys
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
+   pragma Warnings (Off, "*can * be*");
 
    use type Keys_States.Leaf;
 
@@ -35,32 +34,28 @@ is
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Keys_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Keys_States.Leaf) return Boolean is
      (case T is
         when Pressed => Leaf = Keys_States.Listening);
    --  The declared chart: the source of each transition. Is it the leaf, or
    --  around it?
 
    function Enabled
-     (T : Transition; Self : Region; Now : Occurrence)
-     return Boolean is
+     (T : Transition; Self : Region; Now : Occurrence) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
            when Pressed => Now = On_Pressed));
    --  The trigger and the guard of each transition.
 
    function Target
-     (T : Firing; Leaf : Keys_States.Leaf)
-     return Keys_States.Leaf is
+     (T : Firing; Leaf : Keys_States.Leaf) return Keys_States.Leaf is
      (case T is
         when Initial_Entry => Keys_States.Listening,
         when Pressed => Leaf);
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
-     (Chosen : Selection; Self : Region; Now : Occurrence)
-     return Boolean is
+     (Chosen : Selection; Self : Region; Now : Occurrence) return Boolean is
      ((Chosen = None
        or else (Chosen in Transition and then Enabled (Chosen, Self, Now)))
       and then (for all T in Transition =>

@@ -10,9 +10,6 @@ with Ravenchart.Response_Times;
 package Infusion_System.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "5a0ed89a09932b78672cdf5a241e062c6a9ae8317283a9962bbb64ef62e6ac03";
@@ -151,25 +148,32 @@ is
    function Ward_Driver_Rx_Line_Up (W : Window) return Time is
      (Demand (W, Ward_Driver_Rx_Line_J, Ward_Driver_Rx_Line_T,
          Ward_Driver_Rx_Line_C)) with Static;
+
    function Ward_Driver_Tx_Motor_Up (W : Window) return Time is
      (Demand (W, Ward_Driver_Tx_Motor_J, Ward_Driver_Tx_Motor_T,
          Ward_Driver_Tx_Motor_C, Ward_Driver_Rx_Line_Up (W))) with Static;
+
    function Ward_Driver_Rx_Panel_Up (W : Window) return Time is
      (Demand (W, Ward_Driver_Rx_Panel_J, Ward_Driver_Rx_Panel_T,
          Ward_Driver_Rx_Panel_C, Ward_Driver_Tx_Motor_Up (W))) with Static;
+
    function Ward_Driver_Tx_Display_Up (W : Window) return Time is
      (Demand (W, Ward_Driver_Tx_Display_J, Ward_Driver_Tx_Display_T,
          Ward_Driver_Tx_Display_C, Ward_Driver_Rx_Panel_Up (W))) with Static;
+
    function Reception_Up (W : Window) return Time is
      (Demand (W, Reception_J, Reception_T, Reception_C,
          Ward_Driver_Tx_Display_Up (W))) with Static;
+
    function Ward_Driver_Tx_Display_Rest (W : Window) return Time is
      (Demand (W, Ward_Driver_Tx_Display_J, Ward_Driver_Tx_Display_T,
          Ward_Driver_Tx_Display_C)) with Static;
+
    function Ward_Driver_Rx_Panel_Rest (W : Window) return Time is
      (Demand (W, Ward_Driver_Rx_Panel_J, Ward_Driver_Rx_Panel_T,
          Ward_Driver_Rx_Panel_C, Ward_Driver_Tx_Display_Rest (W)))
    with Static;
+
    function Ward_Driver_Tx_Motor_Rest (W : Window) return Time is
      (Demand (W, Ward_Driver_Tx_Motor_J, Ward_Driver_Tx_Motor_T,
          Ward_Driver_Tx_Motor_C, Ward_Driver_Rx_Panel_Rest (W))) with Static;
@@ -189,6 +193,7 @@ is
 
    function Ward_Bits (Stuffed : Positive) return Time is
      (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+
    function Ward_Time_Of (Stuffed : Positive) return Time is
      ((Ward_Bits (Stuffed) * 10**9 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate)
    with Static;
@@ -324,23 +329,30 @@ is
 
    function Ward_Line_Up (W : Window) return Time is
      (Demand (W, Ward_Line_J, Ward_Line_T, Ward_Line_C)) with Static;
+
    function Ward_Motor_Up (W : Window) return Time is
      (Demand (W, Ward_Motor_R - Ward_Motor_C, Ward_Motor_T, Ward_Motor_C,
          Ward_Line_Up (W))) with Static;
+
    function Ward_Panel_Up (W : Window) return Time is
      (Demand (W, Ward_Panel_J, Ward_Panel_T, Ward_Panel_C,
          Ward_Motor_Up (W))) with Static;
+
    function Ward_Line_Up_Board (W : Window) return Time is
      (Demand (W, Ward_Line_J, Ward_Line_T, Ward_Line_C)) with Static;
+
    function Ward_Panel_Up_Board (W : Window) return Time is
      (Demand (W, Ward_Panel_J, Ward_Panel_T, Ward_Panel_C,
          Ward_Line_Up_Board (W))) with Static;
+
    function Ward_Motor_Up_Board (W : Window) return Time is
      (Demand (W, Ward_Motor_J, Ward_Motor_T, Ward_Motor_C,
          Ward_Panel_Up_Board (W))) with Static;
+
    function Ward_Display_Up_Board (W : Window) return Time is
      (Demand (W, Ward_Display_J, Ward_Display_T, Ward_Display_C,
          Ward_Motor_Up_Board (W))) with Static;
+
    function Ward_Display_Rest_Board (W : Window) return Time is
      (Demand (W, Ward_Display_J, Ward_Display_T, Ward_Display_C))
    with Static;

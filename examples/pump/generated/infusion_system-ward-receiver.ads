@@ -7,9 +7,6 @@ with Infusion_System.Elements;
 package Infusion_System.Ward.Receiver
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    procedure Wait;
    --  [ward.receive.release] suspend until a frame is there.
 

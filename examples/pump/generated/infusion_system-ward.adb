@@ -11,9 +11,6 @@ with Ravenchart.Traces;
 package body Infusion_System.Ward
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Frame_Of_Motor
      (Item : Infusion_System.Portion)
      return Ravenchart.Can.Any_Frames.Any_Frame is
@@ -38,11 +35,8 @@ is
       Controller.Send (Frame, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Motor_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Motor_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Motor_Message);
       end if;
    end Send_Motor;
 
@@ -71,12 +65,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Display_Message,
          0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Display_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Display_Message);
       end if;
    end Send_Display;
 end Infusion_System.Ward;

@@ -14,17 +14,12 @@ with System;
 package Infusion_System.Ward
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Accepts
-     (Id     : Ravenchart.Can.Identifier;
-      Format : Ravenchart.Can.Frame_Format)
+     (Id : Ravenchart.Can.Identifier; Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
         when Ravenchart.Can.Standard =>
-           Id
-           in Timing_Certificate.Ward_Line_Id
+           Id in Timing_Certificate.Ward_Line_Id
              | Timing_Certificate.Ward_Panel_Id,
         when Ravenchart.Can.Extended => False);
    --  [ward] the identifiers that this node receives

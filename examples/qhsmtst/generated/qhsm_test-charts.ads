@@ -10,11 +10,6 @@ with System;
 package Qhsm_Test.Charts
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  [charts.table] the activities, in the order in which they run
    type Row is (Test_Ports, Test_Keys, Test_Chart);
 

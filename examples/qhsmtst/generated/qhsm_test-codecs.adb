@@ -5,14 +5,8 @@
 package body Qhsm_Test.Codecs
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    function Bits_Of_Type_Key
-     (Item : Qhsm_Test.Key)
-     return Interfaces.Unsigned_8 is
+     (Item : Qhsm_Test.Key) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Qhsm_Test.Key'Pos (Item)))
    with
      Post =>
@@ -56,8 +50,7 @@ is
       end Lemma_Value_Value;
 
       function Word_Of
-        (Local_Value : Interfaces.Unsigned_8)
-        return Interfaces.Unsigned_64 is
+        (Local_Value : Interfaces.Unsigned_8) return Interfaces.Unsigned_64 is
         (Interfaces.Unsigned_64 (Local_Value))
       with
         Pre => Local_Value <= 16#F#,

@@ -9,18 +9,12 @@ with Ravenchart.Can.Layouts;
 package Qhsm_Test.Codecs
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    use type Interfaces.Unsigned_64;
    use type Interfaces.Unsigned_8;
    use type Ravenchart.Number;
 
    function Value_Of_Type_Key
-     (Raw : Interfaces.Unsigned_8)
-     return Qhsm_Test.Key is
+     (Raw : Interfaces.Unsigned_8) return Qhsm_Test.Key is
      (Qhsm_Test.Key'Val (Raw))
    with Pre => Raw <= 8;
 
@@ -34,13 +28,11 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#F#));
 
       function Pack (Item : Qhsm_Test.Key) return Interfaces.Unsigned_64

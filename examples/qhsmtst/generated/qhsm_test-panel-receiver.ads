@@ -8,11 +8,6 @@ with Qhsm_Test.Elements;
 package Qhsm_Test.Panel.Receiver
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    procedure Wait;
    --  [panel.receive.release] suspend until a frame is there.
 

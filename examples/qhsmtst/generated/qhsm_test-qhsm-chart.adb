@@ -5,82 +5,40 @@
 package body Qhsm_Test.Qhsm.Chart
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
+   function Selected (Self : Region; Now : Occurrence) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now)));
+      end loop;
+      return None;
+   end Selected;
 
-   function Around_S (Self : Region; Now : Occurrence) return Selection is
-     (if Now = On_E then S_E
-      elsif Now = On_I and then Self.Data.Foo then S_I
-      else None);
-
-   function Around_S1 (Self : Region; Now : Occurrence) return Selection is
-     (if Now = On_A then S1_A
-      elsif Now = On_B then S1_B
-      elsif Now = On_C then S1_C
-      elsif Now = On_D and then not Self.Data.Foo then S1_D
-      elsif Now = On_F then S1_F
-      elsif Now = On_I then S1_I
-      else Around_S (Self, Now));
-
-   function Around_S2 (Self : Region; Now : Occurrence) return Selection is
-     (if Now = On_C then S2_C
-      elsif Now = On_F then S2_F
-      elsif Now = On_I and then not Self.Data.Foo then S2_I
-      else Around_S (Self, Now));
-
-   function Around_S21 (Self : Region; Now : Occurrence) return Selection is
-     (if Now = On_A then S21_A
-      elsif Now = On_B then S21_B
-      elsif Now = On_G then S21_G
-      else Around_S2 (Self, Now));
-
-   function In_S1_Init (Self : Region; Now : Occurrence) return Selection is
-     (if Now = Passing then S1_Init else Around_S1 (Self, Now))
-   with
-     Pre => Self.Leaf = Chart_States.S1_Init,
-     Post => Is_Selection (In_S1_Init'Result, Self, Now);
-
-   function In_S21_Init (Self : Region; Now : Occurrence) return Selection is
-     (if Now = Passing then S21_Init else Around_S21 (Self, Now))
-   with
-     Pre => Self.Leaf = Chart_States.S21_Init,
-     Post => Is_Selection (In_S21_Init'Result, Self, Now);
-
-   function In_S_Init (Self : Region; Now : Occurrence) return Selection is
-     (if Now = Passing then S_Init else Around_S (Self, Now))
-   with
-     Pre => Self.Leaf = Chart_States.S_Init,
-     Post => Is_Selection (In_S_Init'Result, Self, Now);
-
-   function Select_Transition
-     (Self : Region; Now : Occurrence)
-     return Selection is
-     (case Self.Leaf is
-        when Chart_States.S11 =>
-           (if Now = On_D and then Self.Data.Foo then S11_D
-            elsif Now = On_G then S11_G
-            elsif Now = On_H then S11_H
-            else Around_S1 (Self, Now)),
-        when Chart_States.S1_Init => In_S1_Init (Self, Now),
-        when Chart_States.S211 =>
-           (if Now = On_D then S211_D
-            elsif Now = On_H then S211_H
-            else Around_S21 (Self, Now)),
-        when Chart_States.S21_Init => In_S21_Init (Self, Now),
-        when Chart_States.S_Init => In_S_Init (Self, Now))
-   with Post => Is_Selection (Select_Transition'Result, Self, Now);
-
-   function Select_Segment (Self : Region) return Transition is
-     (if Self.Leaf = Chart_States.S_Init then In_S_Init (Self, Passing)
-      elsif Self.Leaf = Chart_States.S1_Init then In_S1_Init (Self, Passing)
-      else In_S21_Init (Self, Passing))
+   function Next_Segment (Self : Region) return Transition
    with
      Pre => Segments_Left (Self.Leaf) > 0,
      Post =>
-       Enabled (Select_Segment'Result, Self, Passing)
-       and then Is_Segment (Select_Segment'Result);
+       Enabled (Next_Segment'Result, Self, Passing)
+       and then Is_Segment (Next_Segment'Result)
+   is
+   begin
+      pragma Assert
+        ((if Self.Leaf = Chart_States.S_Init
+             then Enabled (S_Init, Self, Passing)));
+      pragma Assert
+        ((if Self.Leaf = Chart_States.S1_Init
+             then Enabled (S1_Init, Self, Passing)));
+      pragma Assert
+        ((if Self.Leaf = Chart_States.S21_Init
+             then Enabled (S21_Init, Self, Passing)));
+      return Selected (Self, Passing);
+   end Next_Segment;
 
    package Chart
    with Ghost
@@ -112,8 +70,7 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started and then Self.Leaf = Target (Chosen, Before.Leaf))
    with Ghost;
    --  Is the region after it as declared?
@@ -128,18 +85,18 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Before : constant Chart_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
 
       procedure Leave_S21 is
       begin
-         case Chart_States.S21'(Self.Leaf) is
+         case Chart_States.S21'(Before) is
             when Chart_States.S211 =>
                Active := Moved (Active, Chart.S211, Chart.S21);
             when Chart_States.S21_Init =>
@@ -149,7 +106,7 @@ is
 
       procedure Leave_S2 is
       begin
-         case Chart_States.S2'(Self.Leaf) is
+         case Chart_States.S2'(Before) is
             when Chart_States.S21 =>
                Leave_S21;
                Active := Moved (Active, Chart.S21, Chart.S2);
@@ -158,7 +115,7 @@ is
 
       procedure Leave_S1 is
       begin
-         case Chart_States.S1'(Self.Leaf) is
+         case Chart_States.S1'(Before) is
             when Chart_States.S11 =>
                Active := Moved (Active, Chart.S11, Chart.S1);
             when Chart_States.S1_Init =>
@@ -168,7 +125,7 @@ is
 
       procedure Leave_S is
       begin
-         case Chart_States.S'(Self.Leaf) is
+         case Chart_States.S'(Before) is
             when Chart_States.S1 =>
                Leave_S1;
                Active := Moved (Active, Chart.S1, Chart.S);
@@ -180,116 +137,81 @@ is
          end case;
       end Leave_S;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen, Before);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Self.Data.Foo := False;
             Active := Moved (Active, Chart.Nowhere, Chart.S2);
-            pragma Assert (Active = Chart.S2);
             Self.Data.Defaulted := True;
-            pragma Assert (Active = Chart.S2);
             Active := Moved (Active, Chart.S2, Chart.S211);
-            Self.Leaf := Chart_States.S211;
          when S211_D =>
             Active := Moved (Active, Chart.S211, Chart.S21_Init);
-            Self.Leaf := Chart_States.S21_Init;
          when S211_H =>
             Active := Moved (Active, Chart.S211, Chart.S_Init);
-            Self.Leaf := Chart_States.S_Init;
          when S21_Init =>
             Active := Moved (Active, Chart.S21_Init, Chart.S211);
-            Self.Leaf := Chart_States.S211;
          when S11_D =>
             Active := Moved (Active, Chart.S11, Chart.S1);
-            pragma Assert (Active = Chart.S1);
             Self.Data.Foo := False;
-            pragma Assert (Active = Chart.S1);
             Active := Moved (Active, Chart.S1, Chart.S1_Init);
-            Self.Leaf := Chart_States.S1_Init;
          when S11_G =>
             Active := Moved (Active, Chart.S11, Chart.S211);
-            Self.Leaf := Chart_States.S211;
          when S11_H =>
             Active := Moved (Active, Chart.S11, Chart.S_Init);
-            Self.Leaf := Chart_States.S_Init;
          when S21_A =>
             Leave_S21;
             Active := Moved (Active, Chart.S21, Chart.S21);
-            pragma Assert (Active = Chart.S21);
             Self.Data.Defaulted := True;
-            pragma Assert (Active = Chart.S21);
             Active := Moved (Active, Chart.S21, Chart.S211);
-            Self.Leaf := Chart_States.S211;
          when S21_B =>
             Leave_S21;
             Active := Moved (Active, Chart.S21, Chart.S211);
-            Self.Leaf := Chart_States.S211;
          when S21_G =>
             Leave_S21;
             Active := Moved (Active, Chart.S21, Chart.S1);
-            pragma Assert (Active = Chart.S1);
             Self.Data.Defaulted := True;
-            pragma Assert (Active = Chart.S1);
             Active := Moved (Active, Chart.S1, Chart.S11);
-            Self.Leaf := Chart_States.S11;
          when S1_Init =>
             Active := Moved (Active, Chart.S1_Init, Chart.S11);
-            Self.Leaf := Chart_States.S11;
          when S1_A =>
             Leave_S1;
             Active := Moved (Active, Chart.S1, Chart.S1);
-            pragma Assert (Active = Chart.S1);
             Self.Data.Defaulted := True;
-            pragma Assert (Active = Chart.S1);
             Active := Moved (Active, Chart.S1, Chart.S11);
-            Self.Leaf := Chart_States.S11;
          when S1_B =>
             Leave_S1;
             Active := Moved (Active, Chart.S1, Chart.S11);
-            Self.Leaf := Chart_States.S11;
          when S1_C =>
             Leave_S1;
             Active := Moved (Active, Chart.S1, Chart.S2);
-            pragma Assert (Active = Chart.S2);
             Self.Data.Defaulted := True;
-            pragma Assert (Active = Chart.S2);
             Active := Moved (Active, Chart.S2, Chart.S211);
-            Self.Leaf := Chart_States.S211;
          when S1_D =>
             Leave_S1;
             Active := Moved (Active, Chart.S1, Chart.S);
-            pragma Assert (Active = Chart.S);
             Self.Data.Foo := True;
-            pragma Assert (Active = Chart.S);
             Active := Moved (Active, Chart.S, Chart.S_Init);
-            Self.Leaf := Chart_States.S_Init;
          when S1_F =>
             Leave_S1;
             Active := Moved (Active, Chart.S1, Chart.S211);
-            Self.Leaf := Chart_States.S211;
          when S1_I =>
             null;
          when S2_C =>
             Leave_S2;
             Active := Moved (Active, Chart.S2, Chart.S1);
-            pragma Assert (Active = Chart.S1);
             Self.Data.Defaulted := True;
-            pragma Assert (Active = Chart.S1);
             Active := Moved (Active, Chart.S1, Chart.S11);
-            Self.Leaf := Chart_States.S11;
          when S2_F =>
             Leave_S2;
             Active := Moved (Active, Chart.S2, Chart.S11);
-            Self.Leaf := Chart_States.S11;
          when S2_I =>
             Self.Data.Foo := True;
          when S_Init =>
             Active := Moved (Active, Chart.S_Init, Chart.S11);
-            Self.Leaf := Chart_States.S11;
          when S_E =>
             Leave_S;
             Active := Moved (Active, Chart.S, Chart.S11);
-            Self.Leaf := Chart_States.S11;
          when S_I =>
             Self.Data.Foo := False;
       end case;
@@ -297,53 +219,42 @@ is
    end Fire;
 
    procedure Step
-     (Self  : in out Region; Now   : Occurrence; Fired : out Firing_List) is
+     (Self : in out Region; Now : Occurrence; Fired : out Firings.List) is
       Chosen : Selection;
 
       procedure Fire_Whole (T : Firing)
       with
         Pre => Is_Ready (Self, T) and then Fired.Count = 0,
         Post =>
-          Fired.Count >= 1
+          Firings.Is_Added (Fired'Old, T, Fired)
           and then Self.Started
-          and then Fired.Items (Fired.Count'Old + 1) = T
-          and then (for all J in 1 .. Fired.Count'Old =>
-                Fired.Items (J) = Fired.Items'Old (J))
-          and then (for all J in Fired.Count'Old + 2 .. Fired.Count =>
-                Is_Segment (Fired.Items (J)))
           and then Segments_Left (Self.Leaf) = 0
       is
-         Before : constant Firing_List := Fired with Ghost;
+         Before : constant Firings.List := Fired with Ghost;
          Segment : Selection;
       begin
          Fire (Self, T);
-         Fired.Count := Fired.Count + 1;
-         Fired.Items (Fired.Count) := T;
+         Firings.Add (Fired, T);
          for I in 1 .. 1 loop
             pragma Loop_Invariant
               (Fired.Count = Before.Count + I
+               and then Firings.Is_Added (Before, T, Fired)
                and then Self.Started
-               and then Fired.Items (Before.Count + 1) = T
-               and then (for all J in 1 .. Before.Count =>
-                     Fired.Items (J) = Before.Items (J))
-               and then (for all J in Before.Count + 2 .. Fired.Count =>
-                     Is_Segment (Fired.Items (J)))
                and then Segments_Left (Self.Leaf) <= 2 - I);
             if Segments_Left (Self.Leaf) = 0 then
                exit;
             end if;
-            Segment := Select_Segment (Self);
+            Segment := Next_Segment (Self);
             Fire (Self, Segment);
-            Fired.Count := Fired.Count + 1;
-            Fired.Items (Fired.Count) := Segment;
+            Firings.Add (Fired, Segment);
          end loop;
       end Fire_Whole;
    begin
-      Fired := (Count => 0, Items => (others => None));
+      Fired := Firings.Nothing;
       if Now = Start_Of_Region then
          Fire_Whole (Initial_Entry);
       else
-         Chosen := Select_Transition (Self, Now);
+         Chosen := Selected (Self, Now);
          if Chosen /= None then
             Fire_Whole (Chosen);
          end if;

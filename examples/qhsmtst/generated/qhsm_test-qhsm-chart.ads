@@ -2,13 +2,12 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Firing_Lists;
+
 package Qhsm_Test.Qhsm.Chart
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
+   pragma Warnings (Off, "*explicit membership test*");
 
    use type Chart_States.Leaf;
 
@@ -54,14 +53,6 @@ is
       Defaulted : Boolean := False;
    end record;
 
-   type Firing_Array is array (1 .. 2) of Selection;
-
-   --  What one step has fired, in order; None behind the last.
-   type Firing_List is record
-      Count : Natural range 0 .. 2 := 0;
-      Items : Firing_Array := (others => None);
-   end record;
-
    --  The region's own state.
    type Region is record
       Started : Boolean := False;
@@ -69,9 +60,19 @@ is
       Data    : Variables;
    end record;
 
+   function Is_Segment (T : Selection) return Boolean is
+     (T in S21_Init | S1_Init | S_Init);
+   --  Does it go on from a choice or history?
+
+   package Firings is new Ravenchart.Firing_Lists
+     (Selection => Selection,
+      No_Selection => None,
+      Is_Segment => Is_Segment,
+      Most_Segments => 1,
+      Capacity => 2);
+
    function In_Source
-     (T : Transition; Leaf : Chart_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Chart_States.Leaf) return Boolean is
      (case T is
         when S211_D | S211_H => Leaf = Chart_States.S211,
         when S21_Init => Leaf = Chart_States.S21_Init,
@@ -87,8 +88,7 @@ is
    --  around it?
 
    function Enabled
-     (T : Transition; Self : Region; Now : Occurrence)
-     return Boolean is
+     (T : Transition; Self : Region; Now : Occurrence) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
            when S211_D => Now = On_D,
@@ -116,8 +116,7 @@ is
    --  The trigger and the guard of each transition.
 
    function Target
-     (T : Firing; Leaf : Chart_States.Leaf)
-     return Chart_States.Leaf is
+     (T : Firing; Leaf : Chart_States.Leaf) return Chart_States.Leaf is
      (case T is
         when Initial_Entry | S21_Init | S11_G | S21_A | S21_B | S1_C
            | S1_F =>
@@ -131,8 +130,7 @@ is
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
-     (Chosen : Selection; Self : Region; Now : Occurrence)
-     return Boolean is
+     (Chosen : Selection; Self : Region; Now : Occurrence) return Boolean is
      ((Chosen = None
        or else (Chosen in Transition and then Enabled (Chosen, Self, Now)))
       and then (for all T in Transition =>
@@ -146,17 +144,6 @@ is
          then 1
       else 0);
    --  How many segments follow at most; none but in a choice or history.
-
-   function Is_Segment (T : Selection) return Boolean is
-     (T in S21_Init | S1_Init | S_Init);
-   --  Does it go on from a choice or history?
-
-   function Is_Only (Fired : Firing_List; T : Selection) return Boolean is
-     (Fired.Count > 0
-      and then Fired.Items (1) = T
-      and then (for all I in 2 .. Fired.Count =>
-            Is_Segment (Fired.Items (I)))) with Ghost;
-   --  Is that fired, with the segments of its way, and nothing else?
 
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item.Name is
@@ -180,7 +167,7 @@ is
    --  neither.
 
    procedure Step
-     (Self  : in out Region; Now   : Occurrence; Fired : out Firing_List)
+     (Self : in out Region; Now : Occurrence; Fired : out Firings.List)
    with
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
@@ -191,6 +178,7 @@ is
        and then (if Now = Start_Of_Region
              then Fired.Items (1) = Initial_Entry
           else Is_Selection (Fired.Items (1), Self'Old, Now))
-       and then (if Fired.Count > 0 then Is_Only (Fired, Fired.Items (1)));
+       and then (if Fired.Count > 0
+             then Firings.Is_Only (Fired, Fired.Items (1)));
    --  One run-to-completion step.
 end Qhsm_Test.Qhsm.Chart;

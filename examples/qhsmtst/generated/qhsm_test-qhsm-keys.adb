@@ -5,16 +5,20 @@
 package body Qhsm_Test.Qhsm.Keys
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
-   function Select_Transition
-     (Self : Region; Now : Occurrence)
-     return Selection is
-     (case Self.Leaf is
-        when Keys_States.Listening =>
-           (if Now = On_Pressed then Pressed else None))
-   with Post => Is_Selection (Select_Transition'Result, Self, Now);
+   function Selected (Self : Region; Now : Occurrence) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -44,8 +48,7 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started and then Self.Leaf = Target (Chosen, Before.Leaf))
    with Ghost;
    --  Is the region after it as declared?
@@ -64,20 +67,20 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Before : constant Keys_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen, Before);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Active := Moved (Active, Chart.Nowhere, Chart.Listening);
-            Self.Leaf := Keys_States.Listening;
          when Pressed =>
             if Item.Value_Key = Qhsm_Test.Key_A then
                Event_Lists.Append (Box.Raised,
@@ -129,7 +132,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now);
+         Fired := Selected (Self, Now);
       end if;
       if Fired /= None then
          Fire (Self, Item, Box, Fired);

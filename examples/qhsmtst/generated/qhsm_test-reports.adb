@@ -18,11 +18,6 @@ with Ravenchart.Traces;
 package body Qhsm_Test.Reports
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
 

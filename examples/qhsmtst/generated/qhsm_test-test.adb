@@ -8,6 +8,7 @@ with Qhsm_Test.Qhsm.Keys;
 with Qhsm_Test.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -16,11 +17,6 @@ with System;
 package body Qhsm_Test.Test
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  [test.key]
    package Key_Mailbox is new Ravenchart.Queues
      (Element_Type => Qhsm_Test.Key,
@@ -28,6 +24,13 @@ is
       Capacity => 8,
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Key_Offers is new Ravenchart.Offers
+     (Element_Type => Qhsm_Test.Key,
+      Put => Key_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Test_Key,
+      Report => Health_Counts.Faults.Report);
 
    Key_Port : Qhsm.Key_View;
 
@@ -46,6 +49,13 @@ is
       Ceiling => System.Default_Priority + 1,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Chart_Offers is new Ravenchart.Offers
+     (Element_Type => Qhsm.Event,
+      Put => Chart_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Test_Chart,
+      Report => Health_Counts.Faults.Report);
+
    --  [test.Keys]
    Keys_Region : Qhsm.Keys.Region;
 
@@ -61,138 +71,52 @@ is
       Ceiling => System.Default_Priority + 1,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
-   procedure Put_Key (Item : Qhsm_Test.Key) is
-      Status : Ravenchart.Queueing.Put_Status;
+   package Keys_Offers is new Ravenchart.Offers
+     (Element_Type => Qhsm.Event,
+      Put => Keys_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Test_Keys,
+      Report => Health_Counts.Faults.Report);
 
-      use type Ravenchart.Queueing.Put_Status;
+   procedure Put_Key (Item : Qhsm_Test.Key) is
    begin
-      Key_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Test_Key, 0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Test_Key,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Key_Offers.Offer (Item);
    end Put_Key;
 
    procedure Offer (Item : Qhsm.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item.Name is
          when Qhsm.Pressed =>
-            Keys_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Test_Keys,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Keys_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Test_Pressed, 0);
          when Qhsm.A =>
-            Chart_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Test_Chart,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Chart_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_A, 0);
          when Qhsm.B =>
-            Chart_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Test_Chart,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Chart_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_B, 0);
          when Qhsm.C =>
-            Chart_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Test_Chart,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Chart_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_C, 0);
          when Qhsm.D =>
-            Chart_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Test_Chart,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Chart_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_D, 0);
          when Qhsm.E =>
-            Chart_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Test_Chart,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Chart_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_E, 0);
          when Qhsm.F =>
-            Chart_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Test_Chart,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Chart_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_F, 0);
          when Qhsm.G =>
-            Chart_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Test_Chart,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Chart_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_G, 0);
          when Qhsm.H =>
-            Chart_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Test_Chart,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Chart_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_H, 0);
          when Qhsm.I =>
-            Chart_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Test_Chart,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Chart_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_I, 0);
       end case;
    end Offer;
@@ -222,11 +146,8 @@ is
               (Qhsm.Event'(Name => Qhsm.Pressed,
                 Value_Key => Key_Port.Value));
          when Qhsm.Key_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Test_Key,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Test_Key);
       end case;
       Executed := Executed + Elements.Test_Ports_Row;
    end Run_Ports;
@@ -277,7 +198,7 @@ is
 
    procedure Step_Chart is
       Now : Qhsm.Chart.Occurrence;
-      Fired : Qhsm.Chart.Firing_List;
+      Fired : Qhsm.Chart.Firings.List;
 
       use type Qhsm.Chart.Occurrence;
 

@@ -9,11 +9,6 @@ with Qhsm_Test.Elements;
 package Qhsm_Test.Test
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    use type Ravenchart.Element_Id;
 
    procedure Put_Key (Item : Qhsm_Test.Key);

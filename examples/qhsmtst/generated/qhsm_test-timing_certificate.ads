@@ -10,11 +10,6 @@ with Ravenchart.Response_Times;
 package Qhsm_Test.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-   pragma Warnings (Off, "*explicit membership test *");
-   pragma Warnings (Off, "*'Valid attribute *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "8b02c33aec34ada9e3f711dc46754f154dfb3555f040889b48aae0da799ea680";
@@ -84,6 +79,7 @@ is
    function Panel_Driver_Rx_Key_Up (W : Window) return Time is
      (Demand (W, Panel_Driver_Rx_Key_J, Panel_Driver_Rx_Key_T,
          Panel_Driver_Rx_Key_C)) with Static;
+
    function Reception_Up (W : Window) return Time is
      (Demand (W, Reception_J, Reception_T, Reception_C,
          Panel_Driver_Rx_Key_Up (W))) with Static;
@@ -103,6 +99,7 @@ is
 
    function Panel_Bits (Stuffed : Positive) return Time is
      (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+
    function Panel_Time_Of (Stuffed : Positive) return Time is
      ((Panel_Bits (Stuffed) * 10**9 + (Panel_Bit_Rate - 1)) / Panel_Bit_Rate)
    with Static;

@@ -7,9 +7,9 @@ with SPARK_Mode
 is
    procedure Get_Position (Reply : out Surgical_Robot.Angle_X4)
    with Inline_Always;
-   --  [Boards.Get_Position] budget 24_000 ns
+   --  [Boards.Get_Position] WCET 24_000 ns
 
    procedure Set_Current (Argument : Surgical_Robot.Current_X4)
    with Inline_Always;
-   --  [Boards.Set_Current] budget 16_000 ns
+   --  [Boards.Set_Current] WCET 16_000 ns
 end Surgical_Robot.Boards;

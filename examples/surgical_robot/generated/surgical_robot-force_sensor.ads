@@ -14,12 +14,12 @@ is
       Device : in out Force_Sensor_States.State;
       Passed : out Boolean)
    with Global => (In_Out => Force_Sensor_Registers.Registers);
-   --  [Force_Sensor] budget 10_000 ns
+   --  [Force_Sensor] WCET 10_000 ns
 
    procedure Get_Force
      (Unit   : Force_Sensor_Units.Unit;
       Device : in out Force_Sensor_States.State;
       Reply  : out Surgical_Robot.Force)
    with Global => (In_Out => Force_Sensor_Registers.Registers);
-   --  [Force_Sensor.Get_Force] budget 6_000 ns
+   --  [Force_Sensor.Get_Force] WCET 6_000 ns
 end Surgical_Robot.Force_Sensor;

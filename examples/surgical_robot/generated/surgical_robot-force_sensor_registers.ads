@@ -13,17 +13,17 @@ with
   Initializes => Registers
 is
    procedure Write_Control
-     (Unit  : Force_Sensor_Units.Unit; Value : Interfaces.Unsigned_32)
+     (Unit : Force_Sensor_Units.Unit; Value : Interfaces.Unsigned_32)
    with Global => (In_Out => Registers);
    --  [Force_Sensor.Control] offset 16#0#
 
    procedure Read_Status
-     (Unit  : Force_Sensor_Units.Unit; Value : out Interfaces.Unsigned_32)
+     (Unit : Force_Sensor_Units.Unit; Value : out Interfaces.Unsigned_32)
    with Global => (In_Out => Registers);
    --  [Force_Sensor.Status] offset 16#4#
 
    procedure Read_Sample
-     (Unit  : Force_Sensor_Units.Unit; Value : out Interfaces.Unsigned_16)
+     (Unit : Force_Sensor_Units.Unit; Value : out Interfaces.Unsigned_16)
    with Global => (In_Out => Registers);
    --  [Force_Sensor.Sample] offset 16#8#
 end Surgical_Robot.Force_Sensor_Registers;

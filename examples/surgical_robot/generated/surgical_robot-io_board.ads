@@ -14,31 +14,31 @@ is
       Device : in out Io_Board_States.State;
       Passed : out Boolean)
    with Global => (In_Out => Io_Board_Registers.Registers);
-   --  [Io_Board] budget 10_000 ns
+   --  [Io_Board] WCET 10_000 ns
 
    procedure Self_Test
      (Unit   : Io_Board_Units.Unit;
       Device : in out Io_Board_States.State;
       Passed : out Boolean)
    with Global => (In_Out => Io_Board_Registers.Registers);
-   --  [Io_Board] budget 10_000 ns
+   --  [Io_Board] WCET 10_000 ns
 
    procedure Make_Safe
-     (Unit   : Io_Board_Units.Unit; Device : in out Io_Board_States.State)
+     (Unit : Io_Board_Units.Unit; Device : in out Io_Board_States.State)
    with Global => (In_Out => Io_Board_Registers.Registers);
-   --  [Io_Board] budget 10_000 ns
+   --  [Io_Board] WCET 10_000 ns
 
    procedure Get_Position
      (Unit   : Io_Board_Units.Unit;
       Device : in out Io_Board_States.State;
       Reply  : out Surgical_Robot.Angle_X2)
    with Global => (In_Out => Io_Board_Registers.Registers);
-   --  [Io_Board.Get_Position] budget 12_000 ns
+   --  [Io_Board.Get_Position] WCET 12_000 ns
 
    procedure Set_Current
      (Unit     : Io_Board_Units.Unit;
       Device   : in out Io_Board_States.State;
       Argument : Surgical_Robot.Current_X2)
    with Global => (In_Out => Io_Board_Registers.Registers);
-   --  [Io_Board.Set_Current] budget 8_000 ns
+   --  [Io_Board.Set_Current] WCET 8_000 ns
 end Surgical_Robot.Io_Board;

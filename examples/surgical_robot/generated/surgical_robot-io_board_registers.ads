@@ -13,7 +13,7 @@ with
   Initializes => Registers
 is
    procedure Read_Control
-     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32)
+     (Unit : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32)
    with Global => (In_Out => Registers);
 
    procedure Write_Control
@@ -22,17 +22,17 @@ is
    --  [Io_Board.Control] offset 16#0#
 
    procedure Read_Status
-     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32)
+     (Unit : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32)
    with Global => (In_Out => Registers);
    --  [Io_Board.Status] offset 16#4#
 
    procedure Read_Count_1
-     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32)
+     (Unit : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32)
    with Global => (In_Out => Registers);
    --  [Io_Board.Count_1] offset 16#10#
 
    procedure Read_Count_2
-     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32)
+     (Unit : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32)
    with Global => (In_Out => Registers);
    --  [Io_Board.Count_2] offset 16#14#
 

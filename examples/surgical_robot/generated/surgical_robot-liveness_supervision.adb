@@ -4,13 +4,11 @@
 
 with Ravenchart.Health;
 with Ravenchart.Liveness;
-with Ravenchart.Traces;
 with Surgical_Robot.Device_Lifecycle;
 with Surgical_Robot.Elements;
 with Surgical_Robot.Health_Counts;
 with Surgical_Robot.Servo_Loop;
 with Surgical_Robot.Supervision;
-with Surgical_Robot.Trace;
 
 package body Surgical_Robot.Liveness_Supervision
 with SPARK_Mode
@@ -41,17 +39,14 @@ is
 
    procedure On_Silence (Item : Watched) is
    begin
-      Health_Counts.Counters.Record_Fault (Ravenchart.Health.Silence);
       case Item is
          when Servo_Loop_Watch =>
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Servo_Loop_Processor,
-               Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
+            Health_Counts.Faults.Report (Ravenchart.Health.Silence,
+               Elements.Servo_Loop_Processor);
             Ravenchart.Failures.Note_Silence ("servo_loop");
          when Supervision_Watch =>
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Supervision_Processor,
-               Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
+            Health_Counts.Faults.Report (Ravenchart.Health.Silence,
+               Elements.Supervision_Processor);
             Ravenchart.Failures.Note_Silence ("supervision");
       end case;
    end On_Silence;

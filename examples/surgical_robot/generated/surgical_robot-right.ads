@@ -6,16 +6,16 @@ package Surgical_Robot.Right
 with SPARK_Mode
 is
    procedure Start (Passed : out Boolean);
-   --  [Right] before the first release; budget 20_000 ns
+   --  [Right] before the first release; WCET 20_000 ns
 
    procedure Make_Safe;
-   --  [Right] at the end; budget 10_000 ns
+   --  [Right] at the end; WCET 10_000 ns
 
    procedure Get_Position (Reply : out Surgical_Robot.Angle_X2)
    with Inline_Always;
-   --  [Right.Get_Position] budget 12_000 ns
+   --  [Right.Get_Position] WCET 12_000 ns
 
    procedure Set_Current (Argument : Surgical_Robot.Current_X2)
    with Inline_Always;
-   --  [Right.Set_Current] budget 8_000 ns
+   --  [Right.Set_Current] WCET 8_000 ns
 end Surgical_Robot.Right;

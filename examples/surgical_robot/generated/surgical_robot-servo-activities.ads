@@ -10,7 +10,7 @@ is
       Seen           : Surgical_Robot.Angle_X4;
       Goal           : out Surgical_Robot.Angle_X4)
    with Global => null;
-   --  [Servo.Take_Orders] budget 50_000 ns, every 5_000_000 ns
+   --  [Servo.Take_Orders] WCET 50_000 ns, every 5_000_000 ns
 
    procedure Control
      (Goal             : Surgical_Robot.Angle_X4;
@@ -21,5 +21,5 @@ is
       Set_Current      : out Surgical_Robot.Current_X4;
       Call_Set_Current : out Boolean)
    with Global => null;
-   --  [Servo.Control] budget 100_000 ns, every 5_000_000 ns
+   --  [Servo.Control] WCET 100_000 ns, every 5_000_000 ns
 end Surgical_Robot.Servo.Activities;

@@ -10,5 +10,5 @@ is
       Differed     : out Surgical_Robot.Speed_X4;
       Before       : in out Surgical_Robot.Angle_X4)
    with Global => null;
-   --  [Servo.Differ] budget 30_000 ns, every 5_000_000 ns
+   --  [Servo.Differ] WCET 30_000 ns, every 5_000_000 ns
 end Surgical_Robot.Servo.Differ_Stand_In;

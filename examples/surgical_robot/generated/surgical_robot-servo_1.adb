@@ -5,12 +5,10 @@
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Queues;
-with Ravenchart.Traces;
 with Surgical_Robot.Boards;
 with Surgical_Robot.Health_Counts;
 with Surgical_Robot.Servo.Activities;
 with Surgical_Robot.Servo.Differ_Stand_In;
-with Surgical_Robot.Trace;
 with Surgical_Robot.Wrist;
 with System;
 
@@ -62,12 +60,8 @@ is
    begin
       Motion_Queue.Put (Item, Status);
       if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Servo_1_Motion,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Servo_1_Motion);
       end if;
    end Put_Motion;
 

@@ -5,20 +5,21 @@
 package body Surgical_Robot.Supervisor.Task_Of_Arm
 with SPARK_Mode
 is
-   function Select_Transition
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (case Self.Leaf is
-        when Task_Of_Arm_States.Parked =>
-           (if Now = Expiry_Of_Begin_Task then Begin_Task else None),
-        when Task_Of_Arm_States.Reaching =>
-           (if Now = Conditions and then Ins.Get_Position.Axis_1 >= 280
-               then There
-            elsif Now = Expiry_Of_Too_Late then Too_Late
-            else None),
-        when Task_Of_Arm_States.Holding => None,
-        when Task_Of_Arm_States.Gave_Up => None)
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -62,19 +63,14 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
-     (Self.Timers (1)
-      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-           Before.Timers (1))
-      and then Self.Timers (2)
-        = Timer_After (2, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-             Before.Timers (2))) with Ghost;
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
+     (Self.Timers
+      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Leaf,
+           Self.Leaf)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started
       and then Self.Leaf = Target (Chosen)
       and then Is_Lasting (Before, Self, Chosen)) with Ghost;
@@ -91,38 +87,17 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Before : constant Task_Of_Arm_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
 
-      procedure Exit_Parked is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Moved (Active, Chart.Parked, Chart.Nowhere);
-      end Exit_Parked;
-
-      procedure Exit_Reaching is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active := Moved (Active, Chart.Reaching, Chart.Nowhere);
-      end Exit_Reaching;
-
-      procedure Enter_Parked is
-      begin
-         Self.Leaf := Task_Of_Arm_States.Parked;
-         Ravenchart.Timers.Arm (Self.Timers (1), 5);
-         Active := Moved (Active, Chart.Nowhere, Chart.Parked);
-      end Enter_Parked;
-
       procedure Enter_Reaching is
       begin
-         Self.Leaf := Task_Of_Arm_States.Reaching;
-         Ravenchart.Timers.Arm (Self.Timers (2), 100);
          Active := Moved (Active, Chart.Nowhere, Chart.Reaching);
          Box.Set_Goal :=
            Surgical_Robot.Angle_X4'(Axis_1 => 300,
@@ -134,30 +109,31 @@ is
 
       procedure Enter_Holding is
       begin
-         Self.Leaf := Task_Of_Arm_States.Holding;
          Active := Moved (Active, Chart.Nowhere, Chart.Holding);
          Box.Hold_Sent := True;
       end Enter_Holding;
 
       procedure Enter_Gave_Up is
       begin
-         Self.Leaf := Task_Of_Arm_States.Gave_Up;
          Active := Moved (Active, Chart.Nowhere, Chart.Gave_Up);
          Box.Hold_Sent := True;
       end Enter_Gave_Up;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen);
+      Self.Timers :=
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Leaf);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
-            Enter_Parked;
+            Active := Moved (Active, Chart.Nowhere, Chart.Parked);
          when Begin_Task =>
-            Exit_Parked;
+            Active := Moved (Active, Chart.Parked, Chart.Nowhere);
             Enter_Reaching;
          when There =>
-            Exit_Reaching;
+            Active := Moved (Active, Chart.Reaching, Chart.Nowhere);
             Enter_Holding;
          when Too_Late =>
-            Exit_Reaching;
+            Active := Moved (Active, Chart.Reaching, Chart.Nowhere);
             Enter_Gave_Up;
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
@@ -173,7 +149,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins);
+         Fired := Selected (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Box, Fired);

@@ -40,16 +40,28 @@ is
       Hold_Sent     : Boolean := False;
    end record;
 
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 2);
+
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is (Nothing, Everything, Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Begin_Task | There | Too_Late => Everything);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
    --  The region's own state.
    type Region is record
       Started : Boolean := False;
       Leaf    : Task_Of_Arm_States.Leaf := Task_Of_Arm_States.Parked;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 2);
+      Timers  : Time_Outs;
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Task_Of_Arm_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Task_Of_Arm_States.Leaf) return Boolean is
      (case T is
         when Begin_Task => Leaf = Task_Of_Arm_States.Parked,
         when There | Too_Late => Leaf = Task_Of_Arm_States.Reaching);
@@ -57,7 +69,7 @@ is
    --  around it?
 
    function Enabled
-     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
@@ -75,44 +87,26 @@ is
         when Too_Late => Task_Of_Arm_States.Gave_Up);
    --  The leaf it leads to; that of a composite is its default.
 
-   --  The innermost region that holds all that a transition leaves and
-   --  enters.
-   type Domain is (Nothing, Everything, Beginning);
-
-   function Domain_Of (T : Firing) return Domain is
-     (case T is
-        when Initial_Entry => Beginning,
-        when Begin_Task | There | Too_Late => Everything);
-   --  Everything active inside it is left, and what is active then is
-   --  entered.
-
-   function Timer_After
-     (I      : Positive;
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Task_Of_Arm_States.Leaf;
-      After  : Task_Of_Arm_States.Leaf;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
-              D /= Beginning and then Before = Task_Of_Arm_States.Parked,
-              After = Task_Of_Arm_States.Parked,
-              Ravenchart.Timers.Started (5)),
-        when 2 =>
-           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
-              D /= Beginning and then Before = Task_Of_Arm_States.Reaching,
-              After = Task_Of_Arm_States.Reaching,
-              Ravenchart.Timers.Started (100)),
-        when others => Timer);
+      After  : Task_Of_Arm_States.Leaf) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1), D in Everything | Beginning,
+            D /= Beginning and then Before = Task_Of_Arm_States.Parked,
+            After = Task_Of_Arm_States.Parked,
+            Ravenchart.Timers.Started (5)),
+       2 =>
+         Ravenchart.Timers.Moved (Timers (2), D in Everything | Beginning,
+            D /= Beginning and then Before = Task_Of_Arm_States.Reaching,
+            After = Task_Of_Arm_States.Reaching,
+            Ravenchart.Timers.Started (100))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
    function Is_Selection
-     (Chosen : Selection;
-      Self   : Region;
-      Now    : Occurrence;
-      Ins    : Inputs)
+     (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition
@@ -164,11 +158,8 @@ is
           else Is_Selection (Fired, Self'Old, Now, Ins))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
-             and then Self.Timers (1)
-               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (1))
-             and then Self.Timers (2)
-               = Timer_After (2, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (2)));
+             and then Self.Timers
+               = Timers_After (Self.Timers'Old, Domain_Of (Fired),
+                    Self.Leaf'Old, Self.Leaf));
    --  One run-to-completion step.
 end Surgical_Robot.Supervisor.Task_Of_Arm;

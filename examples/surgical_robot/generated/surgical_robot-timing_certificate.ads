@@ -83,6 +83,7 @@ is
    function Board_Supervisor_Up (W : Window) return Time is
      (Demand (W, Board_Supervisor_J, Board_Supervisor_T, Board_Supervisor_C))
    with Static;
+
    function Servo_Loop_Up (W : Window) return Time is
      (Demand (W, Servo_Loop_J, Servo_Loop_T, Servo_Loop_C,
          Board_Supervisor_Up (W))) with Static;

@@ -6,9 +6,9 @@ package Surgical_Robot.Wrist
 with SPARK_Mode
 is
    procedure Start (Passed : out Boolean);
-   --  [Wrist] before the first release; budget 10_000 ns
+   --  [Wrist] before the first release; WCET 10_000 ns
 
    procedure Get_Force (Reply : out Surgical_Robot.Force)
    with Inline_Always;
-   --  [Wrist.Get_Force] budget 6_000 ns
+   --  [Wrist.Get_Force] WCET 6_000 ns
 end Surgical_Robot.Wrist;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The arm behind all simulated registers: what one device moves, another
 --  measures. Nothing of it is part of a controller on hardware.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The drive over CAN: what it is ordered, as set-points.
 
 package body Surgical_Robot.Can_Drive.Activities

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The servo loop: orders, and one execution of four joints.
 
 package body Surgical_Robot.Servo.Activities

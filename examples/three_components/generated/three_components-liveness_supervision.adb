@@ -4,7 +4,6 @@
 
 with Ravenchart.Health;
 with Ravenchart.Liveness;
-with Ravenchart.Traces;
 with Three_Components.Elements;
 with Three_Components.Health_Counts;
 with Three_Components.One;
@@ -12,7 +11,6 @@ with Three_Components.Processor_1;
 with Three_Components.Processor_2;
 with Three_Components.Processor_3;
 with Three_Components.Starter;
-with Three_Components.Trace;
 
 package body Three_Components.Liveness_Supervision
 with SPARK_Mode
@@ -50,23 +48,19 @@ is
 
    procedure On_Silence (Item : Watched) is
    begin
-      Health_Counts.Counters.Record_Fault (Ravenchart.Health.Silence);
       case Item is
          when Processor_1_Watch =>
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Processor_1_Processor,
-               Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
+            Health_Counts.Faults.Report (Ravenchart.Health.Silence,
+               Elements.Processor_1_Processor);
             Ravenchart.Failures.Note_Silence ("processor_1");
          when Processor_2_Watch =>
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Processor_2_Processor,
-               Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
+            Health_Counts.Faults.Report (Ravenchart.Health.Silence,
+               Elements.Processor_2_Processor);
             One.Offer (Starter.Station_Silent);
             Ravenchart.Failures.Note_Silence ("processor_2");
          when Processor_3_Watch =>
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Processor_3_Processor,
-               Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Silence));
+            Health_Counts.Faults.Report (Ravenchart.Health.Silence,
+               Elements.Processor_3_Processor);
             One.Offer (Starter.Station_Silent);
             Ravenchart.Failures.Note_Silence ("processor_3");
       end case;

@@ -4,6 +4,7 @@
 
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -24,6 +25,13 @@ is
       Capacity => 2,
       Ceiling => System.Default_Priority + 3,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Token_In_Offers is new Ravenchart.Offers
+     (Element_Type => Three_Components.Token,
+      Put => Token_In_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.One_Token_In,
+      Report => Health_Counts.Faults.Report);
 
    Token_In_Port : Starter.Token_In_View;
 
@@ -47,6 +55,13 @@ is
       Ceiling => System.Default_Priority + 4,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Starting_Offers is new Ravenchart.Offers
+     (Element_Type => Starter.Event,
+      Put => Starting_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.One_Starting,
+      Report => Health_Counts.Faults.Report);
+
    --  [one.Watching]
    Watching_Region : Starter.Watching.Region;
 
@@ -62,60 +77,30 @@ is
       Ceiling => System.Default_Priority + 4,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
-   procedure Put_Token_In (Item : Three_Components.Token) is
-      Status : Ravenchart.Queueing.Put_Status;
+   package Watching_Offers is new Ravenchart.Offers
+     (Element_Type => Starter.Event,
+      Put => Watching_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.One_Watching,
+      Report => Health_Counts.Faults.Report);
 
-      use type Ravenchart.Queueing.Put_Status;
+   procedure Put_Token_In (Item : Three_Components.Token) is
    begin
-      Token_In_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.One_Token_In,
          0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.One_Token_In,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Token_In_Offers.Offer (Item);
    end Put_Token_In;
 
    procedure Offer (Item : Starter.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
          when Starter.Token_Came =>
-            Starting_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.One_Starting,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
-            Watching_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.One_Watching,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Starting_Offers.Offer (Item);
+            Watching_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.One_Token_Came, 0);
          when Starter.Station_Silent =>
-            Watching_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.One_Watching,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Watching_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.One_Station_Silent, 0);
       end case;
@@ -151,12 +136,8 @@ is
                Elements.One_Token_In, 0);
             Offer (Starter.Token_Came);
          when Starter.Token_In_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.One_Token_In,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.One_Token_In);
       end case;
       Executed := Executed + Elements.One_Ports_Row;
    end Run_Ports;

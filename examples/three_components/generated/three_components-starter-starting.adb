@@ -5,15 +5,20 @@
 package body Three_Components.Starter.Starting
 with SPARK_Mode
 is
-   function Select_Transition
-     (Self : Region; Now : Occurrence)
-     return Selection is
-     (case Self.Leaf is
-        when Starting_States.Before =>
-           (if Now = Expiry_Of_Start then Start else None),
-        when Starting_States.After_Start =>
-           (if Now = On_Token_Came then Again else None))
-   with Post => Is_Selection (Select_Transition'Result, Self, Now);
+   function Selected (Self : Region; Now : Occurrence) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -55,16 +60,14 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
-     (Self.Timers (1)
-      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-           Before.Timers (1))) with Ghost;
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
+     (Self.Timers
+      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Leaf,
+           Self.Leaf)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started
       and then Self.Leaf = Target (Chosen)
       and then Is_Lasting (Before, Self, Chosen)) with Ghost;
@@ -84,48 +87,32 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Before : constant Starting_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
-
-      procedure Exit_Before is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Moved (Active, Chart.Before, Chart.Nowhere);
-      end Exit_Before;
-
-      procedure Enter_Before is
-      begin
-         Self.Leaf := Starting_States.Before;
-         Ravenchart.Timers.Arm (Self.Timers (1), 2);
-         Active := Moved (Active, Chart.Nowhere, Chart.Before);
-      end Enter_Before;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen);
+      Self.Timers :=
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Leaf);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
-            Enter_Before;
+            Active := Moved (Active, Chart.Nowhere, Chart.Before);
          when Start =>
-            Exit_Before;
-            pragma Assert (Active = Chart.Nowhere);
+            Active := Moved (Active, Chart.Before, Chart.Nowhere);
             Box.Token_Out := 1;
             Box.Token_Out_Sent := True;
-            pragma Assert (Active = Chart.Nowhere);
             Active := Moved (Active, Chart.Nowhere, Chart.After_Start);
-            Self.Leaf := Starting_States.After_Start;
          when Again =>
             Active := Moved (Active, Chart.After_Start, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
             Box.Token_Out := Ins.Token_In.Value;
             Box.Token_Out_Sent := True;
-            pragma Assert (Active = Chart.Nowhere);
             Active := Moved (Active, Chart.Nowhere, Chart.After_Start);
-            Self.Leaf := Starting_States.After_Start;
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
@@ -140,7 +127,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now);
+         Fired := Selected (Self, Now);
       end if;
       if Fired /= None then
          Fire (Self, Ins, Box, Fired);

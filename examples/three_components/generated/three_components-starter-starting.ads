@@ -37,36 +37,7 @@ is
       Token_Out_Sent : Boolean := False;
    end record;
 
-   --  The region's own state.
-   type Region is record
-      Started : Boolean := False;
-      Leaf    : Starting_States.Leaf := Starting_States.Before;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
-   end record;
-
-   function In_Source
-     (T : Transition; Leaf : Starting_States.Leaf)
-     return Boolean is
-     (case T is
-        when Start => Leaf = Starting_States.Before,
-        when Again => Leaf = Starting_States.After_Start);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
-   function Enabled
-     (T : Transition; Self : Region; Now : Occurrence)
-     return Boolean is
-     (In_Source (T, Self.Leaf)
-      and then (case T is
-           when Start => Now = Expiry_Of_Start,
-           when Again => Now = On_Token_Came));
-   --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Starting_States.Leaf is
-     (case T is
-        when Initial_Entry => Starting_States.Before,
-        when Start | Again => Starting_States.After_Start);
-   --  The leaf it leads to; that of a composite is its default.
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 1);
 
    --  The innermost region that holds all that a transition leaves and
    --  enters.
@@ -79,25 +50,49 @@ is
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
-   function Timer_After
-     (I      : Positive;
+   --  The region's own state.
+   type Region is record
+      Started : Boolean := False;
+      Leaf    : Starting_States.Leaf := Starting_States.Before;
+      Timers  : Time_Outs;
+   end record;
+
+   function In_Source
+     (T : Transition; Leaf : Starting_States.Leaf) return Boolean is
+     (case T is
+        when Start => Leaf = Starting_States.Before,
+        when Again => Leaf = Starting_States.After_Start);
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T : Transition; Self : Region; Now : Occurrence) return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Start => Now = Expiry_Of_Start,
+           when Again => Now = On_Token_Came));
+   --  The trigger and the guard of each transition.
+
+   function Target (T : Firing) return Starting_States.Leaf is
+     (case T is
+        when Initial_Entry => Starting_States.Before,
+        when Start | Again => Starting_States.After_Start);
+   --  The leaf it leads to; that of a composite is its default.
+
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Starting_States.Leaf;
-      After  : Starting_States.Leaf;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
-              D /= Beginning and then Before = Starting_States.Before,
-              After = Starting_States.Before, Ravenchart.Timers.Started (2)),
-        when others => Timer);
+      After  : Starting_States.Leaf) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1), D in Everything | Beginning,
+            D /= Beginning and then Before = Starting_States.Before,
+            After = Starting_States.Before, Ravenchart.Timers.Started (2))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
    function Is_Selection
-     (Chosen : Selection; Self : Region; Now : Occurrence)
-     return Boolean is
+     (Chosen : Selection; Self : Region; Now : Occurrence) return Boolean is
      ((Chosen = None
        or else (Chosen in Transition and then Enabled (Chosen, Self, Now)))
       and then (for all T in Transition =>
@@ -149,8 +144,8 @@ is
           else Is_Selection (Fired, Self'Old, Now))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
-             and then Self.Timers (1)
-               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (1)));
+             and then Self.Timers
+               = Timers_After (Self.Timers'Old, Domain_Of (Fired),
+                    Self.Leaf'Old, Self.Leaf));
    --  One run-to-completion step.
 end Three_Components.Starter.Starting;

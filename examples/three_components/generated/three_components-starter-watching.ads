@@ -27,17 +27,29 @@ is
 
    subtype Firing is Selection range Initial_Entry .. Left;
    subtype Transition is Selection range Seen .. Left;
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 1);
+
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is (Nothing, Inside_At_Work, Everything, Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Seen | Calm => Inside_At_Work,
+        when Left => Everything);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
 
    --  The region's own state.
    type Region is record
       Started : Boolean := False;
       Leaf    : Watching_States.Leaf := Watching_States.Quiet;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
+      Timers  : Time_Outs;
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Watching_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Watching_States.Leaf) return Boolean is
      (case T is
         when Seen => Leaf = Watching_States.Quiet,
         when Calm => Leaf = Watching_States.Busy,
@@ -46,8 +58,7 @@ is
    --  around it?
 
    function Enabled
-     (T : Transition; Self : Region; Now : Occurrence)
-     return Boolean is
+     (T : Transition; Self : Region; Now : Occurrence) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
            when Seen => Now = On_Token_Came,
@@ -62,38 +73,21 @@ is
         when Left => Watching_States.Alone);
    --  The leaf it leads to; that of a composite is its default.
 
-   --  The innermost region that holds all that a transition leaves and
-   --  enters.
-   type Domain is (Nothing, Inside_At_Work, Everything, Beginning);
-
-   function Domain_Of (T : Firing) return Domain is
-     (case T is
-        when Initial_Entry => Beginning,
-        when Seen | Calm => Inside_At_Work,
-        when Left => Everything);
-   --  Everything active inside it is left, and what is active then is
-   --  entered.
-
-   function Timer_After
-     (I      : Positive;
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Watching_States.Leaf;
-      After  : Watching_States.Leaf;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer,
-              D in Inside_At_Work | Everything | Beginning,
-              D /= Beginning and then Before = Watching_States.Busy,
-              After = Watching_States.Busy, Ravenchart.Timers.Started (2)),
-        when others => Timer);
+      After  : Watching_States.Leaf) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1),
+            D in Inside_At_Work | Everything | Beginning,
+            D /= Beginning and then Before = Watching_States.Busy,
+            After = Watching_States.Busy, Ravenchart.Timers.Started (2))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
    function Is_Selection
-     (Chosen : Selection; Self : Region; Now : Occurrence)
-     return Boolean is
+     (Chosen : Selection; Self : Region; Now : Occurrence) return Boolean is
      ((Chosen = None
        or else (Chosen in Transition and then Enabled (Chosen, Self, Now)))
       and then (for all T in Transition =>
@@ -132,7 +126,7 @@ is
    --  neither.
 
    procedure Step
-     (Self  : in out Region; Now   : Occurrence; Fired : out Selection)
+     (Self : in out Region; Now : Occurrence; Fired : out Selection)
    with
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
@@ -141,8 +135,8 @@ is
           else Is_Selection (Fired, Self'Old, Now))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
-             and then Self.Timers (1)
-               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (1)));
+             and then Self.Timers
+               = Timers_After (Self.Timers'Old, Domain_Of (Fired),
+                    Self.Leaf'Old, Self.Leaf));
    --  One run-to-completion step.
 end Three_Components.Starter.Watching;

@@ -10,6 +10,5 @@ is
       Held         : out Three_Components.Token;
       Raise_Worked : out Boolean)
    with Global => null;
-   --  [Station.work] budget 200_000 ns, every 20_000_000 ns, while in
-   --  Holding
+   --  [Station.work] WCET 200_000 ns, every 20_000_000 ns, while in Holding
 end Three_Components.Station.Flows;

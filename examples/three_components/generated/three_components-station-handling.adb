@@ -5,15 +5,20 @@
 package body Three_Components.Station.Handling
 with SPARK_Mode
 is
-   function Select_Transition
-     (Self : Region; Now : Occurrence)
-     return Selection is
-     (case Self.Leaf is
-        when Handling_States.Empty =>
-           (if Now = On_Token_Came then Take else None),
-        when Handling_States.Holding =>
-           (if Now = On_Worked then Pass_On else None))
-   with Post => Is_Selection (Select_Transition'Result, Self, Now);
+   function Selected (Self : Region; Now : Occurrence) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -62,27 +67,22 @@ is
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Active := Moved (Active, Chart.Nowhere, Chart.Empty);
-            Self.Leaf := Handling_States.Empty;
          when Take =>
             Active := Moved (Active, Chart.Empty, Chart.Holding);
-            Self.Leaf := Handling_States.Holding;
          when Pass_On =>
             Active := Moved (Active, Chart.Holding, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
             Box.Token_Out := Ins.Held;
             Box.Token_Out_Sent := True;
-            pragma Assert (Active = Chart.Nowhere);
             Active := Moved (Active, Chart.Nowhere, Chart.Empty);
-            Self.Leaf := Handling_States.Empty;
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
@@ -97,7 +97,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now);
+         Fired := Selected (Self, Now);
       end if;
       if Fired /= None then
          Fire (Self, Ins, Box, Fired);

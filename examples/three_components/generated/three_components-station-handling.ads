@@ -40,8 +40,7 @@ is
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Handling_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Handling_States.Leaf) return Boolean is
      (case T is
         when Take => Leaf = Handling_States.Empty,
         when Pass_On => Leaf = Handling_States.Holding);
@@ -49,8 +48,7 @@ is
    --  around it?
 
    function Enabled
-     (T : Transition; Self : Region; Now : Occurrence)
-     return Boolean is
+     (T : Transition; Self : Region; Now : Occurrence) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
            when Take => Now = On_Token_Came,
@@ -64,8 +62,7 @@ is
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
-     (Chosen : Selection; Self : Region; Now : Occurrence)
-     return Boolean is
+     (Chosen : Selection; Self : Region; Now : Occurrence) return Boolean is
      ((Chosen = None
        or else (Chosen in Transition and then Enabled (Chosen, Self, Now)))
       and then (for all T in Transition =>

@@ -5,15 +5,20 @@
 package body Three_Components.Station.Watching
 with SPARK_Mode
 is
-   function Select_Transition
-     (Self : Region; Now : Occurrence)
-     return Selection is
-     (case Self.Leaf is
-        when Watching_States.Quiet =>
-           (if Now = On_Token_Came then Seen else None),
-        when Watching_States.Busy =>
-           (if Now = Expiry_Of_Calm then Calm else None))
-   with Post => Is_Selection (Select_Transition'Result, Self, Now);
+   function Selected (Self : Region; Now : Occurrence) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -55,16 +60,14 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Lasting
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
-     (Self.Timers (1)
-      = Timer_After (1, Domain_Of (Chosen), Before.Leaf, Self.Leaf,
-           Before.Timers (1))) with Ghost;
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
+     (Self.Timers
+      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Leaf,
+           Self.Leaf)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started
       and then Self.Leaf = Target (Chosen)
       and then Is_Lasting (Before, Self, Chosen)) with Ghost;
@@ -80,51 +83,37 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Before : constant Watching_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
-
-      procedure Exit_Busy is
-      begin
-         Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Moved (Active, Chart.Busy, Chart.Nowhere);
-      end Exit_Busy;
-
-      procedure Enter_Busy is
-      begin
-         Self.Leaf := Watching_States.Busy;
-         Ravenchart.Timers.Arm (Self.Timers (1), 2);
-         Active := Moved (Active, Chart.Nowhere, Chart.Busy);
-      end Enter_Busy;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen);
+      Self.Timers :=
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Leaf);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Active := Moved (Active, Chart.Nowhere, Chart.Quiet);
-            Self.Leaf := Watching_States.Quiet;
          when Seen =>
-            Active := Moved (Active, Chart.Quiet, Chart.Nowhere);
-            Enter_Busy;
+            Active := Moved (Active, Chart.Quiet, Chart.Busy);
          when Calm =>
-            Exit_Busy;
-            Active := Moved (Active, Chart.Nowhere, Chart.Quiet);
-            Self.Leaf := Watching_States.Quiet;
+            Active := Moved (Active, Chart.Busy, Chart.Quiet);
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
 
    procedure Step
-     (Self  : in out Region; Now   : Occurrence; Fired : out Selection) is
+     (Self : in out Region; Now : Occurrence; Fired : out Selection) is
    begin
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now);
+         Fired := Selected (Self, Now);
       end if;
       if Fired /= None then
          Fire (Self, Fired);

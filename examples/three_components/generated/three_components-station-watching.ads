@@ -25,37 +25,7 @@ is
 
    subtype Firing is Selection range Initial_Entry .. Calm;
    subtype Transition is Selection range Seen .. Calm;
-
-   --  The region's own state.
-   type Region is record
-      Started : Boolean := False;
-      Leaf    : Watching_States.Leaf := Watching_States.Quiet;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
-   end record;
-
-   function In_Source
-     (T : Transition; Leaf : Watching_States.Leaf)
-     return Boolean is
-     (case T is
-        when Seen => Leaf = Watching_States.Quiet,
-        when Calm => Leaf = Watching_States.Busy);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
-   function Enabled
-     (T : Transition; Self : Region; Now : Occurrence)
-     return Boolean is
-     (In_Source (T, Self.Leaf)
-      and then (case T is
-           when Seen => Now = On_Token_Came,
-           when Calm => Now = Expiry_Of_Calm));
-   --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Watching_States.Leaf is
-     (case T is
-        when Initial_Entry | Calm => Watching_States.Quiet,
-        when Seen => Watching_States.Busy);
-   --  The leaf it leads to; that of a composite is its default.
+   subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 1);
 
    --  The innermost region that holds all that a transition leaves and
    --  enters.
@@ -68,25 +38,49 @@ is
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
-   function Timer_After
-     (I      : Positive;
+   --  The region's own state.
+   type Region is record
+      Started : Boolean := False;
+      Leaf    : Watching_States.Leaf := Watching_States.Quiet;
+      Timers  : Time_Outs;
+   end record;
+
+   function In_Source
+     (T : Transition; Leaf : Watching_States.Leaf) return Boolean is
+     (case T is
+        when Seen => Leaf = Watching_States.Quiet,
+        when Calm => Leaf = Watching_States.Busy);
+   --  The declared chart: the source of each transition. Is it the leaf, or
+   --  around it?
+
+   function Enabled
+     (T : Transition; Self : Region; Now : Occurrence) return Boolean is
+     (In_Source (T, Self.Leaf)
+      and then (case T is
+           when Seen => Now = On_Token_Came,
+           when Calm => Now = Expiry_Of_Calm));
+   --  The trigger and the guard of each transition.
+
+   function Target (T : Firing) return Watching_States.Leaf is
+     (case T is
+        when Initial_Entry | Calm => Watching_States.Quiet,
+        when Seen => Watching_States.Busy);
+   --  The leaf it leads to; that of a composite is its default.
+
+   function Timers_After
+     (Timers : Time_Outs;
       D      : Domain;
       Before : Watching_States.Leaf;
-      After  : Watching_States.Leaf;
-      Timer  : Ravenchart.Timers.Timer)
-     return Ravenchart.Timers.Timer is
-     (case I is
-        when 1 =>
-           Ravenchart.Timers.Moved (Timer, D in Everything | Beginning,
-              D /= Beginning and then Before = Watching_States.Busy,
-              After = Watching_States.Busy, Ravenchart.Timers.Started (2)),
-        when others => Timer);
+      After  : Watching_States.Leaf) return Time_Outs is
+     ((1 =>
+         Ravenchart.Timers.Moved (Timers (1), D in Everything | Beginning,
+            D /= Beginning and then Before = Watching_States.Busy,
+            After = Watching_States.Busy, Ravenchart.Timers.Started (2))));
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
 
    function Is_Selection
-     (Chosen : Selection; Self : Region; Now : Occurrence)
-     return Boolean is
+     (Chosen : Selection; Self : Region; Now : Occurrence) return Boolean is
      ((Chosen = None
        or else (Chosen in Transition and then Enabled (Chosen, Self, Now)))
       and then (for all T in Transition =>
@@ -125,7 +119,7 @@ is
    --  neither.
 
    procedure Step
-     (Self  : in out Region; Now   : Occurrence; Fired : out Selection)
+     (Self : in out Region; Now : Occurrence; Fired : out Selection)
    with
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
@@ -134,8 +128,8 @@ is
           else Is_Selection (Fired, Self'Old, Now))
        and then (if Fired = None then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
-             and then Self.Timers (1)
-               = Timer_After (1, Domain_Of (Fired), Self.Leaf'Old,
-                    Self.Leaf, Self.Timers'Old (1)));
+             and then Self.Timers
+               = Timers_After (Self.Timers'Old, Domain_Of (Fired),
+                    Self.Leaf'Old, Self.Leaf));
    --  One run-to-completion step.
 end Three_Components.Station.Watching;

@@ -145,10 +145,12 @@ is
    function Board_Supervisor_Up (W : Window) return Time is
      (Demand (W, Board_Supervisor_J, Board_Supervisor_T, Board_Supervisor_C))
    with Static;
+
    function Processor_1_Up (W : Window) return Time is
      (Demand (W, Processor_1_J, Processor_1_T, Processor_1_C,
          Demand (W, Processor_1_J, 2 * Processor_1_T, Processor_1_C_2,
             Board_Supervisor_Up (W)))) with Static;
+
    function Processor_2_Up (W : Window) return Time is
      (Demand (W, Processor_2_J, Processor_2_T, Processor_2_C,
          Demand (W, Processor_2_J, 2 * Processor_2_T, Processor_2_C_2,

@@ -4,6 +4,7 @@
 
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -25,6 +26,13 @@ is
       Capacity => 2,
       Ceiling => System.Default_Priority + 3,
       Policy => Ravenchart.Queueing.Reject_Newest);
+
+   package Token_In_Offers is new Ravenchart.Offers
+     (Element_Type => Three_Components.Token,
+      Put => Token_In_Mailbox.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Two_Token_In,
+      Report => Health_Counts.Faults.Report);
 
    Token_In_Port : Station.Token_In_View;
 
@@ -56,6 +64,13 @@ is
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Handling_Offers is new Ravenchart.Offers
+     (Element_Type => Station.Event,
+      Put => Handling_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Two_Handling,
+      Report => Health_Counts.Faults.Report);
+
    --  [two.Watching]
    Watching_Region : Station.Watching.Region;
 
@@ -71,60 +86,30 @@ is
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
-   procedure Put_Token_In (Item : Three_Components.Token) is
-      Status : Ravenchart.Queueing.Put_Status;
+   package Watching_Offers is new Ravenchart.Offers
+     (Element_Type => Station.Event,
+      Put => Watching_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Two_Watching,
+      Report => Health_Counts.Faults.Report);
 
-      use type Ravenchart.Queueing.Put_Status;
+   procedure Put_Token_In (Item : Three_Components.Token) is
    begin
-      Token_In_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Two_Token_In,
          0);
-      if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault, Elements.Two_Token_In,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
-      end if;
+      Token_In_Offers.Offer (Item);
    end Put_Token_In;
 
    procedure Offer (Item : Station.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
          when Station.Token_Came =>
-            Handling_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Two_Handling,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
-            Watching_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Two_Watching,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Handling_Offers.Offer (Item);
+            Watching_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Two_Token_Came, 0);
          when Station.Worked =>
-            Handling_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Two_Handling,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Handling_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Two_Worked, 0);
       end case;
@@ -160,12 +145,8 @@ is
                Elements.Two_Token_In, 0);
             Offer (Station.Token_Came);
          when Station.Token_In_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Two_Token_In,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Two_Token_In);
       end case;
       Executed := Executed + Elements.Two_Ports_Row;
    end Run_Ports;

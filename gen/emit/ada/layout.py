@@ -9,6 +9,7 @@ Each knows its text on one line from the start: where that fits, nothing more is
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import Enum
 
 STEP = 3
@@ -56,6 +57,13 @@ CUT = LaidParts(("",))
 """Nothing, or the place where a line ends."""
 
 
+def pad(columns: int) -> Doc:
+    """Blanks where the lines around it break, and nothing on one line."""
+    doc = LaidParts((" " * columns,))
+    doc.flat = ""
+    return doc
+
+
 def cat(*docs: Doc) -> Doc:
     """One after the other."""
     return LaidParts(docs)
@@ -74,6 +82,30 @@ def group(*docs: Doc) -> Doc:
 def upright(*docs: Doc) -> Doc:
     """Every soft place that no inner group holds breaks."""
     return LaidParts(docs, 0, _UPRIGHT)
+
+
+def joined(docs: Sequence[Doc], separator: str = "") -> list[Doc]:
+    """The documents with a separator and a soft place between them."""
+    between = (separator, SOFT) if separator else (SOFT,)
+    parts = [part for doc in docs for part in (doc, *between)]
+    return parts[: -len(between)]
+
+
+def stacked(docs: Sequence[Doc]) -> Doc:
+    """Each on a line of its own, nested, with a line break before each."""
+    return nest(*(part for doc in docs for part in (SOFT, doc)))
+
+
+def filled(docs: Sequence[Doc], separator: str = ",") -> Doc:
+    """The documents with a separator, as many on a line as it holds."""
+    *others, last = docs
+    first, *rest = [*(cat(doc, separator) for doc in others), last]
+    return cat(first, *(group(SOFT, doc) for doc in rest))
+
+
+def parenthesized(*docs: Doc) -> Doc:
+    """Between parentheses, one column in."""
+    return group("(", nest(*docs, by=1), ")")
 
 
 def laid_out(doc: Doc, width: int) -> str:

@@ -25,7 +25,18 @@ from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Processor, Slot, System
 from ravenchart.gen.origins import Origin
 
-from .syntax import Aggregate, Arg, Comment, Expr, Ref, number
+from .expressions import (
+    Attribute,
+    Expr,
+    OperatorChain,
+    call,
+    number,
+    plain,
+    record,
+    signed,
+)
+from .named import DottedName, ref
+from .statements import Comment
 
 
 @lru_cache(maxsize=65_536)
@@ -68,29 +79,42 @@ def _unit_names(units: tuple[str, ...]) -> dict[str, str]:
     return names
 
 
-def unit_type(system: System, unit: str | None) -> str:
+RUNTIME = ref("Ravenchart")
+"""The root of the runtime's units."""
+NUMBER = ref(RUNTIME, "Number")
+"""The integers that count nothing."""
+TRUTH = ref("Boolean")
+
+
+def unit_type(system: System, unit: str | None) -> DottedName:
     """The Ada type that integers counted in ``unit`` belong to."""
     if unit is None:
-        return "Ravenchart.Number"
-    return f"{ada_case(system.name)}.{_unit_names(system.units)[unit]}"
+        return NUMBER
+    return ref(ada_case(system.name), _unit_names(system.units)[unit])
 
 
-def type_name(system: System, of_type: Type) -> str:
+def type_name(system: System, of_type: Type) -> DottedName:
     """The expanded name of a model type, visible from every generated unit."""
     if of_type == BOOLEAN:
-        return "Boolean"
-    return f"{ada_case(system.name)}.{ada_case(of_type.name)}"
+        return TRUTH
+    return ref(ada_case(system.name), ada_case(of_type.name))
 
 
-def default_name(system: System, of_type: RecordType) -> str:
+def literal(system: System, of_type: EnumerationType, value: str) -> DottedName:
+    """The expanded name of a literal of a model type."""
+    own = ada_case(value)
+    return ref(own) if of_type == BOOLEAN else ref(ada_case(system.name), own)
+
+
+def default_name(system: System, of_type: RecordType) -> DottedName:
     """The constant that stands for a value nobody has given yet."""
-    return f"{ada_case(system.name)}.Default_{ada_case(of_type.name)}"
+    return ref(ada_case(system.name), f"Default_{ada_case(of_type.name)}")
 
 
 def counted(given: int, unit: str | None) -> Expr:
     """An integer of a unit; the sign of plain numbers is not directly visible everywhere."""
     if unit is None and given < 0:
-        return Ref(f"Ravenchart.Number'Val ({given:_})")
+        return call(Attribute(NUMBER, "Val"), signed(given))
     return number(given)
 
 
@@ -99,8 +123,8 @@ def scalar(system: System, of_type: IntegerType | EnumerationType, value: Scalar
     if isinstance(of_type, IntegerType):
         return counted(int(value), of_type.unit)
     if of_type == BOOLEAN:
-        return Ref(str(value).capitalize())
-    return Ref(f"{ada_case(system.name)}.{ada_case(str(value))}")
+        return ref(str(value).capitalize())
+    return literal(system, of_type, str(value))
 
 
 def value(system: System, of_type: Type, given: Value) -> Expr:
@@ -109,30 +133,24 @@ def value(system: System, of_type: Type, given: Value) -> Expr:
         assert not isinstance(given, tuple)
         return scalar(system, of_type, given)
     assert isinstance(given, tuple)
-    return Aggregate(
-        tuple(
-            Arg(ada_case(field), scalar(system, of_type.field(field).type, item))
-            for field, item in given
-        )
-    )
+    return record({ada_case(f): scalar(system, of_type.field(f).type, item) for f, item in given})
 
 
 def default_value(system: System, of_type: Type) -> Expr:
     """The default as an expression; a record's is its constant."""
     if isinstance(of_type, RecordType):
-        return Ref(default_name(system, of_type))
+        return default_name(system, of_type)
     return value(system, of_type, default(of_type))
 
 
 _BELOW_COMPONENTS = """
-active active_top beginning box chart choice choose chosen conditions deferrals domain domain_of
-done_states due element_id elements enabled ending event event_lists everything executed fire
-fired firing firing_array firing_list follows freed_after freed_events freed_up_to freed_without
-has health_counts i in_source initial_entry inputs ins is_deferral is_due is_only is_ordered
-is_released is_segment is_selection is_top_selection item kept memory nanoseconds next none
-nothing now number occurrence offer on_order outbox passing past poll region released remembered
-reports select_segment select_top select_transition selection self start_of_region status step
-target tick timer_after to_occurrence top_transition transition variables visit
+active active_at_first beginning box chart choice choose chosen conditions deferrals domain
+domain_of done_states due element_id elements enabled ending event event_lists everything executed
+fire fired firing firings follows health_counts i in_source initial_entry inputs ins is_deferral
+is_deferred is_freed is_segment is_selection item memory name name_of nanoseconds next_segment
+none nothing now number occurrence offer outbox passing past poll region released remembered
+reports selected selection self start_of_region status step target tick time_outs timers_after
+to_occurrence top_transition transition variables visit was
 """
 BELOW_COMPONENTS = frozenset(_BELOW_COMPONENTS.split())
 """Names in lower case that units below components and instances declare: they would hide one."""
@@ -144,9 +162,9 @@ def component_name(component: Component) -> str:
     return f"{own}_Type" if component.name.lower() in BELOW_COMPONENTS else own
 
 
-def component_package(system: System, component: Component) -> str:
+def component_package(system: System, component: Component) -> DottedName:
     """Package of a component type."""
-    return f"{ada_case(system.name)}.{component_name(component)}"
+    return ref(ada_case(system.name), component_name(component))
 
 
 def states_package(region: Region) -> str:
@@ -154,19 +172,19 @@ def states_package(region: Region) -> str:
     return f"{ada_case(region.name)}_States"
 
 
-def region_package(system: System, component: Component, region: Region) -> str:
+def region_package(system: System, component: Component, region: Region) -> DottedName:
     """Child package with the logic of a region."""
-    return f"{component_package(system, component)}.{ada_case(region.name)}"
+    return ref(component_package(system, component), ada_case(region.name))
 
 
-def instance_package(system: System, instance: Instance) -> str:
+def instance_package(system: System, instance: Instance) -> DottedName:
     """Package of a component instance."""
-    return f"{ada_case(system.name)}.{ada_case(instance.name)}"
+    return ref(ada_case(system.name), ada_case(instance.name))
 
 
-def processor_package(system: System, processor: Processor) -> str:
+def processor_package(system: System, processor: Processor) -> DottedName:
     """Package of a processor."""
-    return f"{ada_case(system.name)}.{ada_case(processor.name)}"
+    return ref(ada_case(system.name), ada_case(processor.name))
 
 
 def row_name(slot: Slot) -> str:
@@ -193,9 +211,15 @@ def _ended(word: str) -> str:
     return word if len(word) <= LONGEST else f"...{word[3 - LONGEST :]}"
 
 
-def priority(level: int) -> Ref:
+def priority(level: int) -> Expr:
     """A priority of the model as one of the target, counted from the default."""
-    return Ref("System.Priority'First" if level == 0 else f"System.Default_Priority + {level}")
+    if level == 0:
+        return LOWEST
+    return OperatorChain("+", (ref("System.Default_Priority"), plain(level)))
+
+
+LOWEST = Attribute("System.Priority", "First")
+"""The priority that nothing is below."""
 
 
 def root_package(system: System) -> str:

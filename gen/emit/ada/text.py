@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The printer of the Ada constructs: the only place that knows about layout.
+"""The printer of statements, declarations and units, over that of expressions.
 
 Three spaces, 79 columns, one statement a line; long parameter lists and
 expressions break one item a line (`layout` decides).
@@ -9,202 +9,93 @@ expressions break one item a line (`layout` decides).
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
-from .layout import CUT, SOFT, STEP, Doc, cat, group, laid_out, nest, upright
-from .syntax import (
-    NULL,
-    Aggregate,
-    Arg,
+from .declarations import (
+    AbstractState,
+    ArrayDefinition,
     Aspect,
-    Assign,
-    Call,
-    Case,
-    CaseExpr,
-    Comment,
     Decl,
-    Do,
+    Definition,
+    DerivedDefinition,
     EnumType,
-    Expr,
-    ForAll,
-    ForSome,
     GenericInstance,
-    IfExpr,
-    IfStatement,
-    Loop,
+    IndexConstrained,
+    ModularDefinition,
     Object,
-    Old,
-    OperatorChain,
     Package,
     Param,
-    PlainType,
-    Pragma,
-    Prefix,
     Protected,
+    RangeDefinition,
     RecordDeclaration,
-    Ref,
-    Rename,
-    Return,
-    Say,
-    Stmt,
     Subprogram,
+    Subtype,
+    SubtypeDeclaration,
+    TypeDeclaration,
     Unit,
     UsePackage,
     UseType,
-    arguments,
 )
+from .expression_text import (
+    argument,
+    behind_name,
+    choice_text,
+    choices_text,
+    expression,
+    flat,
+    given,
+    listed,
+    selector_of,
+)
+from .expressions import (
+    Aggregate,
+    Arg,
+    CaseExpr,
+    Expr,
+    ForAll,
+    ForSome,
+    IfExpr,
+    RangeConstrained,
+    StringLiteral,
+)
+from .layout import (
+    SOFT,
+    STEP,
+    Doc,
+    cat,
+    filled,
+    group,
+    joined,
+    laid_out,
+    nest,
+    pad,
+    parenthesized,
+    stacked,
+    upright,
+)
+from .named import ref
+from .statements import (
+    NULL,
+    Assign,
+    Case,
+    Comment,
+    DelayUntil,
+    Do,
+    ExitStatement,
+    ForLoop,
+    IfStatement,
+    Loop,
+    NullStatement,
+    Pragma,
+    RaiseStatement,
+    Return,
+    Stmt,
+)
+from .walking import nodes_in
 
 WIDTH = 79
-ONE_LINE = 60
-"""Longer parameter lists go one to a line."""
-LONG_REFERENCE = 56
-"""Longer names do not fit where they stand deep in other constructs."""
-ADA_NAME = re.compile(r"[\w.]+( \(\w+\)(\.\w+)?)?")
-"""A name of one or several words, perhaps of a component of an array."""
-
-
-def _join(docs: Sequence[Doc], separator: str = "") -> list[Doc]:
-    """The documents with a separator and a soft place between them."""
-    between = (separator, SOFT) if separator else (SOFT,)
-    parts = [part for doc in docs for part in (doc, *between)]
-    return parts[: -len(between)]
-
-
-def _lines(docs: Sequence[Doc]) -> Doc:
-    """Each on a line of its own, nested, with a line break before each."""
-    return nest(*(part for doc in docs for part in (SOFT, doc)))
-
-
-def _filled(docs: Sequence[Doc], separator: str = ",") -> Doc:
-    """The documents with a separator, as many on a line as it holds."""
-    *others, last = docs
-    first, *rest = [*(cat(doc, separator) for doc in others), last]
-    return cat(first, *(group(SOFT, doc) for doc in rest))
-
-
-def _args(args: Sequence[Arg]) -> Doc:
-    """Arguments on one line; else named ones have a line each, and positional ones fill lines."""
-    return group("(", nest(*_join([_arg(a) for a in args], ","), by=1), ")")
-
-
-def _given(head: str, args: Sequence[Arg], end: str = "") -> Doc:
-    """A name and its arguments; positional ones begin behind it."""
-    if len(args) < 2 or any(a.name is not None for a in args):
-        return group(head, nest(SOFT, _args(args), by=2), end)
-    first, *rest = (_arg(a) for a in args)
-    behind = [group(SOFT, doc, "," if n < len(rest) else ")") for n, doc in enumerate(rest, 1)]
-    begin = group(SOFT, "(", nest(first, by=1), ",")
-    return group(head, nest(begin, nest(*behind, by=1), by=2), end)
-
-
-def _arg(arg: Arg) -> Doc:
-    value = expression(arg.value)
-    return value if arg.name is None else group(arg.name, " =>", nest(SOFT, value, by=2))
-
-
-_LEVELS = (
-    ("and", "or", "xor", "and then", "or else"),
-    ("=", "/=", "<", "<=", ">", ">=", "in", "not in"),
-    ("+", "-", "&"),
-    ("*", "/", "mod", "rem"),
-    ("**",),
-)
-"""The binary operators of Ada, each row binding its operands closer than the one before."""
-_CLOSENESS = {operator: level for level, row in enumerate(_LEVELS) for operator in row}
-_ARITHMETIC = _LEVELS[2] + _LEVELS[3]
-"""Operators without which a line may go on: their operands fill the lines."""
-
-
-def _operand(expr: Expr, operator: str = "", first: bool = False) -> Doc:
-    """One operand, in parentheses where the precedence of Ada asks for them.
-
-    The first one of an arithmetic operator needs none where it has an operator of the same level.
-    """
-    doc = expression(expr)
-    if isinstance(expr, OperatorChain):
-        own, around = _CLOSENESS[expr.operator], _CLOSENESS.get(operator, len(_LEVELS))
-        alike = first and own == around and operator in _ARITHMETIC
-        if not (alike or own > around) or operator == "**":
-            return cat("(", nest(doc, by=1), ")")
-    return doc
-
-
-def _signed(expr: Expr, operator: str = "", first: bool = False) -> Doc:
-    """An operand after an operator: there Ada has no sign, ``abs`` or ``not`` of its own."""
-    nested = isinstance(expr, Prefix) and (expr.operator == "-" or not operator)
-    return _bare(expression(expr)) if nested else _operand(expr, operator, first)
-
-
-def _bare(*docs: Doc) -> Doc:
-    """Between parentheses, one column in."""
-    return group("(", nest(*docs, by=1), ")")
-
-
-def _choices(text: str) -> Doc:
-    """``A | B``, in as many lines as it takes."""
-    first, *others = text.split(" | ")
-    return cat(first, *(group(SOFT, "| ", choice) for choice in others)) if others else first
-
-
-def _reference(text: str) -> Doc:
-    """A name; one too long for some lines may break before its index, or else before its end."""
-    if len(text) <= LONG_REFERENCE or not ADA_NAME.fullmatch(text):
-        return text
-    head, paren, index = text.partition(" (")
-    if paren:
-        return group(head, nest(SOFT, f"({index}", by=2))
-    head, dot, end = text.rpartition(".")
-    return group(head, nest(CUT, f".{end}", by=2)) if dot else text
-
-
-@lru_cache(maxsize=8192)
-def expression(expr: Expr) -> Doc:
-    """The layout of one expression; a program has few that it does not repeat."""
-    match expr:
-        case Ref(text):
-            return _choices(text) if " | " in text else _reference(text)
-        case Old(name, part):
-            return f"{name}'Old{part}"
-        case OperatorChain(operator, operands):
-            #  GNAT wants to see what a sign before a product is of
-            begin = _signed if operator in ("*", "/") else _operand
-            head = begin(operands[0], operator, first=True)
-            rest = [_signed(o, operator) for o in operands[1:]]
-            place = group if operator in _ARITHMETIC else cat
-            return group(head, *(place(SOFT, f"{operator} ", nest(r, by=2)) for r in rest))
-        case Prefix(operator, operand):
-            return cat(operator if operator == "-" else f"{operator} ", _signed(operand))
-        case Call(name, args):
-            return _given(name, args)
-        case Aggregate(args, _, str(base)):
-            changed = _join([_arg(a) for a in args], ",")
-            return _bare(f"{base}{_DELTA}", nest(SOFT, *changed, by=2))
-        case Aggregate(args, of_type):
-            return group(f"{of_type}'" if of_type else "", _args(args))
-        case IfExpr(branches, otherwise):
-            parts: list[Doc] = [
-                group(
-                    "if " if i == 0 else "elsif ",
-                    nest(expression(c)),
-                    nest(SOFT, "then ", nest(expression(v))),
-                )
-                for i, (c, v) in enumerate(branches)
-            ]
-            if otherwise is not None:
-                parts.append(cat("else ", nest(expression(otherwise))))
-            return _bare(*_join(parts))
-        case CaseExpr(selector, branches):
-            rows = [
-                group("when ", nest(_choices(f"{choice} =>")), nest(SOFT, expression(value)))
-                for choice, value in branches
-            ]
-            body = nest(SOFT, *_join(rows, ","), by=2)
-            return upright("(", nest("case ", expression(selector), " is", body, by=1), ")")
-        case ForAll(variable, domain, condition) | ForSome(variable, domain, condition):
-            word = "all" if isinstance(expr, ForAll) else "some"
-            return _bare(f"for {word} {variable} in {domain} =>", nest(SOFT, expression(condition)))
 
 
 @lru_cache(maxsize=8192)
@@ -219,22 +110,20 @@ def _comment(text: str) -> Doc:
             else:
                 line = f"{line} {word}".strip()
         lines.append(line)
-    return upright(*_join([f"--  {line}".rstrip() for line in lines]))
+    return upright(*joined([f"--  {line}".rstrip() for line in lines]))
 
 
 def _block(statements: Sequence[Stmt]) -> Doc:
-    return _lines([statement(s) for s in statements or (NULL,)])
+    return stacked([statement(s) for s in statements or (NULL,)])
 
 
 def statement(stmt: Stmt) -> Doc:
     """The layout of one statement."""
     match stmt:
         case Assign(target, value):
-            return group(f"{target} :=", nest(SOFT, expression(value), by=2), ";")
-        case Do(name, ()):
-            return f"{name};"
+            return group(f"{flat(target)} :=", nest(SOFT, expression(value), by=2), ";")
         case Do(name, args):
-            return _given(name, args, ";")
+            return given(name.text, args, ";") if args else f"{name.text};"
         case IfStatement(branches, otherwise):
             parts: list[Doc] = []
             for index, (condition, body) in enumerate(branches):
@@ -247,66 +136,94 @@ def statement(stmt: Stmt) -> Doc:
             return upright(*parts, "end if;")
         case Case(selector, branches):
             rows = [
-                upright(group("when ", nest(_choices(f"{choice} =>"))), _block(body))
-                for choice, body in branches
+                upright(group("when ", nest(choices_text(choices, " =>"))), _block(body))
+                for choices, body in branches
             ]
-            return upright("case ", expression(selector), " is", _lines(rows), SOFT, "end case;")
+            return upright("case ", expression(selector), " is", stacked(rows), SOFT, "end case;")
         case Loop(head, body):
-            start = f"{head} loop" if head else "loop"
-            return upright(start, _block(body), SOFT, "end loop;")
-        case Say(text):
-            return f"{text};"
+            return upright(f"{_head(head)}loop", _block(body), SOFT, "end loop;")
         case Return(value):
             return group("return", nest(SOFT, expression(value), by=2), ";")
         case Pragma(name, args):
             return _pragma(name, args)
         case Comment(text):
             return _comment(text)
+    return f"{_simple(stmt)};"
 
 
-def _pragma(name: str, args: Sequence[Expr]) -> Doc:
+def _head(head: ForLoop | None) -> str:
+    return "" if head is None else f"for {head.variable} in {choice_text(head.domain)} "
+
+
+def _simple(stmt: NullStatement | ExitStatement | DelayUntil | RaiseStatement) -> str:
+    """A statement of a few words, without its semicolon."""
+    match stmt:
+        case NullStatement():
+            return "null"
+        case ExitStatement(condition):
+            return "exit" if condition is None else f"exit when {flat(condition)}"
+        case DelayUntil(time):
+            return f"delay until {flat(time)}"
+        case RaiseStatement(exception, words):
+            return f"raise {exception.text} with {flat(words)}"
+
+
+def _pragma(name: str, args: Sequence[Expr | Arg]) -> Doc:
     if not args:
         return f"pragma {name};"
-    return _given(f"pragma {name}", arguments(*args), ";")
+    docs = [
+        f"{selector_of(a)} => {flat(a.value)}" if isinstance(a, Arg) else expression(a)
+        for a in args
+    ]
+    return behind_name(f"pragma {name}", docs, ";")
 
 
 @lru_cache(maxsize=8192)
 def _aspects(aspects: Sequence[Aspect]) -> Doc:
     docs = [
-        a.name if a.value is None else group(f"{a.name} =>", nest(SOFT, expression(a.value), by=2))
+        a.name if a.value is None else group(f"{a.name} =>", nest(SOFT, _given_to(a.value), by=2))
         for a in aspects
     ]
-    return cat(SOFT, group("with", nest(SOFT, *_join(docs, ","), by=2)))
+    return cat(SOFT, group("with", nest(SOFT, *joined(docs, ","), by=2)))
+
+
+def _given_to(value: Expr | AbstractState) -> Doc:
+    if isinstance(value, AbstractState):
+        return f"({value.name} with {', '.join(value.options)})"
+    return expression(value)
 
 
 @lru_cache(maxsize=8192)
 def _params(params: Sequence[Param]) -> Doc:
-    texts = [f"{'' if p.mode == 'in' else p.mode + ' '}{p.type}" for p in params]
-    plain = sum(len(p.name) + len(t) + 5 for p, t in zip(params, texts, strict=True))
-    #  names are padded only where each stands on a line of its own
-    width = max(len(p.name) for p in params) if plain > ONE_LINE else 0
-    docs = [f"{p.name:<{width}} : {t}" for p, t in zip(params, texts, strict=True)]
-    return nest(SOFT, group("(", nest(*_join(docs, ";"), by=1), ")"), by=2)
+    """All on one line; or one on each line, their colons below each other."""
+    width = max(len(p.name) for p in params)
+    docs = [cat(p.name, pad(width - len(p.name)), f" : {_formal(p)}") for p in params]
+    return group("(", nest(*joined(docs, ";"), by=1), ")")
+
+
+def _formal(param: Param) -> str:
+    """What stands behind the colon."""
+    mode = "" if param.mode == "in" else f"{param.mode} "
+    default = "" if param.default is None else f" := {flat(param.default)}"
+    return f"{mode}{flat(param.type)}{default}"
 
 
 def _subprogram(sub: Subprogram) -> Doc:
     keyword = "function" if sub.result else "procedure"
-    head = group(
-        f"{keyword} {sub.name}",
-        _params(sub.params) if sub.params else "",
-        nest(SOFT, f"return {sub.result}", by=2) if sub.result else "",
-    )
+    profile = [_params(sub.params)] if sub.params else []
+    profile += [f"return {sub.result.text}"] if sub.result else []
+    head = group(f"{keyword} {sub.name}", _profile(profile))
     aspects = _aspects(sub.aspects) if sub.aspects else ""
     if sub.expression is not None:
         inner = expression(sub.expression)
         if not isinstance(sub.expression, (IfExpr, CaseExpr, ForAll, ForSome)):
-            inner = _bare(inner)
+            inner = parenthesized(inner)
         if not any(aspect.value for aspect in sub.aspects):
             aspects = group(aspects)
         return upright(group(head, " is", nest(SOFT, inner, by=2)), aspects, ";")
     if sub.body is None:
         return upright(head, aspects, ";")
-    declarations = _lines(_items(sub.declarations))
+    declarations = stacked(_items(sub.declarations))
     start = [SOFT, "is"] if sub.aspects else [" is"]
     return upright(
         head,
@@ -321,9 +238,17 @@ def _subprogram(sub: Subprogram) -> Doc:
     )
 
 
+def _profile(parts: Sequence[Doc]) -> Doc:
+    """Parameters and result: behind the name, or below it."""
+    first, *rest = parts or ("",)
+    behind = (group(SOFT, part) for part in rest)
+    return nest(SOFT, first, *behind, by=2) if parts else ""
+
+
 def _object(decl: Object) -> Doc:
     """An object; its name and type stand below each other where no line holds both."""
-    words = " ".join(w for w in ("constant" if decl.constant else "", decl.type or "") if w)
+    of_type = [] if decl.type is None else [" ".join(_subtype(decl.type))]
+    words = " ".join([*(["constant"] if decl.constant else []), *of_type])
     start: list[Doc] = [f"{decl.name} : {words}"]
     if len(f"{decl.name} : {words} :=") > WIDTH - STEP:
         start = [upright(f"{decl.name} :", nest(SOFT, words, by=2))]
@@ -336,29 +261,32 @@ def _declaration(decl: Decl) -> Doc:
     match decl:
         case EnumType():
             return _enumeration(decl)
-        case PlainType():
-            return _plain_type(decl)
+        case TypeDeclaration(name, definition):
+            return _is(f"type {name} is", _subtype(definition))
+        case SubtypeDeclaration(name, base, aspects):
+            return _is(f"subtype {name} is", _subtype(base), aspects)
         case RecordDeclaration(name, ()):
             return f"type {name} is null record;"
         case RecordDeclaration(name, components):
             width = max(len(c.name) for c in components)
-            rows = [_component(f"{c.name:<{width}} : {c.type}", c.initial) for c in components]
-            return upright(f"type {name} is record", _lines(rows), SOFT, "end record;")
+            rows = [
+                _component(f"{c.name:<{width}} : {' '.join(_subtype(c.type))}", c.initial)
+                for c in components
+            ]
+            return upright(f"type {name} is record", stacked(rows), SOFT, "end record;")
         case Object():
             return _object(decl)
         case Subprogram():
             return _subprogram(decl)
         case GenericInstance(name, generic, args, kind):
-            head = f"{kind} {name} is new {generic}"
-            return group(head, nest(SOFT, _args(args), by=2), ";")
+            head = f"{kind} {name} is new {generic.text}"
+            return group(head, nest(SOFT, listed([argument(a) for a in args]), by=2), ";")
         case Package():
             return _package(decl)
         case Protected():
             return _protected(decl)
-        case Rename(name, other):
-            return f"package {name} renames {other};"
         case UseType(name) | UsePackage(name):
-            return f"use {'type ' if isinstance(decl, UseType) else ''}{name};"
+            return f"use {'type ' if isinstance(decl, UseType) else ''}{name.text};"
         case Pragma(name, args):
             return _pragma(name, args)
         case Comment(text):
@@ -367,10 +295,10 @@ def _declaration(decl: Decl) -> Doc:
 
 def _enumeration(decl: EnumType) -> Doc:
     if not decl.notes:
-        items = nest(_filled(decl.literals), by=1)
+        items = nest(filled(decl.literals), by=1)
         return group(f"type {decl.name} is", nest(SOFT, group("(", items, ");"), by=2))
     noted = _annotated(decl.literals, decl.notes)
-    rows = nest(*_join(list(noted)), by=1)
+    rows = nest(*joined(list(noted)), by=1)
     end = cat(SOFT, ");") if decl.notes[-1].text else ");"
     return upright(f"type {decl.name} is", nest(SOFT, "(", rows, end, by=2))
 
@@ -394,27 +322,43 @@ def _component(head: str, initial: Expr | None) -> Doc:
     return group(f"{head} :=", nest(SOFT, expression(initial), by=2), ";")
 
 
-def _plain_type(decl: PlainType) -> Doc:
-    parts = decl.definition.replace(" range ", "\n range ").replace(" .. ", "\n.. ")
-    whole, *bounds = [part.strip() for part in parts.split("\n")]
-    head = f"{'subtype' if decl.subtype else 'type'} {decl.name} is"
-    base = nest(SOFT, whole, *(cat(SOFT, b) for b in bounds), by=2)
-    if decl.aspects:
-        return group(group(head, base), _aspects(decl.aspects), ";")
+def _subtype(decl: Subtype | Definition) -> list[str]:
+    """A subtype or the definition of a type, in the pieces between which a line may end."""
+    match decl:
+        case RangeConstrained(mark, bounds):
+            return [mark.text, f"range {flat(bounds.low)}", f".. {flat(bounds.high)}"]
+        case IndexConstrained(mark, bounds):
+            return [f"{mark.text} ({choice_text(bounds)})"]
+        case RangeDefinition(bounds):
+            return [f"range {flat(bounds.low)}", f".. {flat(bounds.high)}"]
+        case DerivedDefinition(parent):
+            return [f"new {parent.text}"]
+        case ModularDefinition(modulus):
+            return [f"mod {flat(modulus)}"]
+        case ArrayDefinition(index, component):
+            return [f"array ({choice_text(index)}) of {component.text}"]
+    return [flat(decl)]
+
+
+def _is(head: str, pieces: Sequence[str], aspects: Sequence[Aspect] = ()) -> Doc:
+    """The declaration of a type."""
+    base = nest(SOFT, pieces[0], *(cat(SOFT, piece) for piece in pieces[1:]), by=2)
+    if aspects:
+        return group(group(head, base), _aspects(tuple(aspects)), ";")
     return group(head, base, ";")
 
 
-_TIGHT = (Object, PlainType, Rename, UseType, Pragma)
+_TYPES = (TypeDeclaration, SubtypeDeclaration)
+_TIGHT = (_TYPES, Object, UseType, Pragma)
+"""What stands together where one of these comes behind another."""
 
 
 def _alike(item: Decl, before: Decl | None) -> bool:
-    """Whether an item stands with the one before: a check with its number, static functions."""
+    """Whether an item stands with the one before; a check stands with its number."""
     match item, before:
         case (Object() | Pragma(), Object() | Pragma()):
             return True
-        case (Subprogram(aspects=(Aspect("Static"),)), Subprogram(aspects=(Aspect("Static"),))):
-            return True
-    return isinstance(item, _TIGHT) and type(item) is type(before)
+    return any(isinstance(item, kind) and isinstance(before, kind) for kind in _TIGHT)
 
 
 def _items(items: Sequence[Decl]) -> list[Doc]:
@@ -438,43 +382,59 @@ def _items(items: Sequence[Decl]) -> list[Doc]:
 
 def _package(package: Package) -> Doc:
     keyword = "package body" if package.is_body else "package"
-    head = f"{keyword} {package.name}"
+    head = f"{keyword} {package.name.text}"
     aspects = cat(_aspects(package.aspects), SOFT, "is") if package.aspects else " is"
-    return upright(head, aspects, _lines(_items(package.items)), SOFT, f"end {package.name};")
+    return upright(head, aspects, stacked(_items(package.items)), SOFT, f"end {package.name.text};")
 
 
 def _protected(decl: Protected) -> Doc:
-    operations = _lines(_items(decl.items))
+    operations = stacked(_items(decl.items))
     if not decl.kept:
         return upright(f"protected body {decl.name} is", operations, SOFT, f"end {decl.name};")
     head = cat(_aspects(decl.aspects), SOFT, "is")
-    kept = _lines(_items(decl.kept))
+    kept = stacked(_items(decl.kept))
     parts = (f"protected {decl.name}", head, operations, SOFT, "private", kept)
     return upright(*parts, SOFT, f"end {decl.name};")
 
 
-_DELTA = " with delta"
-_STATIC = "with Static;"
+@dataclass(frozen=True, slots=True)
+class PrintedItem:
+    """The text of what a unit consists of, and the pragmas that it asks for before the context."""
+
+    text: str
+    pragmas: tuple[Pragma, ...]
+
+
+_NEWER = Pragma("Ada_2022")
 """What the language of the other units does not have."""
+_OF_ARRAYS = Pragma("Warnings", (ref("Off"), StringLiteral("*array aggregate using*")))
 
 
-def print_item(unit: Unit) -> str:
-    """The text of ``unit`` without its header and context, ending in a newline."""
-    return _laid_out(_declaration(unit.item))
+def _language(unit: Unit) -> tuple[Pragma, ...]:
+    """The pragmas that static functions or delta aggregates in a unit ask for."""
+    changing = False
+    for node in nodes_in(unit.item):
+        if isinstance(node, Aspect) and node.name == "Static":
+            return (_NEWER,)
+        changing |= isinstance(node, Aggregate) and node.base is not None
+    return (_NEWER, _OF_ARRAYS) if changing else ()
 
 
-def print_unit(unit: Unit, item: str | None = None) -> str:
+def print_item(unit: Unit) -> PrintedItem:
+    """``unit`` without its header and context; its text ends in a newline."""
+    return PrintedItem(_laid_out(_declaration(unit.item)), _language(unit))
+
+
+def print_unit(unit: Unit, item: PrintedItem | None = None) -> str:
     """The text of ``unit``, ending in a newline; ``item`` is what `print_item` made of it."""
-    text = print_item(unit) if item is None else item
+    printed = print_item(unit) if item is None else item
     parts: list[Doc] = [_comment(unit.header), ""]
-    if _STATIC in text:
-        parts += ["pragma Ada_2022;", ""]
-    elif _DELTA in text:
-        parts += ["pragma Ada_2022;", 'pragma Warnings (Off, "*array aggregate using*");', ""]
-    parts += [f"with {name};" for name in unit.withs]
-    head = _laid_out(upright(*_join(parts)))
+    if printed.pragmas:
+        parts += [*map(_declaration, printed.pragmas), ""]
+    parts += [f"with {name.text};" for name in unit.withs]
+    head = _laid_out(upright(*joined(parts)))
     gap = "\n" if unit.withs else ""
-    return head + gap + text
+    return head + gap + printed.text
 
 
 def _laid_out(doc: Doc) -> str:

@@ -7,42 +7,48 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from ravenchart.gen.emit.ada.naming import ada_case, root_package
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import (
     SPARK,
-    Aggregate,
-    Arg,
     Aspect,
-    Assign,
-    Comment,
     Decl,
-    Do,
     EnumType,
-    Expr,
-    IfStatement,
     Object,
-    OperatorChain,
     Package,
     Param,
-    PlainType,
-    Pragma,
-    Prefix,
-    Ref,
-    Return,
-    Stmt,
     Subprogram,
+    SubtypeDeclaration,
     Unit,
-    arguments,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    BOX,
+    NOTHING,
+    Aggregate,
+    Arg,
+    Expr,
+    OperatorChain,
+    Prefix,
+    all_else,
     both,
     call,
     equal,
     number,
 )
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
+from ravenchart.gen.emit.ada.naming import ada_case, root_package
+from ravenchart.gen.emit.ada.statements import (
+    Assign,
+    Comment,
+    IfStatement,
+    Pragma,
+    Return,
+    Stmt,
+    do,
+)
 from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.system import System
 
-AUTHENTICATION = "Ravenchart.Can.Authentication"
+AUTHENTICATION = ref("Ravenchart.Can.Authentication")
 
 UNIT = "Authentication"
 """The user's unit, below the root package."""
@@ -50,11 +56,11 @@ UNIT = "Authentication"
 KEYS, MESSAGES = "Keys", "Messages"
 """Its types. Literals have a prefix, so that no name of the model clashes."""
 
-ITEM = "Ravenchart.Can.Authentication.Mac_Input"
-ANSWER = "Ravenchart.Can.Authentication.Mac_Answer"
-FRESHNESS = "Ravenchart.Can.Authentication.Freshness"
+ITEM = ref("Ravenchart.Can.Authentication.Mac_Input")
+ANSWER = ref("Ravenchart.Can.Authentication.Mac_Answer")
+FRESHNESS = ref("Ravenchart.Can.Authentication.Freshness")
 
-FRAME, VALUE, VERDICT = Ref("Frame"), Ref("Value"), Ref("Verdict")
+FRAME, VALUE, VERDICT = ref("Frame"), ref("Value"), ref("Verdict")
 
 
 def authenticated(system: System) -> tuple[tuple[Message, Authentication], ...]:
@@ -89,7 +95,7 @@ def emit_authentication(system: System, header: str) -> list[Unit]:
     if not found:
         return []
     keys = {own.key.lower(): _key(own) for _, own in found}
-    pure = (Aspect("Global", Ref("null")),)
+    pure = (Aspect("Global", NOTHING),)
     mac, last = _mac_spec(), _last_spec()
     items: tuple[Decl, ...] = (
         Comment("The keys of the model by name: no key stands in generated code."),
@@ -116,13 +122,13 @@ def first_authentication(system: System, header: str) -> list[Unit]:
     if not authenticated(system):
         return []
     mac, last = _mac_spec(), _last_spec()
-    nothing = Aggregate((Arg("others", Ref("<>")),))
+    nothing = all_else(BOX)
     bodies = tuple(
         Subprogram(
             spec.name,
             spec.params,
             spec.result,
-            declarations=(Pragma("Unreferenced", tuple(Ref(p.name) for p in spec.params)),),
+            declarations=(Pragma("Unreferenced", tuple(ref(p.name) for p in spec.params)),),
             body=(Return(value),),
         )
         for spec, value in ((mac, nothing), (last, number(0)))
@@ -130,20 +136,20 @@ def first_authentication(system: System, header: str) -> list[Unit]:
     return [Unit(header, (), Package(_unit(system), bodies, (SPARK,), is_body=True))]
 
 
-def _unit(system: System) -> str:
-    return f"{root_package(system)}.{UNIT}"
+def _unit(system: System) -> DottedName:
+    return ref(root_package(system), UNIT)
 
 
 # --- The bus -----------------------------------------------------------------------
 
 
-def context(root: str, messages: Iterable[Message]) -> set[str]:
+def context(root: str, messages: Iterable[Message]) -> set[DottedName]:
     """The user's unit, where one of these messages is authenticated."""
-    return {f"{root}.{UNIT}"} if any(message.authentication for message in messages) else set()
+    return {ref(root, UNIT)} if any(message.authentication for message in messages) else set()
 
 
-def _setting(message: Message) -> Ref:
-    return Ref(f"Authentication_Of_{ada_case(message.name)}")
+def _setting(message: Message) -> DottedName:
+    return ref(f"Authentication_Of_{ada_case(message.name)}")
 
 
 def _sender(message: Message) -> str:
@@ -158,8 +164,8 @@ def _before(message: Message) -> str:
     return f"Checker_Before_{ada_case(message.name)}"
 
 
-SETTING = PlainType("Mac_Setting", f"{AUTHENTICATION}.Setting", subtype=True)
-STATE = PlainType("Mac_State", f"{AUTHENTICATION}.Freshness_State", subtype=True)
+SETTING = SubtypeDeclaration("Mac_Setting", ref(AUTHENTICATION, "Setting"))
+STATE = SubtypeDeclaration("Mac_State", ref(AUTHENTICATION, "Freshness_State"))
 """Short names: those of messages may be long."""
 
 
@@ -182,7 +188,7 @@ def _setting_of(message: Message) -> list[Decl]:
     made = Aggregate(tuple(Arg(name, number(value)) for name, value in columns.items()))
     return [
         Comment(f"[{message.name}] its authentication"),
-        Object(_setting(message).text, SETTING.name, made, constant=True),
+        Object(_setting(message), SETTING.name, made, constant=True),
     ]
 
 
@@ -193,28 +199,28 @@ def states_of_senders(sent: Sequence[Message]) -> tuple[Decl, ...]:
 
 def variables(*, taken: bool) -> tuple[Decl, ...]:
     """What sending or receiving an authenticated message needs."""
-    last: Decl = Object("Verdict", f"{AUTHENTICATION}.Status")
+    last: Decl = Object("Verdict", ref(AUTHENTICATION, "Status"))
     if taken:
         last = Object("Taken", "Boolean")
     return (Object("Value", FRESHNESS), Object("Answer", ANSWER), last)
 
 
-def _begun(state: str, message: Message) -> Stmt:
+def _begun(state: Named, message: Message) -> Stmt:
     """Begin with the user's freshness value, the first time."""
-    last = call(f"{UNIT}.Last_Freshness", Ref(f"{UNIT}.{_literal(message)}"))
-    begin = Do(f"{AUTHENTICATION}.Begin_After", arguments(Ref(state), last))
-    return IfStatement(((Prefix("not", Ref(f"{state}.Is_Started")), (begin,)),))
+    last = call(ref(UNIT, "Last_Freshness"), ref(UNIT, _literal(message)))
+    begin = do(ref(AUTHENTICATION, "Begin_After"), ref(state), last)
+    return IfStatement(((Prefix("not", ref(state, "Is_Started")), (begin,)),))
 
 
 def _mac(message: Message, own: Authentication) -> Expr:
     """The MAC of the frame, by the user's unit."""
-    given = call(f"{AUTHENTICATION}.Input_Of", FRAME, _setting(message), VALUE)
-    return call(f"{UNIT}.Mac", Ref(f"{UNIT}.{_key(own)}"), given)
+    given = call(ref(AUTHENTICATION, "Input_Of"), FRAME, _setting(message), VALUE)
+    return call(ref(UNIT, "Mac"), ref(UNIT, _key(own)), given)
 
 
 def _is_authentic(message: Message, own: Authentication) -> Expr:
     return call(
-        f"{AUTHENTICATION}.Is_Authentic", FRAME, _setting(message), VALUE, _mac(message, own)
+        ref(AUTHENTICATION, "Is_Authentic"), FRAME, _setting(message), VALUE, _mac(message, own)
     )
 
 
@@ -225,17 +231,14 @@ def sealed(
     state, setting = _sender(message), _setting(message)
     return (
         _begun(state, message),
-        Do(f"{AUTHENTICATION}.Take", arguments(Ref(state), VALUE, Ref("Taken"))),
-        IfStatement(((Ref("Taken"), (Assign("Answer", _mac(message, own)),)),)),
+        do(ref(AUTHENTICATION, "Take"), ref(state), VALUE, ref("Taken")),
+        IfStatement(((ref("Taken"), (Assign("Answer", _mac(message, own)),)),)),
         IfStatement(
             (
                 (
-                    Ref("Answer.Is_Known"),
+                    ref("Answer.Is_Known"),
                     (
-                        Do(
-                            f"{AUTHENTICATION}.Seal",
-                            arguments(FRAME, setting, VALUE, Ref("Answer")),
-                        ),
+                        do(ref(AUTHENTICATION, "Seal"), FRAME, setting, VALUE, ref("Answer")),
                         *sent,
                     ),
                 ),
@@ -256,23 +259,28 @@ def verified(
     message: Message, own: Authentication, taken: tuple[Stmt, ...], refused: tuple[Stmt, ...]
 ) -> tuple[Stmt, ...]:
     """Take a frame whose MAC is right; of another do what is to be done then."""
-    state, setting = Ref(_receiver(message)), _setting(message)
+    state, setting = ref(_receiver(message)), _setting(message)
     before = _before(message)
-    newer = OperatorChain(">", (VALUE, Ref(f"{before}.Last")))
+    newer = OperatorChain(">", (VALUE, ref(before, "Last")))
     known = both(newer, _is_authentic(message, own))
     return (
-        _begun(state.text, message),
+        _begun(state, message),
         Assign(before, state),
-        Do(f"{AUTHENTICATION}.Reconstruct", arguments(state, setting, FRAME, VALUE, VERDICT)),
+        do(ref(AUTHENTICATION, "Reconstruct"), state, setting, FRAME, VALUE, VERDICT),
         IfStatement(
             (
                 (
-                    equal(VERDICT, Ref(f"{AUTHENTICATION}.Unverified")),
+                    equal(VERDICT, ref(AUTHENTICATION, "Unverified")),
                     (
                         Assign("Answer", _mac(message, own)),
-                        Do(
-                            f"{AUTHENTICATION}.Verify",
-                            arguments(state, setting, FRAME, VALUE, Ref("Answer"), VERDICT),
+                        do(
+                            ref(AUTHENTICATION, "Verify"),
+                            state,
+                            setting,
+                            FRAME,
+                            VALUE,
+                            ref("Answer"),
+                            VERDICT,
                         ),
                     ),
                 ),
@@ -281,7 +289,7 @@ def verified(
         IfStatement(
             (
                 (
-                    equal(VERDICT, Ref(f"{AUTHENTICATION}.Verified")),
+                    equal(VERDICT, ref(AUTHENTICATION, "Verified")),
                     (Pragma("Assert", (known,)), *taken),
                 ),
             ),

@@ -14,66 +14,81 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ravenchart.gen.emit.ada.naming import ada_case, default_value, scalar, type_name
-from ravenchart.gen.emit.ada.syntax import (
-    NULL,
+from ravenchart.gen.emit.ada.declarations import (
     SPARK,
-    TRUE,
-    Aggregate,
-    Arg,
     Aspect,
-    Assign,
-    Comment,
     Decl,
-    Do,
-    Expr,
-    IfExpr,
-    IfStatement,
     Object,
-    OperatorChain,
     Package,
     Param,
-    Pragma,
-    Prefix,
-    Ref,
-    Return,
-    Stmt,
     Subprogram,
     Unit,
     UseType,
-    arguments,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    OTHERS,
+    TRUE,
+    Aggregate,
+    Arg,
+    Expr,
+    Holder,
+    IfExpr,
+    Indexed,
+    OperatorChain,
+    Power,
+    Prefix,
+    bits,
     both,
     call,
     chain,
     equal,
     member,
     number,
+    plain,
+    record,
+    result,
+    signed,
 )
-from ravenchart.gen.language.terms import RecordType, default
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import NUMBER, ada_case, default_value, scalar, type_name
+from ravenchart.gen.emit.ada.statements import (
+    NULL,
+    Assign,
+    Comment,
+    IfStatement,
+    Pragma,
+    Return,
+    Stmt,
+    do,
+)
+from ravenchart.gen.language.terms import RecordType, Type, default, has_one_value
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import RAW_LIMIT, Signal, bits_of, signals_of
 from ravenchart.gen.model.system import System
 
 from .coding import (
-    NUMBER,
     WORD,
     Coding,
     all_of,
     as_bits,
-    bits,
+    choice_of_value,
     container,
-    literal_name,
     placed,
     within_width,
     word_bits,
 )
-from .layout_tables import ANY, FRAME_ROW, LAYOUTS, LEMMAS, LayoutTable, frame_row, place
+from .layout_tables import ANY, FD, FRAME_ROW, LAYOUTS, LEMMAS, LayoutTable, frame_row, place
 
-WORDS = "Ravenchart.Can.Fd_Frames.Fd_Words"
+WORDS = ref("Ravenchart.Can.Fd_Frames.Fd_Words")
 """The words of a CAN FD frame."""
 
 FD_WORDS = 8
 """How many there are."""
+
+
+def _is(of_type: Type, left: Expr, right: Expr) -> Expr | None:
+    """Are two values the same? None where the type has but one: the compiler warns of that."""
+    return None if has_one_value(of_type) else equal(left, right)
 
 
 def codec_name(message: Message) -> str:
@@ -118,11 +133,11 @@ def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
     spec.append(FRAME_ROW)
     for message in system.messages:
         spec += [Comment(f"[{message.name}] the frame that carries it"), frame_row(message)]
-    name = f"{ada_case(system.name)}.Codecs"
-    withs: tuple[str, ...] = ("Interfaces", ANY, LAYOUTS)
-    lemmas: tuple[str, ...] = ()
+    name = ref(ada_case(system.name), "Codecs")
+    withs: tuple[DottedName, ...] = (ref("Interfaces"), ANY, LAYOUTS)
+    lemmas: tuple[DottedName, ...] = ()
     if any(codec.words > 1 for codec in codecs):
-        withs, lemmas = (*withs, "Ravenchart.Can.Fd_Frames"), (LEMMAS,)
+        withs, lemmas = (*withs, FD), (LEMMAS,)
     return (
         Unit(header, withs, Package(name, tuple(spec), (SPARK, Aspect("Pure")))),
         Unit(header, lemmas, Package(name, tuple(body), (SPARK,), is_body=True)),
@@ -145,20 +160,20 @@ class _Codec:
     def _raw_name(self, signal: Signal) -> str:
         return f"Raw_Of_{ada_case(signal.name)}"
 
-    def _item(self, signal: Signal, item: str) -> str:
-        return item if signal.field is None else f"{item}.{ada_case(signal.field)}"
+    def _item(self, signal: Signal, item: str) -> DottedName:
+        return ref(item) if signal.field is None else ref(item, ada_case(signal.field))
 
     def _local(self, signal: Signal) -> str:
         """The raw value of a signal, in a variable or parameter."""
         return f"Local_{ada_case(signal.name)}"
 
-    def _word(self, frame: str) -> Callable[[int], str]:
+    def _word(self, frame: Holder) -> Callable[[int], Expr]:
         """A word of a frame by its number."""
-        return lambda index: frame if self.words == 1 else f"{frame} ({index})"
+        return lambda index: frame if self.words == 1 else Indexed(frame, plain(index))
 
-    def _raw(self, signal: Signal, frame: str) -> Expr:
+    def _raw(self, signal: Signal, frame: Holder) -> Expr:
         """The bits of a signal of a frame."""
-        return call(self._raw_name(signal), Ref(frame))
+        return call(self._raw_name(signal), frame)
 
     # --- Pages of multiplexed messages -------------------------------------------
 
@@ -172,9 +187,9 @@ class _Codec:
         if self.selector is None or not signal.pages:
             return None
         if raw:
-            return member(selected, " | ".join(f"{page:_}" for page in signal.pages))
-        values = [literal_name(self.system, self.selector, v) for v in self._values(signal)]
-        return member(selected, " | ".join(values))
+            return member(selected, *map(signed, signal.pages))
+        values = [choice_of_value(self.system, self.selector, v) for v in self._values(signal)]
+        return member(selected, *values)
 
     def _values(self, signal: Signal) -> list[int | str]:
         assert self.selector is not None
@@ -182,10 +197,10 @@ class _Codec:
 
     def _selected(self, item: str) -> Expr:
         """The multiplexor of a value; anything where there is none."""
-        return Ref(item if self.selector is None else self._item(self.selector, item))
+        return ref(item) if self.selector is None else self._item(self.selector, item)
 
     def _selected_local(self) -> Expr:
-        return Ref("" if self.selector is None else self._local(self.selector))
+        return TRUE if self.selector is None else ref(self._local(self.selector))
 
     def _default(self, signal: Signal) -> Expr:
         value = default(signal.type)
@@ -203,7 +218,7 @@ class _Codec:
             items += self.table.row(s)
         items.append(self.table.fits())
         for s in self.signals:
-            raw = word_bits(s, self._word(self.frame))
+            raw = word_bits(s, self._word(ref(self.frame)))
             items.append(Subprogram(self._raw_name(s), (frame,), container(s), expression=raw))
         items += [c.spec() for c in self.codings.values() if not c.is_shared]
         items += [
@@ -236,14 +251,13 @@ class _Codec:
         all fields are in memory before it reads them as one: three times as long in all.
         Records are passed by reference under convention C (Ada RM B.3, 69).
         """
-        return [Aspect("Convention", Ref("C"))] if isinstance(self.type, RecordType) else []
+        return [Aspect("Convention", ref("C"))] if isinstance(self.type, RecordType) else []
 
-    def _there_in(self, signal: Signal, frame: str) -> Expr | None:
+    def _there_in(self, signal: Signal, frame: Holder) -> Expr | None:
         """Does the table say that a signal is in a frame? None: it always is."""
         if self.selector is None or not signal.pages:
             return None
-        pages = " | ".join(f"{page:_}" for page in signal.pages)
-        return member(self.table.number_in(self.selector, frame), pages)
+        return member(self.table.number_in(self.selector, frame), *map(signed, signal.pages))
 
     def _carries(self) -> list[Expr]:
         """For each field that is in the frame: its raw value is the item's."""
@@ -251,8 +265,8 @@ class _Codec:
         facts: list[Expr] = []
         for s in self.signals:
             same = equal(
-                self.table.number_in(s, "Pack'Result"),
-                self.table.raw_value(s, Ref(self._item(s, "Item"))),
+                self.table.number_in(s, result("Pack")),
+                self.table.raw_value(s, self._item(s, "Item")),
             )
             facts.append(self._when(s, same, selected, raw=False))
         return facts
@@ -261,13 +275,14 @@ class _Codec:
         """Bits of no signal are 0."""
         taken = sum(1 << bit for bit in {bit for s in self.signals for bit in s.bits()})
         facts: list[Expr] = []
-        word = self._word("Pack'Result")
+        word = self._word(result("Pack"))
         for index in range(1 if self.words == 1 else FD_WORDS):
             free = ~(taken >> 64 * index) & (1 << 64) - 1
             if free == (1 << 64) - 1:
-                facts.append(equal(Ref(word(index)), number(0)))
+                facts.append(equal(word(index), number(0)))
             elif free:
-                facts.append(equal(Ref(f"({word(index)} and 16#{free:X}#)"), number(0)))
+                left = OperatorChain("and", (word(index), bits(free)))
+                facts.append(equal(left, number(0)))
         return facts
 
     def _unpacked(self) -> Expr:
@@ -275,21 +290,21 @@ class _Codec:
         valid: list[Expr] = []
         taken: list[Expr] = []
         for s in self.signals:
-            shown = self.table.number_in(s, self.frame)
+            shown = self.table.number_in(s, ref(self.frame))
             holds = self.table.has_value(s, shown)
-            same = self.table.stands_for(s, shown, Ref(self._item(s, "Item")))
-            there = self._there_in(s, self.frame)
+            same = self.table.stands_for(s, shown, self._item(s, "Item"))
+            there = self._there_in(s, ref(self.frame))
             if there is not None:
-                absent = equal(Ref(self._item(s, "Item")), self._default(s))
+                absent = _is(s.type, self._item(s, "Item"), self._default(s))
                 holds = TRUE if holds == TRUE else IfExpr(((there, holds),), None)
                 same = IfExpr(((there, same),), absent)
             valid.append(holds)
             taken.append(same)
         if all_of(*valid) == TRUE:
-            return all_of(Ref("Valid"), *taken)
-        other = equal(Ref("Item"), default_value(self.system, self.type))
-        read = IfExpr(((Ref("Valid"), all_of(*taken)),), other)
-        return all_of(equal(Ref("Valid"), all_of(*valid)), read)
+            return all_of(ref("Valid"), *taken)
+        other = _is(self.type, ref("Item"), default_value(self.system, self.type))
+        read = IfExpr(((ref("Valid"), all_of(*taken)),), other)
+        return all_of(equal(ref("Valid"), all_of(*valid)), read)
 
     def _decoded(self, signal: Signal, raw: Expr, selected: Expr) -> Expr:
         """The value of a field of a valid frame, where ``selected`` is its multiplexor."""
@@ -307,7 +322,8 @@ class _Codec:
             aspects=(
                 Aspect("Ghost"),
                 Aspect(
-                    "Post", equal(self._widened(signal), self.table.bits_in(signal, self.frame))
+                    "Post",
+                    equal(self._widened(signal), self.table.bits_in(signal, ref(self.frame))),
                 ),
             ),
             body=self._bit_steps(signal),
@@ -316,16 +332,16 @@ class _Codec:
     def _bit_steps(self, signal: Signal) -> tuple[Stmt, ...]:
         if self.words == 1:
             return (NULL,)
-        taken, lemmas = self.table.lemmas_of_bits(signal, self.frame)
+        taken, lemmas = self.table.lemmas_of_bits(signal, ref(self.frame))
         return Pragma("Assert", (equal(self._widened(signal), taken),)), *lemmas
 
     def _widened(self, signal: Signal) -> Expr:
-        raw = self._raw(signal, self.frame)
+        raw = self._raw(signal, ref(self.frame))
         return raw if container(signal) == WORD else call(WORD, raw)
 
     def _value_lemma(self, signal: Signal) -> Subprogram:
         """The codec counts bits as the row does: a fact about numbers alone."""
-        coding, raw = self.codings[signal.name], Ref("Raw")
+        coding, raw = self.codings[signal.name], ref("Raw")
         shown = self.table.counted(signal, raw if container(signal) == WORD else call(WORD, raw))
         valid = coding.valid(raw)
         same = self.table.stands_for(signal, shown, call(coding.value_of, raw))
@@ -350,26 +366,26 @@ class _Codec:
 
     def _as_numbers(self, signal: Signal, shown: Expr) -> tuple[Stmt, ...]:
         """What the row counts, case by case: provers take the step to numbers here alone."""
-        counted: Expr = call(NUMBER, Ref("Raw"))
+        counted: Expr = call(NUMBER, ref("Raw"))
         if signal.signed:
-            below = OperatorChain("<=", (Ref("Raw"), bits((1 << signal.width - 1) - 1)))
+            below = OperatorChain("<=", (ref("Raw"), bits((1 << signal.width - 1) - 1)))
             full = number(1 << signal.width)
             counted = IfExpr(((below, counted),), OperatorChain("-", (counted, full)))
         elif container(signal) == WORD:
-            below = OperatorChain("<=", (Ref("Raw"), bits(RAW_LIMIT - 1)))
-            counted = IfExpr(((below, counted),), Ref("2**62"))
+            below = OperatorChain("<=", (ref("Raw"), bits(RAW_LIMIT - 1)))
+            counted = IfExpr(((below, counted),), Power(2, 62))
         steps: list[Expr] = [equal(shown, counted)]
         if container(signal) != WORD:
-            widened = call(NUMBER, call(WORD, Ref("Raw")))
-            steps.insert(0, equal(widened, call(NUMBER, Ref("Raw"))))
+            widened = call(NUMBER, call(WORD, ref("Raw")))
+            steps.insert(0, equal(widened, call(NUMBER, ref("Raw"))))
         return tuple(Pragma("Assert", (step,)) for step in steps)
 
     def _by_table(self, signal: Signal, frame: str) -> list[Stmt]:
         """What tells provers that the table says the same of a frame."""
         name = ada_case(signal.name)
         return [
-            Do(f"Lemma_Bits_{name}", arguments(Ref(frame))),
-            Do(f"Lemma_Value_{name}", arguments(Ref(self._local(signal)))),
+            do(f"Lemma_Bits_{name}", ref(frame)),
+            do(f"Lemma_Value_{name}", ref(self._local(signal))),
         ]
 
     # --- The body ----------------------------------------------------------------
@@ -388,13 +404,13 @@ class _Codec:
         fits: list[Expr] = []
         kept: list[Expr] = []
         for s in self.signals:
-            local = Ref(self._local(s))
+            local = ref(self._local(s))
             limit = within_width(local, s)
             fits += [] if limit is None else [limit]
             there = self._there(s, selected, raw=True)
             if there is not None:
                 fits.append(IfExpr(((Prefix("not", there), equal(local, number(0))),), None))
-            same = equal(self._raw(s, f"{name}'Result"), local)
+            same = equal(self._raw(s, result(name)), local)
             kept.append(self._when(s, same, selected, raw=True))
         words = [
             chain(
@@ -405,8 +421,8 @@ class _Codec:
         before = [Aspect("Pre", all_of(*fits))] if fits else []
         joined = words[0]
         if self.words > 1:
-            parts = [Arg(str(index), word) for index, word in enumerate(words)]
-            rest = () if self.words == FD_WORDS else (Arg("others", number(0)),)
+            parts = [Arg(plain(index), word) for index, word in enumerate(words)]
+            rest = () if self.words == FD_WORDS else (Arg(OTHERS, number(0)),)
             joined = Aggregate((*parts, *rest))
         return Subprogram(
             name,
@@ -419,12 +435,12 @@ class _Codec:
     def _pack(self) -> Subprogram:
         declarations: list[Decl] = []
         for s in self.signals:
-            taken: Expr = call(self.codings[s.name].bits_of, Ref(self._item(s, "Item")))
+            taken: Expr = call(self.codings[s.name].bits_of, self._item(s, "Item"))
             there = self._there(s, self._selected("Item"), raw=False)
             if there is not None:
                 taken = IfExpr(((there, taken),), number(0))
             declarations.append(Object(self._local(s), container(s), taken, constant=True))
-        word = call(f"{self.frame}_Of", *(Ref(self._local(s)) for s in self.signals))
+        word = call(ref(f"{self.frame}_Of"), *(ref(self._local(s)) for s in self.signals))
         return Subprogram(
             "Pack",
             (Param("Item", "in", self.ada_type),),
@@ -432,31 +448,31 @@ class _Codec:
             declarations=(*declarations, Object("Frame", self.frame_type, word, constant=True)),
             body=(
                 *(step for s in self.signals for step in self._by_table(s, "Frame")),
-                Return(Ref("Frame")),
+                Return(ref("Frame")),
             ),
         )
 
     def _unpack(self) -> Subprogram:
         selected = self._selected_local()
         declarations = tuple(
-            Object(self._local(s), container(s), self._raw(s, self.frame), constant=True)
+            Object(self._local(s), container(s), self._raw(s, ref(self.frame)), constant=True)
             for s in self.signals
         )
         good: list[Expr] = []
         values: dict[str, Expr] = {}
         for s in self.signals:
-            coding, local = self.codings[s.name], Ref(self._local(s))
+            coding, local = self.codings[s.name], ref(self._local(s))
             good.append(self._when(s, coding.valid(local), selected, raw=True))
             values[ada_case(s.name)] = self._decoded(s, local, selected)
         is_valid = all_of(*good)
         if isinstance(self.type, RecordType):
-            built: Expr = Aggregate(tuple(Arg(name, value) for name, value in values.items()))
+            built: Expr = record(values)
         else:
             (built,) = values.values()
         item: Stmt = Assign("Item", built)
         if is_valid != TRUE:  # all bits may stand for values
             absent = Assign("Item", default_value(self.system, self.type))
-            item = IfStatement(((Ref("Valid"), (item,)),), (absent,))
+            item = IfStatement(((ref("Valid"), (item,)),), (absent,))
         return Subprogram(
             "Unpack",
             (
@@ -473,24 +489,23 @@ class _Codec:
         )
 
     def _lemma(self) -> Subprogram:
-        same: list[Expr] = [equal(Ref("Copy"), Ref("Item"))]
+        differs = _is(self.type, ref("Copy"), ref("Item"))
+        copy = "Copy" if differs else "Unused_Copy"
+        same: list[Expr] = [differs or TRUE]
         if any(s.pages for s in self.signals):
             same = []
             for s in self.signals:
-                fact = equal(Ref(self._item(s, "Copy")), Ref(self._item(s, "Item")))
+                fact = equal(self._item(s, "Copy"), self._item(s, "Item"))
                 same.append(self._when(s, fact, self._selected("Item"), raw=False))
         return Subprogram(
             "Lemma_Survives",
             (Param("Item", "in", self.ada_type),),
             declarations=(
-                Object("Copy", self.ada_type),
+                Object(copy, self.ada_type),
                 Object("Valid", "Boolean"),
             ),
             body=(
-                Do(
-                    "Unpack",
-                    arguments(call("Pack", Ref("Item")), Ref("Copy"), Ref("Valid")),
-                ),
-                Pragma("Assert", (all_of(Ref("Valid"), *same),)),
+                do("Unpack", call("Pack", ref("Item")), ref(copy), ref("Valid")),
+                Pragma("Assert", (all_of(ref("Valid"), *same),)),
             ),
         )

@@ -13,45 +13,50 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from ravenchart.gen.emit.ada.naming import ada_case, type_name
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import Aspect, Object, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import (
     TRUE,
-    Aspect,
+    Attribute,
     CaseExpr,
     Expr,
     IfExpr,
-    Object,
+    IntegerLiteral,
     OperatorChain,
-    Param,
-    Pragma,
-    Ref,
-    Return,
-    Subprogram,
+    Power,
+    Prefix,
+    Range,
+    RangeConstrained,
+    between,
+    bits,
     both,
     call,
     chain,
     equal,
     member,
     number,
+    result,
+    signed,
 )
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import NUMBER, ada_case, literal, type_name
+from ravenchart.gen.emit.ada.statements import Pragma, Return
 from ravenchart.gen.language.terms import EnumerationType, IntegerType
 from ravenchart.gen.model.signals import Signal, automatic
 from ravenchart.gen.model.system import System
 
-WORD = "Interfaces.Unsigned_64"
-NUMBER = "Ravenchart.Number"
+WORD = ref("Interfaces.Unsigned_64")
 AS_BITS = "Whole_As_Bits"
 """A number in as many bits as it has: by itself, which provers are slow to see elsewhere."""
 
 
-def container(signal: Signal) -> str:
+def unsigned(width: int) -> DottedName:
+    """The type of so many bits."""
+    return ref("Interfaces", f"Unsigned_{width}")
+
+
+def container(signal: Signal) -> DottedName:
     """The smallest type of bits that holds a signal: provers work bit by bit."""
-    return f"Interfaces.Unsigned_{next(n for n in (8, 16, 32, 64) if signal.width <= n)}"
-
-
-def bits(value: int) -> Ref:
-    """A pattern of bits."""
-    return Ref(f"16#{value:X}#")
+    return unsigned(next(n for n in (8, 16, 32, 64) if signal.width <= n))
 
 
 def all_of(*facts: Expr) -> Expr:
@@ -61,7 +66,7 @@ def all_of(*facts: Expr) -> Expr:
 
 def within_width(raw: Expr, signal: Signal) -> Expr | None:
     """Are the bits no more than the signal has? None: its type of bits has no more."""
-    if container(signal) == f"Interfaces.Unsigned_{signal.width}":
+    if container(signal) == unsigned(signal.width):
         return None
     return OperatorChain("<=", (raw, bits((1 << signal.width) - 1)))
 
@@ -103,25 +108,25 @@ class Coding:
             return TRUE
         if self.signal.codes:
             patterns = sorted(self._pattern(code) for code in self.signal.codes)
-            return member(raw, " | ".join(f"{pattern:_}" for pattern in patterns))
+            return member(raw, *map(signed, patterns))
         full = 1 << self.signal.width
+        if low == high:  # the compiler warns of a limit that can only be met
+            return equal(raw, number(low % full))
         if high - low + 1 == full and within_width(raw, self.signal) is None:
             return TRUE
         if low > 0 and high == full - 1 and within_width(raw, self.signal) is None:
             return OperatorChain(">=", (raw, number(low)))
         if low >= 0:
-            return (
-                member(raw, f"{low:_} .. {high:_}")
-                if low
-                else OperatorChain("<=", (raw, number(high)))
-            )
+            if low:
+                return member(raw, between(low, high))
+            return OperatorChain("<=", (raw, number(high)))
         if high < 0:
-            return member(raw, f"{full + low:_} .. {full + high:_}")
-        return member(raw, f"0 .. {high:_} | {full + low:_} .. {full - 1:_}")
+            return member(raw, between(full + low, full + high))
+        return member(raw, between(0, high), between(full + low, full - 1))
 
     def spec(self) -> Subprogram:
         """What bits stand for."""
-        raw, valid = Ref("Raw"), self.valid(Ref("Raw"))
+        raw, valid = ref("Raw"), self.valid(ref("Raw"))
         return Subprogram(
             self.value_of,
             (Param("Raw", "in", self.container),),
@@ -132,28 +137,30 @@ class Coding:
 
     def body(self) -> Subprogram:
         """The bits of a value."""
-        result = Ref(f"{self.bits_of}'Result")
-        survives = equal(call(self.value_of, result), Ref("Item"))
+        found = result(self.bits_of)
+        survives = equal(call(self.value_of, found), ref("Item"))
         made = Subprogram(
             self.bits_of,
             (Param("Item", "in", self.ada_type),),
             self.container,
-            aspects=(Aspect("Post", all_of(self.valid(result), survives)),),
+            aspects=(Aspect("Post", all_of(self.valid(found), survives)),),
         )
         if self.signal.codes:
-            return replace(made, expression=CaseExpr(Ref("Item"), tuple(self._by_literal())))
+            return replace(made, expression=CaseExpr(ref("Item"), self._by_literal()))
         if isinstance(self.signal.type, EnumerationType):
-            position = call(f"{self.ada_type}'Pos", Ref("Item"))
+            position = call(Attribute(self.ada_type, "Pos"), ref("Item"))
             return replace(made, expression=call(self.container, position))
         #  provers go from integers to bits in steps: a number, its bits, what they count
-        last = f"{(1 << self.signal.width) - 1:_}"
+        last: Expr = number((1 << self.signal.width) - 1)
         made_bits = self.container
         if self.is_wide_number:
-            last, made_bits = f"2**{self.signal.width} - 1", AS_BITS
-        whole = Object("Whole", f"{NUMBER} range 0 .. {last}", self._whole(), constant=True)
-        raw = Object("Raw", self.container, call(made_bits, Ref("Whole")), constant=True)
-        kept = Pragma("Assert", (equal(call(NUMBER, Ref("Raw")), Ref("Whole")),))
-        return replace(made, declarations=(whole, raw), body=(kept, Return(Ref("Raw"))))
+            last = OperatorChain("-", (Power(2, self.signal.width), number(1)))
+            made_bits = ref(AS_BITS)
+        counted = RangeConstrained(NUMBER, Range(number(0), last))
+        whole = Object("Whole", counted, self._whole(), constant=True)
+        raw = Object("Raw", self.container, call(made_bits, ref("Whole")), constant=True)
+        kept = Pragma("Assert", (equal(call(NUMBER, ref("Raw")), ref("Whole")),))
+        return replace(made, declarations=(whole, raw), body=(kept, Return(ref("Raw"))))
 
     def _pattern(self, code: int) -> int:
         """A code as its bits."""
@@ -164,13 +171,13 @@ class Coding:
         assert self.signal.other is not None
         return bits(self._pattern(int(self.signal.raw(self.signal.other))))
 
-    def _by_literal(self, *, other_last: bool = False) -> list[tuple[str, Expr]]:
+    def _by_literal(self, *, other_last: bool = False) -> list[tuple[DottedName, Expr]]:
         """Each literal with the bits of its code."""
         assert isinstance(self.signal.type, EnumerationType)
         found = zip(self.signal.type.literals, self.signal.codes, strict=True)
         pairs = sorted(found, key=lambda pair: other_last and pair[0] == self.signal.other)
         return [
-            (literal_name(self.system, self.signal, name), number(self._pattern(code)))
+            (literal(self.system, self.signal.type, name), number(self._pattern(code)))
             for name, code in pairs
         ]
 
@@ -179,10 +186,10 @@ class Coding:
         signal = self.signal
         if signal.codes:
             *first, (last, _) = self._by_literal(other_last=True)
-            tests = tuple((equal(raw, code), Ref(name)) for name, code in first)
-            return IfExpr(tests, Ref(last)) if tests else Ref(last)
+            tests = tuple((equal(raw, code), name) for name, code in first)
+            return IfExpr(tests, last) if tests else last
         if isinstance(signal.type, EnumerationType):
-            return call(f"{self.ada_type}'Val", raw)
+            return call(Attribute(self.ada_type, "Val"), raw)
         low, high = signal.raw_range
         counted = call(NUMBER, raw)
         above = _more(counted, signal.offset)
@@ -195,7 +202,7 @@ class Coding:
         """The bits of a number as an integer from 0 on."""
         low, high = self.signal.raw_range
         offset = self.signal.offset
-        counted = call(NUMBER, Ref("Item"))
+        counted = call(NUMBER, ref("Item"))
         above = _more(counted, -offset)
         below = _more(counted, (1 << self.signal.width) - offset)
         if low < 0 <= high:
@@ -205,14 +212,14 @@ class Coding:
 
 def as_bits() -> Subprogram:
     """`AS_BITS`."""
-    whole = Ref("Whole")
+    whole = ref("Whole")
     return Subprogram(
         AS_BITS,
         (Param("Whole", "in", NUMBER),),
         WORD,
         aspects=(
             Aspect("Pre", OperatorChain(">=", (whole, number(0)))),
-            Aspect("Post", equal(call(NUMBER, Ref(f"{AS_BITS}'Result")), whole)),
+            Aspect("Post", equal(call(NUMBER, result(AS_BITS)), whole)),
         ),
         expression=call(WORD, whole),
     )
@@ -225,31 +232,31 @@ def _more(term: Expr, addend: int) -> Expr:
     return OperatorChain("+" if addend > 0 else "-", (term, number(abs(addend))))
 
 
-def literal_name(system: System, signal: Signal, value: int | str) -> str:
+def choice_of_value(
+    system: System, signal: Signal, value: int | str
+) -> DottedName | IntegerLiteral | Prefix:
     """A value of a signal's type, as a choice."""
-    if not isinstance(signal.type, EnumerationType):
-        return f"{int(value):_}"
-    name = ada_case(str(value))
-    return name if signal.type.name == "Boolean" else f"{ada_case(system.name)}.{name}"
+    if isinstance(signal.type, EnumerationType):
+        return literal(system, signal.type, str(value))
+    return signed(int(value))
 
 
-def word_bits(signal: Signal, words: Callable[[int], str]) -> Expr:
+def word_bits(signal: Signal, words: Callable[[int], Expr]) -> Expr:
     """The bits of a signal, taken out of the words of a frame."""
     parts: list[Expr] = []
     for piece in signal.pieces():
         word = words(piece.word)
-        shifted = f"Interfaces.Shift_Right ({word}, {piece.start})" if piece.start else word
-        part: Expr = Ref(f"{shifted} and 16#{(1 << piece.width) - 1:X}#")
+        if piece.start:
+            word = call("Interfaces.Shift_Right", word, number(piece.start))
+        part: Expr = OperatorChain("and", (word, bits((1 << piece.width) - 1)))
         parts.append(call("Interfaces.Shift_Left", part, number(piece.low)) if piece.low else part)
-    if len(parts) > 1:
-        parts = [Ref(f"({p.text})") if isinstance(p, Ref) else p for p in parts]
     whole = chain("or", parts)
     return whole if container(signal) == WORD else call(container(signal), whole)
 
 
 def placed(signal: Signal, local: str, word: int) -> list[Expr]:
     """The bits of a signal where they stand in one word of the frame."""
-    widened: Expr = Ref(local) if container(signal) == WORD else call(WORD, Ref(local))
+    widened: Expr = ref(local) if container(signal) == WORD else call(WORD, ref(local))
     pieces = signal.pieces()
     parts: list[Expr] = []
     for piece in pieces:

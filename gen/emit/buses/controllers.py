@@ -5,20 +5,10 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.syntax import (
-    FALSE,
-    TRUE,
-    Aggregate,
-    Arg,
-    Decl,
-    Expr,
-    Pragma,
-    Ref,
-    UseType,
-    both,
-    equal,
-    number,
-)
+from ravenchart.gen.emit.ada.declarations import Decl, UseType
+from ravenchart.gen.emit.ada.expressions import FALSE, TRUE, Expr, both, equal, number, record
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.statements import Pragma
 from ravenchart.gen.emit.certificate.certified import agrees, driver_element, fact
 from ravenchart.gen.model.buses import Bus
 
@@ -26,7 +16,7 @@ from ravenchart.gen.model.buses import Bus
 def controller_checks(bus: Bus) -> list[Decl]:
     """The controller runs as the certificate says."""
     same = [
-        equal(Ref(f"Controller.Given_Setting.{what}"), rate) for what, rate in _rates(bus).items()
+        equal(ref("Controller.Given_Setting", what), rate) for what, rate in _rates(bus).items()
     ]
     level = fact(driver_element(bus.name), "Priority")
     return [
@@ -49,8 +39,6 @@ def controller_setting(bus: Bus) -> Expr:
     settings = {
         **_rates(bus),
         "Takes_Fd": TRUE if bus.takes_fd else FALSE,
-        "Recovery": Ref(
-            f"Ravenchart.Can.{'On_Request' if bus.recovers_by_request else 'Automatic'}"
-        ),
+        "Recovery": ref("Ravenchart.Can", "On_Request" if bus.recovers_by_request else "Automatic"),
     }
-    return Aggregate(tuple(Arg(name, value) for name, value in settings.items()))
+    return record(settings)

@@ -12,52 +12,54 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ravenchart.gen.emit.ada.naming import ada_case, type_name
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import Decl, Object, Param, Subprogram, SubtypeDeclaration
+from ravenchart.gen.emit.ada.expressions import (
     TRUE,
-    Aggregate,
-    Arg,
+    Attribute,
     CaseExpr,
-    Decl,
-    Do,
+    Choice,
     Expr,
-    Object,
+    Holder,
+    Indexed,
     OperatorChain,
-    Param,
-    PlainType,
     Prefix,
-    Ref,
-    Subprogram,
+    Range,
     arguments,
+    between,
+    bits,
     both,
     call,
     chain,
     equal,
     member,
     number,
+    plain,
+    record,
+    signed,
 )
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.naming import NUMBER, ada_case, literal, type_name
+from ravenchart.gen.emit.ada.statements import Do, do
 from ravenchart.gen.language.terms import EnumerationType, IntegerType
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import ByteOrder, Signal
 from ravenchart.gen.model.system import System
 
-LAYOUTS = "Ravenchart.Can.Layouts"
+LAYOUTS = ref("Ravenchart.Can.Layouts")
 """What the rows of layout tables mean."""
 
-LEMMAS = "Ravenchart.Can.Layout_Lemmas"
+LEMMAS = ref("Ravenchart.Can.Layout_Lemmas")
 """What the bits of a signal of a longer frame are, by words."""
 
-NUMBER = "Ravenchart.Number"
 
-
-FD = "Ravenchart.Can.Fd_Frames"
+FD = ref("Ravenchart.Can.Fd_Frames")
 """Words of longer frames, and their bit rates."""
 
-ANY = "Ravenchart.Can.Any_Frames"
+ANY = ref("Ravenchart.Can.Any_Frames")
 """Frames of both families."""
 
 
-FRAME_ROW = PlainType("Row_Of_Frame", f"{LAYOUTS}.Frame_Row", subtype=True)
+FRAME_ROW = SubtypeDeclaration("Row_Of_Frame", ref(LAYOUTS, "Frame_Row"))
 """A short name: those of messages may be long."""
 
 FITS = "Fits_In"
@@ -67,25 +69,25 @@ FITS = "Fits_In"
 def frame_row(message: Message) -> Object:
     """The frame that carries a message."""
     columns = {
-        "Family": Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}"),
+        "Family": ref(ANY, "Flexible" if message.fd else "Classic"),
         "Id": number(message.identifier),
-        "Format": Ref(f"Ravenchart.Can.{'Extended' if message.extended else 'Standard'}"),
+        "Format": ref("Ravenchart.Can", "Extended" if message.extended else "Standard"),
         "Length": number(message.length),
     }
-    made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+    made = record(columns)
     return Object(_frame_name(message), FRAME_ROW.name, made, constant=True)
 
 
 def is_framed(message: Message, frame: Expr) -> Expr:
     """Is a frame the one of a message, by the table?"""
-    return call(f"{LAYOUTS}.Is_Framed", frame, Ref(f"Codecs.{_frame_name(message)}"))
+    return call(ref(LAYOUTS, "Is_Framed"), frame, ref("Codecs", _frame_name(message)))
 
 
 def is_received(message: Message, codec: str) -> Expr:
     """Does the filter let a message in, and does its frame hold all its signals?"""
-    row = f"Codecs.{_frame_name(message)}"
-    accepted = call("Accepts", Ref(f"{row}.Id"), Ref(f"{row}.Format"))
-    return both(accepted, call(f"Codecs.{codec}.{FITS}", Ref(row)))
+    row = ref("Codecs", _frame_name(message))
+    accepted = call("Accepts", ref(row, "Id"), ref(row, "Format"))
+    return both(accepted, call(ref("Codecs", codec, FITS), ref(row)))
 
 
 class LayoutTable:
@@ -100,12 +102,12 @@ class LayoutTable:
         columns = {
             "Start": number(signal.start),
             "Width": number(signal.width),
-            "Order": Ref(f"{LAYOUTS}.{_ORDERS[signal.order]}"),
-            "Signed": Ref(str(signal.signed)),
+            "Order": ref(LAYOUTS, _ORDERS[signal.order]),
+            "Signed": ref(str(signal.signed)),
             "Offset": number(signal.offset),
         }
-        made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
-        rows: list[Decl] = [Object(_row(signal), f"{LAYOUTS}.Signal", made, constant=True)]
+        made = record(columns)
+        rows: list[Decl] = [Object(_row(signal), ref(LAYOUTS, "Signal"), made, constant=True)]
         if signal.codes:
             rows.append(self._codes(signal))
         if signal.other is not None:
@@ -115,42 +117,40 @@ class LayoutTable:
     def _stands_for(self, signal: Signal) -> Subprogram:
         """Which raw values stand for each literal: one, or for the other values the rest."""
         assert isinstance(signal.type, EnumerationType)
-        raw, codes = Ref("Raw"), signal.named_codes
-        taken = " | ".join(f"{code:_}" for code in sorted(codes.values()))
-        rest = Prefix("not", member(raw, taken)) if codes else TRUE
+        raw, codes = ref("Raw"), signal.named_codes
+        taken = map(signed, sorted(codes.values()))
+        rest = Prefix("not", member(raw, *taken)) if codes else TRUE
         facts = tuple(
             (
-                self._literal(signal, name),
+                literal(self.system, signal.type, name),
                 equal(raw, number(codes[name])) if name in codes else rest,
             )
             for name in signal.type.literals
         )
         item = Param("Item", "in", type_name(self.system, signal.type))
-        given = (Param("Raw", "in", f"{NUMBER}'Base"), item)
-        return Subprogram(_meant(signal), given, "Boolean", expression=CaseExpr(Ref("Item"), facts))
-
-    def _literal(self, signal: Signal, name: str) -> str:
-        prefix = "" if signal.type.name == "Boolean" else f"{ada_case(self.system.name)}."
-        return f"{prefix}{ada_case(name)}"
+        given = (Param("Raw", "in", Attribute(NUMBER, "Base")), item)
+        return Subprogram(_meant(signal), given, "Boolean", expression=CaseExpr(ref("Item"), facts))
 
     def _codes(self, signal: Signal) -> Subprogram:
         assert isinstance(signal.type, EnumerationType)
         pairs = zip(signal.type.literals, signal.codes, strict=True)
-        codes = tuple((self._literal(signal, name), number(code)) for name, code in pairs)
+        codes = tuple(
+            (literal(self.system, signal.type, name), number(code)) for name, code in pairs
+        )
         item = Param("Item", "in", type_name(self.system, signal.type))
-        return Subprogram(_code(signal), (item,), NUMBER, expression=CaseExpr(Ref("Item"), codes))
+        return Subprogram(_code(signal), (item,), NUMBER, expression=CaseExpr(ref("Item"), codes))
 
     def fits(self) -> Subprogram:
         """Does a frame hold all signals?"""
-        held = [call(f"{LAYOUTS}.Holds", Ref("Row"), Ref(_row(s))) for s in self.signals]
-        row = Param("Row", "in", f"{LAYOUTS}.Frame_Row")
+        held = [call(ref(LAYOUTS, "Holds"), ref("Row"), ref(_row(s))) for s in self.signals]
+        row = Param("Row", "in", ref(LAYOUTS, "Frame_Row"))
         return Subprogram(FITS, (row,), "Boolean", expression=both(*held))
 
-    def bits_in(self, signal: Signal, frame: str) -> Expr:
+    def bits_in(self, signal: Signal, frame: Holder) -> Expr:
         """The bits of a signal, by its row."""
-        return call(f"{LAYOUTS}.Raw", Ref(frame), Ref(_row(signal)))
+        return call(ref(LAYOUTS, "Raw"), frame, ref(_row(signal)))
 
-    def lemmas_of_bits(self, signal: Signal, frame: str) -> tuple[Expr, tuple[Do, ...]]:
+    def lemmas_of_bits(self, signal: Signal, frame: Holder) -> tuple[Expr, tuple[Do, ...]]:
         """By words what `bits_in` of a longer frame is, and the lemmas that say so.
 
         Provers reckon a row and a frame at once very slowly. What is wrong here is a
@@ -165,40 +165,38 @@ class LayoutTable:
         else:
             shift = (first + signal.width if last > word else -first - signal.width) % 64
         name = f"{_ORDERS[signal.order]}_{'Over' if last > word else 'Within'}"
-        ones = Ref(f"16#{(1 << signal.width) - 1:X}#")
-        row = Ref(_row(signal))
-        given = arguments(Ref(frame), row, number(word), number(shift))
-        words: list[Expr] = [Ref(f"{frame} ({index})") for index in range(word, last + 1)]
+        ones = bits((1 << signal.width) - 1)
+        row = ref(_row(signal))
+        given = arguments(frame, row, number(word), number(shift))
+        words: list[Expr] = [Indexed(frame, plain(index)) for index in range(word, last + 1)]
         if not upwards:
-            words = [call(f"{LAYOUTS}.Reversed", one) for one in words]
+            words = [call(ref(LAYOUTS, "Reversed"), one) for one in words]
         ways = ["Right"] if last == word else ["Right", "Left"] if upwards else ["Left", "Right"]
         by = [shift, 64 - shift]
         parts = [
-            call(f"Interfaces.Shift_{way}", one, number(places))
+            call(ref("Interfaces", f"Shift_{way}"), one, number(places))
             for way, one, places in zip(ways, words, by, strict=False)
         ]
         taken = OperatorChain("and", (chain("or", parts, number(0)), ones))
-        mask = Do(f"{LEMMAS}.Lemma_Mask", arguments(row, ones))
-        return taken, (mask, Do(f"{LEMMAS}.Lemma_{name}", given))
+        mask = do(ref(LEMMAS, "Lemma_Mask"), row, ones)
+        return taken, (mask, Do(ref(LEMMAS, f"Lemma_{name}"), given))
 
-    def number_in(self, signal: Signal, frame: str) -> Expr:
+    def number_in(self, signal: Signal, frame: Holder) -> Expr:
         """The raw value of a signal of a frame, by its row."""
-        return call(f"{LAYOUTS}.Number_In", Ref(frame), Ref(_row(signal)))
+        return call(ref(LAYOUTS, "Number_In"), frame, ref(_row(signal)))
 
     def counted(self, signal: Signal, raw: Expr) -> Expr:
         """The raw value that bits are, by the row."""
-        return call(f"{LAYOUTS}.Counted", raw, Ref(_row(signal)))
+        return call(ref(LAYOUTS, "Counted"), raw, ref(_row(signal)))
 
     def raw_value(self, signal: Signal, item: Expr) -> Expr:
         """The raw value that stands for a value of the model."""
         if signal.codes:
             return call(_code(signal), item)
         if isinstance(signal.type, EnumerationType):
-            return call(f"{type_name(self.system, signal.type)}'Pos", item)
+            return call(Attribute(type_name(self.system, signal.type), "Pos"), item)
         value = call(NUMBER, item)
-        return (
-            OperatorChain("-", (value, Ref(f"{_row(signal)}.Offset"))) if signal.offset else value
-        )
+        return OperatorChain("-", (value, ref(_row(signal), "Offset"))) if signal.offset else value
 
     def stands_for(self, signal: Signal, raw: Expr, item: Expr) -> Expr:
         """Does a raw value that was received stand for a value of the model?"""
@@ -208,16 +206,21 @@ class LayoutTable:
 
     def has_value(self, signal: Signal, raw: Expr) -> Expr:
         """Does a raw value stand for something?"""
-        return TRUE if signal.other is not None else member(raw, self._raw_values(signal))
+        if signal.other is not None:
+            return TRUE
+        match self._raw_values(signal):
+            case [Range(low, high)] if low == high:
+                return equal(raw, low)
+            case values:
+                return member(raw, *values)
 
-    def _raw_values(self, signal: Signal) -> str:
-        """All raw values that stand for something, as choices."""
+    def _raw_values(self, signal: Signal) -> list[Choice]:
+        """All raw values that stand for something."""
         if signal.codes:
-            return " | ".join(f"{code:_}" for code in sorted(signal.codes))
+            return [signed(code) for code in sorted(signal.codes)]
         if isinstance(signal.type, IntegerType):
-            first, last = signal.type.first - signal.offset, signal.type.last - signal.offset
-            return f"{first:_} .. {last:_}"
-        return f"0 .. {len(signal.type.literals) - 1:_}"
+            return [between(signal.type.first - signal.offset, signal.type.last - signal.offset)]
+        return [between(0, len(signal.type.literals) - 1)]
 
 
 _ORDERS = {ByteOrder.INTEL: "Intel", ByteOrder.MOTOROLA: "Motorola"}

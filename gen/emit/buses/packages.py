@@ -7,42 +7,44 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ravenchart.gen.emit.ada.naming import ada_case, priority, root_package, type_name
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import (
     SPARK,
-    Aggregate,
-    Arg,
     Aspect,
-    Call,
-    CaseExpr,
-    Comment,
     Decl,
-    Do,
-    Expr,
     GenericInstance,
-    IfStatement,
     Object,
-    OperatorChain,
     Package,
     Param,
-    Pragma,
-    Ref,
-    Return,
-    Stmt,
     Subprogram,
     Unit,
     UseType,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    FALSE,
+    OTHERS,
+    Aggregate,
+    Arg,
+    CaseExpr,
+    Expr,
+    Indexed,
+    OperatorChain,
     arguments,
     both,
     call,
     equal,
     member,
     number,
+    plain,
+    result,
+    select,
 )
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case, priority, root_package, type_name
+from ravenchart.gen.emit.ada.statements import Comment, IfStatement, Pragma, Return, Stmt, do
 from ravenchart.gen.emit.certificate.certified import CERTIFICATE, driver_element, fact
 from ravenchart.gen.emit.commands.remote_calls import received_as
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
-from ravenchart.gen.emit.tables.trace_calls import note, traced
+from ravenchart.gen.emit.tables.trace_calls import fault, fault_units, note, traced
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.system import System, Work
@@ -106,22 +108,23 @@ def _taker(message: Message, target: End) -> str:
     return f"Put_{ada_case(target.port)}" if message.call is None else received_as(message)
 
 
-def _format(message: Message) -> Ref:
-    return Ref(f"Ravenchart.Can.{'Extended' if message.extended else 'Standard'}")
+def _format(message: Message) -> DottedName:
+    return ref("Ravenchart.Can", "Extended" if message.extended else "Standard")
 
 
 def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     """The controller of a bus, sending on it, and the distribution of what it receives."""
-    root, name = root_package(system), f"{root_package(system)}.{ada_case(bus.name)}"
+    root = root_package(system)
+    name = ref(root, ada_case(bus.name))
     sent, received = _sent(system, bus), _received(system, bus)
     transmit = system.object(f"{bus.name}.transmit").ceiling
     receive = system.object(f"{bus.name}.receive").ceiling
-    standard = [fact(m.element, "Id").text for m in received if not m.extended]
-    extended = [fact(m.element, "Id").text for m in received if m.extended]
-    wanted: list[tuple[str, Expr]] = []
+    standard = [fact(m.element, "Id") for m in received if not m.extended]
+    extended = [fact(m.element, "Id") for m in received if m.extended]
+    wanted: list[tuple[DottedName, Expr]] = []
     for label, ids in (("Standard", standard), ("Extended", extended)):
-        accepts = member(Ref("Id"), " | ".join(ids)) if ids else Ref("False")
-        wanted.append((f"Ravenchart.Can.{label}", accepts))
+        accepts = member(ref("Id"), *ids) if ids else FALSE
+        wanted.append((ref("Ravenchart.Can", label), accepts))
     items: list[Decl] = [
         Subprogram(
             "Accepts",
@@ -131,7 +134,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
                 Param("Format", "in", "Ravenchart.Can.Frame_Format"),
             ),
             "Boolean",
-            expression=CaseExpr(Ref("Format"), tuple(wanted)),
+            expression=CaseExpr(ref("Format"), tuple(wanted)),
         ),
         Comment(f"[{bus.name}] the identifiers that this node receives"),
         GenericInstance(
@@ -144,7 +147,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
                 Transmit_Depth=number(bus.transmit_depth),
                 Receive_Depth=number(bus.receive_depth),
                 Stack_Bytes=number(DRIVER_STACK),
-                Accepts=Ref("Accepts"),
+                Accepts=ref("Accepts"),
                 Setting=controller_setting(bus),
             ),
         ),
@@ -164,7 +167,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     if not all(m.fd or not is_plain(m) for m in sent):
         items.append(UseType("Interfaces.Unsigned_64"))
     if any(m.fd for m in sent):
-        items += [UseType(f"{FD}.Fd_Words"), UseType(f"{FD}.Bit_Rate_Use")]
+        items += [UseType(ref(FD, "Fd_Words")), UseType(ref(FD, "Bit_Rate_Use"))]
     items += (item for m in (*sent, *received) for item in _segmented_spec(system, m))
     for message in filter(is_plain, sent):
         items.append(_frame_spec(system, bus, message))
@@ -186,11 +189,11 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
         segmented = _segmented(system, (*sent, *received))
         states = (*states_of_senders(sent), *authentication.states_of_senders(sent))
         bodies = (*states, *values, *pairs, *segmented)
-        context = {f"{root}.Health_Counts", "Ravenchart.Health"}
+        context = fault_units(root)
         context |= authentication.context(root, sent)
         context |= body_units(root, sent, received) if segmented else set()
         if traced(system):
-            context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
+            context |= {ref(root, "Trace"), ref("Ravenchart.Traces")}
         units.append(
             Unit(header, tuple(sorted(context)), Package(name, bodies, (SPARK,), is_body=True))
         )
@@ -211,33 +214,34 @@ def _frame_name(message: Message) -> str:
 
 def _frame_spec(system: System, bus: Bus, message: Message) -> Subprogram:
     """The frame that carries an item: as the layout table has it, with all that is packed."""
-    result = Ref(f"{_frame_name(message)}'Result")
-    facts = [is_framed(message, result)]
+    made = result(_frame_name(message))
+    facts = [is_framed(message, made)]
     if message.fd:
         facts += [
-            equal(call(f"{ANY}.Words", result), _packed(message)),
-            equal(Ref(f"{result.text}.Fd.Rate"), _rate(bus)),
+            equal(call(ref(ANY, "Words"), made), _packed(message)),
+            equal(select(made, "Fd.Rate"), _rate(bus)),
         ]
     else:
-        facts.append(equal(call(f"{ANY}.Payload", result), _packed(message)))
+        facts.append(equal(call(ref(ANY, "Payload"), made), _packed(message)))
     return Subprogram(
         _frame_name(message),
         _send_spec(system, message).params,
-        f"{ANY}.Any_Frame",
+        ref(ANY, "Any_Frame"),
         aspects=(Aspect("Post", both(*facts)),),
     )
 
 
 def _packed(message: Message) -> Expr:
     """All words that carry an item."""
-    packed: Expr = call(f"Codecs.{codec_name(message)}.Pack", Ref("Item"))
+    packed: Expr = call(ref("Codecs", codec_name(message), "Pack"), ref("Item"))
     if message.fd and words_of(message) == 1:
-        return Aggregate((Arg("0", packed), Arg("others", number(0))), of_type=f"{FD}.Fd_Words")
+        rows = Arg(plain(0), packed), Arg(OTHERS, number(0))
+        return Aggregate(rows, of_type=ref(FD, "Fd_Words"))
     return packed
 
 
-def _rate(bus: Bus) -> Ref:
-    return Ref(f"{FD}.{'Constant' if bus.data_rate is None else 'Switched'}_Rate")
+def _rate(bus: Bus) -> DottedName:
+    return ref(FD, f"{'Constant' if bus.data_rate is None else 'Switched'}_Rate")
 
 
 def _frame_body(system: System, bus: Bus, message: Message) -> Subprogram:
@@ -250,18 +254,23 @@ def _frame_body(system: System, bus: Bus, message: Message) -> Subprogram:
         carried = {"Words": _packed(message), "Rate": _rate(bus)}
     else:
         carried = {"Payload": _packed(message)}
-    made = call(f"{ANY}.Whole_Frame", **head, **carried)
+    made = call(ref(ANY, "Whole_Frame"), **head, **carried)
     spec = _frame_spec(system, bus, message)
     return Subprogram(spec.name, spec.params, spec.result, body=(Return(made),))
 
 
-def _spec_withs(root: str, sent: Sequence[Message], received: Sequence[Message]) -> set[str]:
+def _spec_withs(root: str, sent: Sequence[Message], received: Sequence[Message]) -> set[DottedName]:
     """The units that the spec of a bus needs."""
-    withs = {"Ravenchart.Can", "Ravenchart.Can.Controllers", "System", f"{root}.{CERTIFICATE}"}
+    withs = {
+        ref("Ravenchart.Can"),
+        ref("Ravenchart.Can.Controllers"),
+        ref("System"),
+        ref(root, CERTIFICATE),
+    }
     if sent or received:
-        withs |= {f"{root}.Codecs", LAYOUTS}
+        withs |= {ref(root, "Codecs"), LAYOUTS}
     if sent:
-        withs |= {ANY, "Interfaces"}
+        withs |= {ANY, ref("Interfaces")}
     if any(m.fd for m in sent):
         withs |= {FD}
     if any(m.check for m in (*sent, *received)):
@@ -298,41 +307,36 @@ def _segmented(system: System, messages: Sequence[Message]) -> tuple[Decl, ...]:
             continue
         if message.source is not None:
             objects += sender_objects(system, message)
-            ended = _counted(system, message, "Stale_Input")
+            ended = _counted(message, "Stale_Input")
             bodies += sender_bodies(system, message, *_handed(system, message), ended)
         else:
             flow = next(m for m in messages if m.controls == message.name)
             objects += receiver_objects(message)
-            ended = _counted(system, message, "Protection_Error")
+            ended = _counted(message, "Protection_Error")
             bodies += receiver_bodies(message, flow, transport, *_handed(system, flow), ended)
     return (*objects, *bodies)
 
 
-def _counted(system: System, message: Message, fault: str) -> tuple[Stmt, ...]:
-    """Count a fault of a message, and note it."""
-    kind = Ref(f"Ravenchart.Health.{fault}")
-    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(kind))
-    return (
-        Do("Health_Counts.Counters.Record_Fault", arguments(kind)),
-        *note(system, "Fault", message.name, "message", position),
-    )
+def _counted(message: Message, kind: str) -> tuple[Stmt, ...]:
+    """Report a fault of a message."""
+    return (fault(kind, message.name, "message"),)
 
 
 def _handed(system: System, message: Message) -> tuple[tuple[Stmt, ...], tuple[Stmt, ...]]:
     """Hand a frame to the controller; and what is done where that has no room."""
     return (
         #  and not the frame of another message of the same type
-        Pragma("Assert", (is_framed(message, Ref("Frame")),)),
-        Do("Controller.Send", arguments(Ref("Frame"), Ref("Status"))),
+        Pragma("Assert", (is_framed(message, ref("Frame")),)),
+        do("Controller.Send", ref("Frame"), ref("Status")),
         *note(system, "Sent", message.name, "message"),
-    ), _counted(system, message, "Queue_Overflow")
+    ), _counted(message, "Queue_Overflow")
 
 
 def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
     """What a row calls to send a message, and at its end where the message has a mode."""
-    frame = call(_frame_name(message), Ref("Item"))
+    frame = call(_frame_name(message), ref("Item"))
     handed, lost = _handed(system, message)
-    full = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
+    full = OperatorChain("/=", (ref("Status"), ref("Ravenchart.Can.Queued")))
     name, params = f"Send_{ada_case(message.name)}", _send_spec(system, message).params
     statuses = UseType("Ravenchart.Can.Send_Status")
     ends: Stmt = IfStatement(((full, lost),), (recorded(message),) if message.transmission else ())
@@ -343,11 +347,11 @@ def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
     sending: tuple[Stmt, ...] = (*handed, ends)
     if own is not None:
         sending = authentication.sealed(
-            message, own, sending, _counted(system, message, "Protection_Error")
+            message, own, sending, _counted(message, "Protection_Error")
         )
     declarations = (
         statuses,
-        Object("Frame", f"{ANY}.Any_Frame", frame, constant=message.check is None),
+        Object("Frame", ref(ANY, "Any_Frame"), frame, constant=message.check is None),
         Object("Status", "Ravenchart.Can.Send_Status"),
         *(authentication.variables(taken=True) if own is not None else ()),
     )
@@ -357,7 +361,7 @@ def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
 
 def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     root = root_package(system)
-    name = f"{root}.{ada_case(bus.name)}.Receiver"
+    name = ref(root, ada_case(bus.name), "Receiver")
     received = _received(system, bus)
     slot = bus_row(system, bus, Work.BUS_RECEIVE)
     spec: tuple[Decl, ...] = (
@@ -387,23 +391,21 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         declarations.append(Object(item, type_name(system, message.type)))
         matches = _matches(message)
         puts = tuple(
-            Do(f"{ada_case(t.instance)}.{_taker(message, t)}", arguments(Ref(item)))
-            for t in message.targets
+            do(ref(ada_case(t.instance), _taker(message, t)), ref(item)) for t in message.targets
         )
-        unpack = Do(
-            f"Codecs.{codec_name(message)}.Unpack",
-            arguments(_data(message), Ref(item), Ref("Valid")),
+        unpack = do(
+            ref("Codecs", codec_name(message), "Unpack"), _data(message), ref(item), ref("Valid")
         )
         if message.transport is not None:
             whole = (*note(system, "Arrived", message.name, "message"), *puts)
-            unpacked = (unpack, IfStatement(((Ref("Valid"), whole),)))
-            refused = _counted(system, message, "Protection_Error")
+            unpacked = (unpack, IfStatement(((ref("Valid"), whole),)))
+            refused = _counted(message, "Protection_Error")
             rows.append((matches, segment_taken(message, unpacked, refused)))
             continue
-        family = Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}")
-        carried = call(f"{ANY}.Carries", Ref("Frame"), family, fact(message.element, "Length"))
-        good = OperatorChain("and then", (Ref("Valid"), carried))
-        known = Pragma("Assert", (is_framed(message, Ref("Frame")),))
+        family = ref(ANY, "Flexible" if message.fd else "Classic")
+        carried = call(ref(ANY, "Carries"), ref("Frame"), family, fact(message.element, "Length"))
+        good = OperatorChain("and then", (ref("Valid"), carried))
+        known = Pragma("Assert", (is_framed(message, ref("Frame")),))
         deliver = (known, *note(system, "Arrived", message.name, "message"), *puts)
         taken: tuple[Stmt, ...] = (unpack, IfStatement(((good, deliver),)))
         refused = _refused(system, message)
@@ -413,21 +415,21 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             own = message.authentication
             rows.append((matches, authentication.verified(message, own, taken, refused)))
     if any(m.protection for m in received):
-        declarations.append(Object("Status", f"{PROTECTION}.Status"))
+        declarations.append(Object("Status", ref(PROTECTION, "Status")))
     if any(m.authentication for m in received):
         if all(m.fd for m in _sent(system, bus)):  # else the bus itself has it
             declarations.append(UseType("Interfaces.Unsigned_64"))
-        declarations.append(UseType(f"{AUTHENTICATION}.Status"))
+        declarations.append(UseType(ref(AUTHENTICATION, "Status")))
         declarations += authentication.variables(taken=False)
     body: tuple[Decl, ...] = (
-        Object("Frame", f"{ANY}.Any_Frame", Ref(f"{ANY}.Null_Any_Frame")),
+        Object("Frame", ref(ANY, "Any_Frame"), ref(ANY, "Null_Any_Frame")),
         *(state for m in received for state in receiver_of(m)),
         *(state for m in received for state in authentication.receiver_of(m)),
         *((kept_stamp,) if stamp == STAMP else ()),
         Subprogram(
             "Wait",
             declarations=() if stamp == STAMP else (kept_stamp,),
-            body=(Do("Controller.Wait_Frame", arguments(Ref("Frame"), Ref(stamp))),),
+            body=(do("Controller.Wait_Frame", ref("Frame"), ref(stamp)),),
         ),
         Subprogram(
             "Run_Receive",
@@ -436,27 +438,28 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             body=(IfStatement(tuple(rows)), executed(slot)),
         ),
     )
-    context = {f"{root}.Codecs", ANY, LAYOUTS}
+    context = {ref(root, "Codecs"), ANY, LAYOUTS}
     valued = [m for m in received if not m.controls]
-    context |= {f"{root}.{ada_case(t.instance)}" for m in valued for t in m.targets}
+    context |= {ref(root, ada_case(t.instance)) for m in valued for t in m.targets}
     if traced(system):
-        context |= {f"{root}.Trace", "Ravenchart.Traces"}
+        context |= {ref(root, "Trace"), ref("Ravenchart.Traces")}
     if not all(is_plain(m) for m in received):
         context |= {ISO_TP}
     if any(m.transport for m in received):
         context |= {RECEIVERS}
-        context |= {"Ravenchart.Health", f"{root}.Health_Counts"}
+        context |= fault_units(root)
     kept = [m.check for m in received if m.check is not None]
     if kept:
-        context |= {PROTECTION, AUTHENTICATION, "Interfaces"}
-        context |= {"Ravenchart.Health", f"{root}.Health_Counts"}
+        context |= {PROTECTION, AUTHENTICATION, ref("Interfaces")}
+        context |= fault_units(root)
     context |= authentication.context(root, received)
     owners = {instance for check in kept for instance, _ in check.on_error}
-    context |= {f"{root}.{ada_case(i)}" for i in owners}
-    context |= {f"{root}.{ada_case(system.instance(i).component.name)}" for i in owners}
+    context |= {ref(root, ada_case(i)) for i in owners}
+    context |= {ref(root, ada_case(system.instance(i).component.name)) for i in owners}
+    seen = {ref(root, "Elements")}
     return [
-        Unit(header, (f"{root}.Elements",), Package(name, spec, (SPARK,))),
-        Unit(header, tuple(sorted(context)), Package(name, body, (SPARK,), is_body=True)),
+        Unit(header, tuple(seen), Package(name, spec, (SPARK,))),
+        Unit(header, tuple(sorted(context - seen)), Package(name, body, (SPARK,), is_body=True)),
     ]
 
 
@@ -465,8 +468,8 @@ def _matches(message: Message) -> Expr:
     return OperatorChain(
         "and then",
         (
-            equal(call(f"{ANY}.Id", Ref("Frame")), fact(message.element, "Id")),
-            equal(call(f"{ANY}.Format", Ref("Frame")), _format(message)),
+            equal(call(ref(ANY, "Id"), ref("Frame")), fact(message.element, "Id")),
+            equal(call(ref(ANY, "Format"), ref("Frame")), _format(message)),
         ),
     )
 
@@ -477,7 +480,7 @@ def _refused(system: System, message: Message) -> tuple[Stmt, ...]:
         return ()
     events = message.check.on_error
     raised = (offer(system, instance, event) for instance, event in events)
-    return (*_counted(system, message, "Protection_Error"), *raised)
+    return (*_counted(message, "Protection_Error"), *raised)
 
 
 def _data(message: Message) -> Expr:
@@ -485,6 +488,6 @@ def _data(message: Message) -> Expr:
     if message.transport is not None:
         return value_of()
     if not message.fd:
-        return call(f"{ANY}.Payload", Ref("Frame"))
-    words = f"{ANY}.Words (Frame)"
-    return Ref(f"{words} (0)" if words_of(message) == 1 else words)
+        return call(ref(ANY, "Payload"), ref("Frame"))
+    words = call(ref(ANY, "Words"), ref("Frame"))
+    return Indexed(words, plain(0)) if words_of(message) == 1 else words

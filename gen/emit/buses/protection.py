@@ -7,33 +7,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import Decl, Object
+from ravenchart.gen.emit.ada.expressions import (
     Aggregate,
     Arg,
-    Assign,
-    Comment,
-    Decl,
-    Do,
     Expr,
-    IfStatement,
-    Object,
-    Pragma,
-    Ref,
-    Stmt,
-    arguments,
+    all_else,
     both,
     call,
     member,
     number,
+    record,
 )
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.model.buses import Message
 
-PROTECTION = "Ravenchart.Can.Protection"
+PROTECTION = ref("Ravenchart.Can.Protection")
 
 
-def _setting(message: Message) -> Ref:
-    return Ref(f"Protection_Of_{ada_case(message.name)}")
+def _setting(message: Message) -> DottedName:
+    return ref(f"Protection_Of_{ada_case(message.name)}")
 
 
 def _sender(message: Message) -> str:
@@ -53,38 +48,38 @@ def setting_of(message: Message) -> list[Decl]:
     protection = message.protection
     if protection is None:
         return []
-    ids: Expr = Aggregate((Arg("others", number(0)),))
+    ids: Expr = all_else(number(0))
     if protection.data_ids:
         ids = Aggregate(tuple(Arg(None, number(one)) for one in protection.data_ids))
     columns = {
-        "Kind": Ref(f"{PROTECTION}.{protection.profile.kind}"),
-        "Mode": Ref(f"{PROTECTION}.{protection.profile.mode}"),
+        "Kind": ref(PROTECTION, protection.profile.kind),
+        "Mode": ref(PROTECTION, protection.profile.mode),
         "Data_Id": number(protection.data_id),
         "Ids": ids,
         "Length": number(message.length),
         "Max_Delta": number(protection.max_delta),
         "Sync": number(protection.sync),
     }
-    made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+    made = record(columns)
     return [
-        Object(_setting(message).text, f"{PROTECTION}.Setting", made, constant=True),
+        Object(_setting(message), ref(PROTECTION, "Setting"), made, constant=True),
         Comment(f"[{message.name}] its protection from end to end"),
     ]
 
 
 def states_of_senders(sent: Sequence[Message]) -> tuple[Decl, ...]:
     """The counters of the protected messages."""
-    return tuple(Object(_sender(m), f"{PROTECTION}.Sender") for m in sent if m.protection)
+    return tuple(Object(_sender(m), ref(PROTECTION, "Sender")) for m in sent if m.protection)
 
 
 def protecting(message: Message) -> tuple[Stmt, ...]:
     """Write the header of a frame that is about to go, and count."""
     if message.protection is None:
         return ()
-    given = (Ref(_sender(message)), _setting(message), Ref("Frame"))
+    given = (ref(_sender(message)), _setting(message), ref("Frame"))
     return (
-        Do(f"{PROTECTION}.Protect", arguments(*given)),
-        Pragma("Assert", (call(f"{PROTECTION}.Is_Intact", Ref("Frame"), _setting(message)),)),
+        do(ref(PROTECTION, "Protect"), *given),
+        Pragma("Assert", (call(ref(PROTECTION, "Is_Intact"), ref("Frame"), _setting(message)),)),
     )
 
 
@@ -92,7 +87,7 @@ def receiver_of(message: Message) -> tuple[Decl, ...]:
     """What is known of the frames of a protected message; the second one is for its assertion."""
     if message.protection is None:
         return ()
-    kind = f"{PROTECTION}.Receiver"
+    kind = ref(PROTECTION, "Receiver")
     return (Object(_receiver(message), kind), Object(_before(message), kind))
 
 
@@ -102,17 +97,17 @@ def checked(
     """Take a frame that is usable; of one that is faulty do what is to be done then."""
     if message.protection is None:
         return taken
-    state, setting, frame = Ref(_receiver(message)), _setting(message), Ref("Frame")
-    before = Ref(_before(message))
-    counter = call(f"{PROTECTION}.Counter", frame, Ref(f"{setting.text}.Kind"))
+    state, setting, frame = ref(_receiver(message)), _setting(message), ref("Frame")
+    before = ref(_before(message))
+    counter = call(ref(PROTECTION, "Counter"), frame, ref(setting, "Kind"))
     proved = both(
-        call(f"{PROTECTION}.Is_Intact", frame, setting),
-        call(f"{PROTECTION}.Is_In_Sequence", before, setting, counter),
+        call(ref(PROTECTION, "Is_Intact"), frame, setting),
+        call(ref(PROTECTION, "Is_In_Sequence"), before, setting, counter),
     )
-    usable = member(Ref("Status"), f"{PROTECTION}.Usable")
-    faulty = member(Ref("Status"), f"{PROTECTION}.Fault")
+    usable = member(ref("Status"), ref(PROTECTION, "Usable"))
+    faulty = member(ref("Status"), ref(PROTECTION, "Fault"))
     return (
-        Assign(before.text, state),
-        Do(f"{PROTECTION}.Check", arguments(state, setting, frame, Ref("Status"))),
+        Assign(before, state),
+        do(ref(PROTECTION, "Check"), state, setting, frame, ref("Status")),
         IfStatement(((usable, (Pragma("Assert", (proved,)), *taken)), (faulty, refused))),
     )

@@ -5,30 +5,16 @@
 
 from __future__ import annotations
 
+from ravenchart.gen.emit.ada.declarations import Decl, Object, Subprogram
+from ravenchart.gen.emit.ada.expressions import Attribute, Expr, call, number, record
+from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case, default_value, type_name
-from ravenchart.gen.emit.ada.syntax import (
-    Aggregate,
-    Arg,
-    Assign,
-    Comment,
-    Decl,
-    Do,
-    Expr,
-    IfStatement,
-    Object,
-    Pragma,
-    Ref,
-    Stmt,
-    Subprogram,
-    arguments,
-    call,
-    number,
-)
+from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.system import System
 from ravenchart.gen.model.transmission import Mode
 
-TRANSMISSIONS = "Ravenchart.Can.Transmissions"
+TRANSMISSIONS = ref("Ravenchart.Can.Transmissions")
 
 _MODES = {Mode.ON_CHANGE: "On_Change", Mode.ON_EVENT: "On_Event", Mode.MIXED: "Mixed"}
 
@@ -38,16 +24,16 @@ def transmit_name(message: Message) -> str:
     return f"Transmit_{ada_case(message.name)}"
 
 
-def _setting(message: Message) -> Ref:
-    return Ref(f"Mode_Of_{ada_case(message.name)}")
+def _setting(message: Message) -> DottedName:
+    return ref(f"Mode_Of_{ada_case(message.name)}")
 
 
-def _state(message: Message) -> Ref:
-    return Ref(f"Pending_Of_{ada_case(message.name)}")
+def _state(message: Message) -> DottedName:
+    return ref(f"Pending_Of_{ada_case(message.name)}")
 
 
-def _value(message: Message) -> Ref:
-    return Ref(f"Value_Of_{ada_case(message.name)}")
+def _value(message: Message) -> DottedName:
+    return ref(f"Value_Of_{ada_case(message.name)}")
 
 
 def mode_of(message: Message) -> list[Decl]:
@@ -56,15 +42,15 @@ def mode_of(message: Message) -> list[Decl]:
     if transmission is None:
         return []
     columns: dict[str, Expr] = {
-        "Mode": Ref(f"{TRANSMISSIONS}.{_MODES[transmission.mode]}"),
+        "Mode": ref(TRANSMISSIONS, _MODES[transmission.mode]),
         "Minimum": number(transmission.minimum),
-        "Period": Ref(f"{TRANSMISSIONS}.Distance'Last"),
+        "Period": Attribute(ref(TRANSMISSIONS, "Distance"), "Last"),
     }
     if transmission.renewal:
         columns["Period"] = number(transmission.renewal)
-    made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+    made = record(columns)
     return [
-        Object(_setting(message).text, f"{TRANSMISSIONS}.Setting", made, constant=True),
+        Object(_setting(message), ref(TRANSMISSIONS, "Setting"), made, constant=True),
         Comment(f"[{message.name}] its transmission mode, in executions of the row that sends it"),
     ]
 
@@ -85,16 +71,16 @@ def values_of(system: System, message: Message) -> tuple[Decl, ...]:
         return ()
     first = default_value(system, message.type)
     return (
-        Object(_state(message).text, f"{TRANSMISSIONS}.Sender"),
-        Object(_value(message).text, type_name(system, message.type), first),
+        Object(_state(message), ref(TRANSMISSIONS, "Sender")),
+        Object(_value(message), type_name(system, message.type), first),
     )
 
 
 def given(message: Message) -> tuple[Stmt, ...]:
     """Keep a value until the end of the execution."""
     return (
-        Assign(_value(message).text, Ref("Item")),
-        Do(f"{TRANSMISSIONS}.Give", arguments(_state(message))),
+        Assign(_value(message), ref("Item")),
+        do(ref(TRANSMISSIONS, "Give"), _state(message)),
     )
 
 
@@ -103,8 +89,8 @@ def transmit_body(
 ) -> Subprogram:
     """Count the execution, and send if a frame is due; ``handed`` gives it to the controller."""
     state, setting = _state(message), _setting(message)
-    kept = call(f"{TRANSMISSIONS}.Keeps_Distance", state, setting)
-    due = call(f"{TRANSMISSIONS}.Is_Due", state, setting, Ref("Frame"))
+    kept = call(ref(TRANSMISSIONS, "Keeps_Distance"), state, setting)
+    due = call(ref(TRANSMISSIONS, "Is_Due"), state, setting, ref("Frame"))
     return Subprogram(
         transmit_name(message),
         declarations=(
@@ -114,7 +100,7 @@ def transmit_body(
             Object("Status", "Ravenchart.Can.Send_Status"),
         ),
         body=(
-            Do(f"{TRANSMISSIONS}.Count", arguments(state)),
+            do(ref(TRANSMISSIONS, "Count"), state),
             IfStatement(((due, (Pragma("Assert", (kept,)), *handed)),)),
         ),
     )  # fmt: skip
@@ -122,4 +108,4 @@ def transmit_body(
 
 def recorded(message: Message) -> Stmt:
     """The controller has taken the frame."""
-    return Do(f"{TRANSMISSIONS}.Record_Sent", arguments(_state(message), Ref("Frame")))
+    return do(ref(TRANSMISSIONS, "Record_Sent"), _state(message), ref("Frame"))

@@ -13,30 +13,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name
-from ravenchart.gen.emit.ada.syntax import (
-    Aggregate,
-    Arg,
-    Assign,
-    Comment,
+from ravenchart.gen.emit.ada.declarations import (
     Decl,
-    Do,
-    Expr,
     GenericInstance,
-    IfStatement,
     Object,
-    OperatorChain,
     Param,
-    Ref,
-    Stmt,
     Subprogram,
     UseType,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    BOX,
+    Expr,
+    OperatorChain,
+    all_else,
     arguments,
     call,
     equal,
     member,
     number,
+    record,
 )
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
+from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name
+from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Stmt, do
 from ravenchart.gen.emit.certificate.certified import fact
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.system import System
@@ -45,13 +44,13 @@ from ravenchart.gen.model.transport import MICROSECOND, Transport, code_of
 from .codecs import codec_name
 from .layout_tables import ANY, LAYOUTS
 
-ISO_TP = "Ravenchart.Can.Iso_Tp"
-SENDERS = f"{ISO_TP}.Senders"
-RECEIVERS = f"{ISO_TP}.Receivers"
-REASSEMBLIES = f"{ISO_TP}.Reassemblies"
-EPOCHS = "Ravenchart.Epochs"
-BOARDS = "Ravenchart.Blackboards"
-NOTICE = f"{SENDERS}.Flow_Notice"
+ISO_TP = ref("Ravenchart.Can.Iso_Tp")
+SENDERS = ref(ISO_TP, "Senders")
+RECEIVERS = ref(ISO_TP, "Receivers")
+REASSEMBLIES = ref(ISO_TP, "Reassemblies")
+EPOCHS = ref("Ravenchart.Epochs")
+BOARDS = ref("Ravenchart.Blackboards")
+NOTICE = ref(SENDERS, "Flow_Notice")
 STAMP = "Stamp"
 """When the frame came that the reception has in hand."""
 
@@ -60,8 +59,8 @@ def _own(prefix: str, name: str) -> str:
     return f"{prefix}_Of_{ada_case(name)}"
 
 
-def _next(count: str) -> Expr:
-    return call("Ravenchart.Next", Ref(count))
+def _next(count: Named) -> Expr:
+    return call("Ravenchart.Next", ref(count))
 
 
 def is_plain(message: Message) -> bool:
@@ -69,7 +68,7 @@ def is_plain(message: Message) -> bool:
     return message.transport is None and not message.controls
 
 
-def units_of(message: Message) -> set[str]:
+def units_of(message: Message) -> set[DottedName]:
     """The units that the spec of a bus needs for a message, which it sends or receives."""
     sends = message.source is not None
     if message.transport is None:
@@ -77,27 +76,27 @@ def units_of(message: Message) -> set[str]:
     return {SENDERS} if sends else {REASSEMBLIES}
 
 
-def body_units(root: str, sent: Sequence[Message], received: Sequence[Message]) -> set[str]:
+def body_units(root: str, sent: Sequence[Message], received: Sequence[Message]) -> set[DottedName]:
     """The units that the body of a bus needs for segments, and that its spec does not name."""
-    found: set[str] = set()
+    found: set[DottedName] = set()
     if any(m.transport for m in received):
         found |= {EPOCHS} if any(m.controls for m in received) else {EPOCHS, ISO_TP}
     if not any(is_plain(m) for m in sent):
         found |= {ANY, LAYOUTS}
     if not any(is_plain(m) for m in (*sent, *received)):
-        found |= {f"{root}.Codecs"}
+        found |= {ref(root, "Codecs")}
     if any(m.transport for m in sent):
         found |= {BOARDS}
     return found
 
 
-def _format(message: Message) -> Ref:
-    return Ref(f"Ravenchart.Can.{'Extended' if message.extended else 'Standard'}")
+def _format(message: Message) -> DottedName:
+    return ref("Ravenchart.Can", "Extended" if message.extended else "Standard")
 
 
 def _frame(message: Message, payload: Expr) -> Expr:
     return call(
-        f"{ANY}.Whole_Frame",
+        ref(ANY, "Whole_Frame"),
         Id=fact(message.element, "Id"),
         Format=_format(message),
         Length=fact(message.element, "Length"),
@@ -111,8 +110,8 @@ def _board(system: System, message: str, bus: str) -> GenericInstance:
         f"Flow_Board_{ada_case(message)}",
         BOARDS,
         arguments(
-            Element_Type=Ref(NOTICE),
-            Initial=Aggregate((Arg("others", Ref("<>")),)),
+            Element_Type=NOTICE,
+            Initial=all_else(BOX),
             Ceiling=priority(ceiling),
         ),
     )
@@ -131,15 +130,15 @@ def sender_spec(system: System, message: Message, transport: Transport) -> list[
         "Waits": number(transport.waits),
         "Row": number(transport.row // MICROSECOND),
     }
-    made = Aggregate(tuple(Arg(key, value) for key, value in columns.items()))
+    made = record(columns)
     return [
         Comment(f"[{message.name}] its segments; times in executions of the row that sends it"),
-        Object(_own("Segmentation", name), f"{SENDERS}.Setting", made, constant=True),
+        Object(_own("Segmentation", name), ref(SENDERS, "Setting"), made, constant=True),
         Subprogram(f"Send_{name}", (Param("Item", "in", type_name(system, message.type)),)),
         Comment(f"[{message.name}] keep the value until a transfer can begin."),
         Subprogram(f"Transmit_{name}"),
         Comment(f"[{message.name}] at the end of each execution of the row; never blocks."),
-        Subprogram(f"Note_Flow_{name}", (Param("Found", "in", f"{ISO_TP}.Segment"),)),
+        Subprogram(f"Note_Flow_{name}", (Param("Found", "in", ref(ISO_TP, "Segment")),)),
         Comment(f"[{message.name}] by the reception: flow control has come."),
     ]
 
@@ -147,7 +146,7 @@ def sender_spec(system: System, message: Message, transport: Transport) -> list[
 def sender_objects(system: System, message: Message) -> list[Decl]:
     """The transfer under way, and the flow control that came."""
     return [
-        Object(_own("Transfer", message.name), f"{SENDERS}.Sender"),
+        Object(_own("Transfer", message.name), ref(SENDERS, "Sender")),
         Object(_own("Flow", message.name), NOTICE),
         _board(system, message.name, message.bus),
     ]
@@ -166,36 +165,38 @@ def sender_bodies(
     ``failed`` for a transfer that ends before its time.
     """
     name, board = ada_case(message.name), f"Flow_Board_{ada_case(message.name)}"
-    state, setting = Ref(_own("Transfer", name)), Ref(_own("Segmentation", name))
+    state, setting = ref(_own("Transfer", name)), ref(_own("Segmentation", name))
     flow = _own("Flow", name)
-    bytes_ = call(f"{ISO_TP}.Bytes_Of", call(f"Codecs.{codec_name(message)}.Pack", Ref("Item")))
+    bytes_ = call(
+        ref(ISO_TP, "Bytes_Of"), call(ref("Codecs", codec_name(message), "Pack"), ref("Item"))
+    )
     send = Subprogram(
         f"Send_{name}",
         (Param("Item", "in", type_name(system, message.type)),),
-        body=(Do(f"{SENDERS}.Give", arguments(state, bytes_)),),
+        body=(do(ref(SENDERS, "Give"), state, bytes_),),
     )
-    segment = call(f"{SENDERS}.Next_Segment", state, setting)
-    full = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
-    recorded = Do(f"{SENDERS}.Record_Sent", arguments(state, setting))
-    ended = OperatorChain("/=", (Ref("Fault"), Ref(f"{SENDERS}.None")))
+    segment = call(ref(SENDERS, "Next_Segment"), state, setting)
+    full = OperatorChain("/=", (ref("Status"), ref("Ravenchart.Can.Queued")))
+    recorded = do(ref(SENDERS, "Record_Sent"), state, setting)
+    ended = OperatorChain("/=", (ref("Fault"), ref(SENDERS, "None")))
     transmit = Subprogram(
         f"Transmit_{name}",
         declarations=(
             UseType("Ravenchart.Can.Send_Status"),
-            UseType(f"{SENDERS}.Transfer_Fault"),
+            UseType(ref(SENDERS, "Transfer_Fault")),
             Object("Flow", NOTICE),
-            Object("Fault", f"{SENDERS}.Transfer_Fault"),
-            Object("Frame", f"{ANY}.Any_Frame"),
+            Object("Fault", ref(SENDERS, "Transfer_Fault")),
+            Object("Frame", ref(ANY, "Any_Frame")),
             Object("Status", "Ravenchart.Can.Send_Status"),
         ),
         body=(
-            Do(f"{board}.Read", arguments(Ref("Flow"))),
-            Do(f"{SENDERS}.Count", arguments(state, setting, Ref("Flow"), Ref("Fault"))),
+            do(ref(board, "Read"), ref("Flow")),
+            do(ref(SENDERS, "Count"), state, setting, ref("Flow"), ref("Fault")),
             IfStatement(((ended, failed),)),
             IfStatement(
                 (
                     (
-                        call(f"{SENDERS}.Is_Due", state, setting),
+                        call(ref(SENDERS, "Is_Due"), state, setting),
                         (
                             Assign("Frame", _frame(message, segment)),
                             *handed,
@@ -207,17 +208,17 @@ def sender_bodies(
         ),
     )
     fields = {
-        "Count": _next(f"{flow}.Count"),
-        "Status": Ref("Found.Status"),
-        "Block": Ref("Found.Block"),
-        "Separation": Ref("Found.Separation"),
+        "Count": _next(ref(flow, "Count")),
+        "Status": ref("Found.Status"),
+        "Block": ref("Found.Block"),
+        "Separation": ref("Found.Separation"),
     }
     noted = Subprogram(
         f"Note_Flow_{name}",
-        (Param("Found", "in", f"{ISO_TP}.Segment"),),
+        (Param("Found", "in", ref(ISO_TP, "Segment")),),
         body=(
-            Assign(flow, Aggregate(tuple(Arg(key, value) for key, value in fields.items()))),
-            Do(f"{board}.Write", arguments(Ref(flow))),
+            Assign(flow, record(fields)),
+            do(ref(board, "Write"), ref(flow)),
         ),
     )
     return send, transmit, noted
@@ -246,7 +247,7 @@ def receiver_spec(system: System, message: Message, transport: Transport) -> lis
         "Timeout": number(transport.timeout),
         "Patience": number(_patience(system, message, transport)),
     }
-    made = Aggregate(tuple(Arg(key, value) for key, value in columns.items()))
+    made = record(columns)
     ceiling = system.object(f"{message.bus}.{message.name}.flow").ceiling
     return [
         GenericInstance(
@@ -281,28 +282,28 @@ def receiver_bodies(
     name = ada_case(message.name)
     store, answered = _own("Reassembly", name), _own("Answered", name)
     payload = call(
-        f"{ISO_TP}.Flow_Payload",
-        Ref("Wanted.Status"),
+        ref(ISO_TP, "Flow_Payload"),
+        ref("Wanted.Status"),
         number(transport.block),
         number(code_of(transport.separation) or 0),
     )
-    full = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
-    new = OperatorChain("/=", (Ref("Wanted.Count"), Ref(answered)))
+    full = OperatorChain("/=", (ref("Status"), ref("Ravenchart.Can.Queued")))
+    new = OperatorChain("/=", (ref("Wanted.Count"), ref(answered)))
     answer = Subprogram(
         f"Answer_{name}",
         declarations=(
             UseType("Ravenchart.Can.Send_Status"),
             UseType("Ravenchart.Event_Count"),
             Object("Now", "Ravenchart.Nanoseconds"),
-            Object("Wanted", f"{store}.Flow_Request"),
+            Object("Wanted", ref(store, "Flow_Request")),
             Object("Expired", "Boolean"),
-            Object("Frame", f"{ANY}.Any_Frame"),
+            Object("Frame", ref(ANY, "Any_Frame")),
             Object("Status", "Ravenchart.Can.Send_Status"),
         ),
         body=(
-            Do(f"{EPOCHS}.Since_Start", arguments(Ref("Now"))),
-            Do(f"{store}.Look", arguments(Ref("Now"), Ref("Wanted"), Ref("Expired"))),
-            IfStatement(((Ref("Expired"), failed),)),
+            do(ref(EPOCHS, "Since_Start"), ref("Now")),
+            do(ref(store, "Look"), ref("Now"), ref("Wanted"), ref("Expired")),
+            IfStatement(((ref("Expired"), failed),)),
             IfStatement(
                 (
                     (
@@ -310,7 +311,7 @@ def receiver_bodies(
                         (
                             Assign("Frame", _frame(flow, payload)),
                             *handed,
-                            IfStatement(((full, lost),), (Assign(answered, Ref("Wanted.Count")),)),
+                            IfStatement(((full, lost),), (Assign(answered, ref("Wanted.Count")),)),
                         ),
                     ),
                 )
@@ -325,24 +326,24 @@ def taken(
 ) -> tuple[Stmt, ...]:
     """What the reception does with a segment."""
     store = _own("Reassembly", message.name)
-    frame = (call(f"{ANY}.Payload", Ref("Frame")), Ref("Frame.Plain.Length"))
-    complete = equal(Ref("Outcome"), Ref(f"{RECEIVERS}.Complete"))
-    faulty = member(Ref("Outcome"), f"{RECEIVERS}.Fault")
+    frame = (call(ref(ANY, "Payload"), ref("Frame")), ref("Frame.Plain.Length"))
+    complete = equal(ref("Outcome"), ref(RECEIVERS, "Complete"))
+    faulty = member(ref("Outcome"), ref(RECEIVERS, "Fault"))
     plain = OperatorChain(
         "and then",
         (
-            equal(Ref("Frame.Family"), Ref(f"{ANY}.Classic")),
-            equal(Ref("Frame.Plain.Kind"), Ref("Ravenchart.Can.Data")),
+            equal(ref("Frame.Family"), ref(ANY, "Classic")),
+            equal(ref("Frame.Plain.Kind"), ref("Ravenchart.Can.Data")),
         ),
     )
-    whole = (Do(f"{store}.Read", arguments(Ref("Value"))), *unpacked)
+    whole = (do(ref(store, "Read"), ref("Value")), *unpacked)
     return (
         IfStatement(
             (
                 (
                     plain,
                     (
-                        Do(f"{store}.Take", arguments(*frame, Ref(STAMP), Ref("Outcome"))),
+                        do(ref(store, "Take"), *frame, ref(STAMP), ref("Outcome")),
                         IfStatement(((complete, whole), (faulty, refused))),
                     ),
                 ),
@@ -353,18 +354,18 @@ def taken(
 
 def value_of() -> Expr:
     """The value that has come, as its codec takes it."""
-    return call(f"{ISO_TP}.Words_Of", Ref("Value"))
+    return call(ref(ISO_TP, "Words_Of"), ref("Value"))
 
 
 def noticed(flow: Message) -> tuple[Stmt, ...]:
     """What the reception does with flow control."""
     name = ada_case(flow.controls)
     found = call(
-        f"{ISO_TP}.Decoded", call(f"{ANY}.Payload", Ref("Frame")), Ref("Frame.Plain.Length")
+        ref(ISO_TP, "Decoded"), call(ref(ANY, "Payload"), ref("Frame")), ref("Frame.Plain.Length")
     )
-    is_flow = equal(Ref("Found.Kind"), Ref(f"{ISO_TP}.Flow_Control"))
-    classic = equal(Ref("Frame.Family"), Ref(f"{ANY}.Classic"))
-    note = Do(f"Note_Flow_{name}", arguments(Ref("Found")))
+    is_flow = equal(ref("Found.Kind"), ref(ISO_TP, "Flow_Control"))
+    classic = equal(ref("Frame.Family"), ref(ANY, "Classic"))
+    note = do(f"Note_Flow_{name}", ref("Found"))
     return (
         IfStatement(((classic, (Assign("Found", found), IfStatement(((is_flow, (note,)),)))),)),
     )
@@ -374,17 +375,17 @@ def reception_declarations(received: tuple[Message, ...]) -> list[Decl]:
     """What the reception needs for segments."""
     found: list[Decl] = []
     if any(not is_plain(m) for m in received):
-        found.append(UseType(f"{ANY}.Frame_Family"))
+        found.append(UseType(ref(ANY, "Frame_Family")))
     if any(m.transport for m in received):
         found += [
-            UseType(f"{RECEIVERS}.Outcome"),
+            UseType(ref(RECEIVERS, "Outcome")),
             UseType("Ravenchart.Can.Frame_Kind"),
-            Object("Outcome", f"{RECEIVERS}.Outcome"),
-            Object("Value", f"{ISO_TP}.Value_Bytes"),
+            Object("Outcome", ref(RECEIVERS, "Outcome")),
+            Object("Value", ref(ISO_TP, "Value_Bytes")),
         ]
     if any(m.controls for m in received):
         found += [
-            UseType(f"{ISO_TP}.Segment_Kind"),
-            Object("Found", f"{ISO_TP}.Segment"),
+            UseType(ref(ISO_TP, "Segment_Kind")),
+            Object("Found", ref(ISO_TP, "Segment")),
         ]
     return found

@@ -5,35 +5,26 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case, root_package
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import (
     SPARK,
-    Assign,
-    Call,
-    Comment,
     Decl,
-    Do,
-    Expr,
-    IfStatement,
     Object,
-    OperatorChain,
     Package,
-    Ref,
-    Stmt,
     Subprogram,
     Unit,
     UseType,
-    arguments,
-    call,
-    number,
 )
+from ravenchart.gen.emit.ada.expressions import Attribute, Expr, OperatorChain, call, number
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.naming import ada_case, root_package
+from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Stmt, do
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
-from ravenchart.gen.emit.tables.trace_calls import note, traced
+from ravenchart.gen.emit.tables.trace_calls import fault_number, note, traced
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import Slot, System, Work
 
-NOTICES = "Ravenchart.Can.Fault_Notices"
+NOTICES = ref("Ravenchart.Can.Fault_Notices")
 
 
 def emit_watch(system: System, bus: Bus, header: str) -> list[Unit]:
@@ -41,7 +32,7 @@ def emit_watch(system: System, bus: Bus, header: str) -> list[Unit]:
     if bus.watch is None:
         return []
     root = root_package(system)
-    name = f"{root}.{ada_case(bus.name)}.Watch"
+    name = ref(root, ada_case(bus.name), "Watch")
     slot = bus_row(system, bus, Work.BUS_WATCH)
     spec: tuple[Decl, ...] = (
         UseType(ELEMENT_ID),
@@ -53,12 +44,12 @@ def emit_watch(system: System, bus: Bus, header: str) -> list[Unit]:
     )
     context = {NOTICES}
     owners = {instance for instance, _ in bus.raises}
-    context |= {f"{root}.{ada_case(i)}" for i in owners}
-    context |= {f"{root}.{ada_case(system.instance(i).component.name)}" for i in owners}
+    context |= {ref(root, ada_case(i)) for i in owners}
+    context |= {ref(root, ada_case(system.instance(i).component.name)) for i in owners}
     if traced(system):
-        context |= {f"{root}.Trace", "Ravenchart.Traces", "Ravenchart.Health"}
+        context |= {ref(root, "Trace"), ref("Ravenchart.Traces"), ref("Ravenchart.Health")}
     return [
-        Unit(header, (f"{root}.Elements",), Package(name, spec, (SPARK,))),
+        Unit(header, (ref(root, "Elements"),), Package(name, spec, (SPARK,))),
         Unit(
             header,
             tuple(sorted(context)),
@@ -70,24 +61,24 @@ def emit_watch(system: System, bus: Bus, header: str) -> list[Unit]:
 def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
     items: list[Decl] = [
         Comment(f"[{bus.name}.watch] the controller at the last look"),
-        Object("Seen", f"{NOTICES}.Fault_Log"),
+        Object("Seen", ref(NOTICES, "Fault_Log")),
     ]
     looks = bus.recovery_looks
     locals_: list[Decl] = [
-        Object("Now", f"{NOTICES}.Fault_Log"),
-        Object("Found", f"{NOTICES}.Notices"),
+        Object("Now", ref(NOTICES, "Fault_Log")),
+        Object("Found", ref(NOTICES, "Notices")),
     ]
     steps: list[Stmt] = [
-        Do("Controller.Read_Faults", arguments(Ref("Now"))),
-        Assign("Found", call(f"{NOTICES}.Between", Ref("Seen"), Ref("Now"))),
+        do("Controller.Read_Faults", ref("Now")),
+        Assign("Found", call(ref(NOTICES, "Between"), ref("Seen"), ref("Now"))),
     ]
     element = f"{system.nodes[0].name}.{bus.name}"
     if traced(system):
         locals_.insert(0, UseType("Ravenchart.Can.Controller_State"))
-        position = call("Ravenchart.Can.Controller_State'Pos", Ref("Now.State"))
-        changed = OperatorChain("/=", (Ref("Now.State"), Ref("Seen.State")))
+        position = call(Attribute("Ravenchart.Can.Controller_State", "Pos"), ref("Now.State"))
+        changed = OperatorChain("/=", (ref("Now.State"), ref("Seen.State")))
         steps.append(IfStatement(((changed, note(system, "State", element, "bus", position)),)))
-    steps.append(Assign("Seen", Ref("Now")))
+    steps.append(Assign("Seen", ref("Now")))
     for field, fault, events in (
         ("Error_Passive", "Can_Error_Passive", bus.on_error_passive),
         ("Bus_Off", "Can_Bus_Off", bus.on_bus_off),
@@ -95,28 +86,21 @@ def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
     ):
         told: tuple[Stmt, ...] = ()
         if fault is not None:
-            kind = Ref(f"Ravenchart.Health.{fault}")
-            told = note(
-                system,
-                "Fault",
-                element,
-                "bus",
-                Call("Ravenchart.Health.Fault_Kind'Pos", arguments(kind)),
-            )
+            told = note(system, "Fault", element, "bus", fault_number(fault))
         told += tuple(offer(system, instance, event) for instance, event in events)
         if told:
-            steps.append(IfStatement(((Ref(f"Found.{field}"), told),)))
+            steps.append(IfStatement(((ref("Found", field), told),)))
     if looks:
         items += [
             Comment("looks until recovery from bus-off is requested"),
-            Object("Left", f"{NOTICES}.Look_Count", number(looks)),
+            Object("Left", ref(NOTICES, "Look_Count"), number(looks)),
         ]
         locals_.append(Object("Is_Due", "Boolean"))
         counted: list[Expr] = [
-            Ref("Left"), Ref("Found"), Ref("Now.State"), number(looks), Ref("Is_Due")
+            ref("Left"), ref("Found"), ref("Now.State"), number(looks), ref("Is_Due")
         ]  # fmt: skip
-        steps.append(Do(f"{NOTICES}.Count_Off", arguments(*counted)))
-        steps.append(IfStatement(((Ref("Is_Due"), (Do("Controller.Request_Recovery"),)),)))
+        steps.append(do(ref(NOTICES, "Count_Off"), *counted))
+        steps.append(IfStatement(((ref("Is_Due"), (do("Controller.Request_Recovery"),)),)))
     steps.append(executed(slot))
     items.append(
         Subprogram("Run_Watch", (EXECUTED,), declarations=tuple(locals_), body=tuple(steps))
@@ -127,5 +111,5 @@ def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
 def offer(system: System, instance: str, event: str) -> Stmt:
     """Raise an event of an instance."""
     root = root_package(system)
-    value = event_value(system.instance(instance).component, event, prefix=f"{root}.")
-    return Do(f"{root}.{ada_case(instance)}.Offer", arguments(value))
+    value = event_value(system.instance(instance).component, event, root=root)
+    return do(ref(root, ada_case(instance), "Offer"), value)

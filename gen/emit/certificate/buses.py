@@ -19,8 +19,11 @@ from fractions import Fraction
 from itertools import pairwise
 
 from ravenchart.gen.derive.identifiers import leading
+from ravenchart.gen.emit.ada.declarations import Decl
+from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, Power, bits, number
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.claims import Claims, ResponseClaim
 from ravenchart.gen.model.nodes import Node
@@ -87,17 +90,17 @@ def bus_terms(system: System, bus: Bus) -> list[Decl]:
 def _order(messages: list[Message], bus: Bus) -> list[Decl]:
     """Arbitration has the order that the sums suppose."""
     alike = len({message.extended for message in messages}) == 1
-    ranks = [Ref(f"{name_of(m.element)}_Id") if alike else _rank(m) for m in messages]
+    ranks = [ref(f"{name_of(m.element)}_Id") if alike else _rank(m) for m in messages]
     wrong = [OperatorChain(">=", pair) for pair in pairwise(ranks)]
     return none_of(wrong, bus.name, "must keep the order of its identifiers")
 
 
 def _rank(message: Message) -> Expr:
     """A number for each identifier: of two frames the one with the lesser wins."""
-    identifier = Ref(f"{name_of(message.element)}_Id")
+    identifier = ref(f"{name_of(message.element)}_Id")
     if message.extended:
         return plus(times(number(2), identifier), ONE)
-    return times(Ref("2**19"), identifier)
+    return times(Power(2, 19), identifier)
 
 
 def _terms(message: Message, bus: Bus) -> list[Decl]:
@@ -114,7 +117,7 @@ def _terms(message: Message, bus: Bus) -> list[Decl]:
         words += f", sent {mode.words}, T apart at least"
     items: list[Decl] = [
         Comment(words),
-        named(f"{own}_Id", Ref(f"16#{message.identifier:X}#")),
+        named(f"{own}_Id", bits(message.identifier)),
         stated(f"{own}_Length", message.length),
         stated(f"{own}_T", message.period),
         stated(f"{own}_D", message.limit),
@@ -123,7 +126,7 @@ def _terms(message: Message, bus: Bus) -> list[Decl]:
     if message.source is None:
         items.append(stated(f"{own}_J", 0))
     else:
-        items.append(named(f"{own}_J", Ref(f"{name_of(message.sending)}_R")))
+        items.append(named(f"{own}_J", ref(f"{name_of(message.sending)}_R")))
     if mode is not None and mode.longest is not None:
         items += [
             Comment(f"[{message.element}] the longest time from one frame to the next"),
@@ -149,7 +152,7 @@ class _Level:
     def blocking(self) -> Expr:
         """The longest frame that may have begun."""
         longest = max(self.behind, key=self._span, default=None)
-        return number(0) if longest is None else Ref(f"{name_of(longest.element)}_C")
+        return number(0) if longest is None else ref(f"{name_of(longest.element)}_C")
 
     def _span(self, message: Message) -> Fraction:
         return span(message, self.bus)
@@ -160,10 +163,10 @@ class _Level:
             return []
         line = ada_case(self.bus.name)
         longest = name_of(max(self.before, key=self._span).element)
-        bits = times(Ref(f"{line}_Error_Bits"), Ref(f"{line}_Bit"))
-        hit = plus(bits, Ref(f"{longest}_C"))
-        burst = OperatorChain("-", (Ref(f"{line}_Error_Burst"), ONE))
-        return [times(burst, hit), asked(window, number(0), Ref(f"{line}_Error_T"), hit)]
+        bits = times(ref(f"{line}_Error_Bits"), ref(f"{line}_Bit"))
+        hit = plus(bits, ref(f"{longest}_C"))
+        burst = OperatorChain("-", (ref(f"{line}_Error_Burst"), ONE))
+        return [times(burst, hit), asked(window, number(0), ref(f"{line}_Error_T"), hit)]
 
 
 def _ladders(system: System, bus: Bus, order: list[Message], claims: Claims) -> dict[str, Ladder]:
@@ -173,21 +176,21 @@ def _ladders(system: System, bus: Bus, order: list[Message], claims: Claims) -> 
     queue is late by what it may have waited there, as a rule R - C.
     """
     found: dict[str, Ladder] = {}
-    queues = sorted({system.queue(message) for message in order})
-    for queue in queues:
+    queues = {system.queue(m): m for m in order}
+    for queue, sent in sorted(queues.items()):
         names = "Up", "Rest"
         if len(queues) > 1 and queue:
-            node = ada_case(queue.removesuffix(f".{bus.name}"))
+            node = ada_case(system.sender(sent))
             names = f"Up_{node}", f"Rest_{node}"
         steps = []
         inside = {m.element for m in order if queue and system.queue(m) == queue}
         for place, other in enumerate(sorted(order, key=lambda m: m.element in inside)):
             own = name_of(other.element)
-            late: Expr = Ref(f"{own}_J")
+            late: Expr = ref(f"{own}_J")
             if other.source is not None and system.queue(other) != queue:
-                late = OperatorChain("-", (Ref(f"{own}_R"), Ref(f"{own}_C")))
+                late = OperatorChain("-", (ref(f"{own}_R"), ref(f"{own}_C")))
                 if other.element in claims.waits:
-                    late = plus(Ref(f"{own}_Wait"), Ref(f"{own}_J"))
+                    late = plus(ref(f"{own}_Wait"), ref(f"{own}_J"))
             level = len(order) if other.element in inside else place
             steps.append(Interferer(own, (_sent(own, late),), level))
         found[queue] = Ladder(tuple(steps), *names)
@@ -195,7 +198,7 @@ def _ladders(system: System, bus: Bus, order: list[Message], claims: Claims) -> 
 
 
 def _sent(own: str, late: Expr) -> Expr:
-    return asked(W, late, Ref(f"{own}_T"), Ref(f"{own}_C"))
+    return asked(W, late, ref(f"{own}_T"), ref(f"{own}_C"))
 
 
 def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> list[Decl]:
@@ -222,9 +225,9 @@ def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> li
     if bus.name not in claims.busiest:
         return []
     line = ada_case(bus.name)
-    busiest = Ref(f"{line}_Busiest")
+    busiest = ref(f"{line}_Busiest")
     own = [name_of(message.element) for message in order]
-    steps = (Interferer(one, (_sent(one, Ref(f"{one}_J")),), n) for n, one in enumerate(own))
+    steps = (Interferer(one, (_sent(one, ref(f"{one}_J")),), n) for n, one in enumerate(own))
     ladder = Ladder(tuple(steps), "Queued")
     lost = _Level(bus, order[0], order, [], ladder).lost(busiest)
     items: list[Decl] = [
@@ -232,14 +235,14 @@ def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> li
         *ladder.functions(),
         stated(f"{line}_Busiest", claims.busiest[bus.name]),
         named(f"{line}_Busiest_Needs", plus(*ladder.whole(own[-1], busiest), *lost)),
-        exact(busiest, [Ref(f"{line}_Busiest_Needs")], bus.name, BUSY, least=1),
+        exact(busiest, [ref(f"{line}_Busiest_Needs")], bus.name, BUSY, least=1),
     ]
     for message in order:
         if message.element in claims.waits:
             wait = f"{name_of(message.element)}_Wait"
-            longest = OperatorChain("-", (busiest, Ref(f"{name_of(message.element)}_C")))
+            longest = OperatorChain("-", (busiest, ref(f"{name_of(message.element)}_C")))
             items.append(stated(wait, claims.waits[message.element]))
-            items.append(exact(Ref(wait), [longest], message.element, "wait in a queue"))
+            items.append(exact(ref(wait), [longest], message.element, "wait in a queue"))
     return items
 
 
@@ -249,27 +252,27 @@ def _of_message(level: _Level, claims: Claims) -> list[Decl]:
     own, line = name_of(message.element), ada_case(level.bus.name)
 
     def waiting(instance: int, window: Expr) -> Expr:
-        earlier = [times(number(instance), Ref(f"{own}_C"))] if instance else []
-        until = plus(window, Ref(f"{line}_Bit"))
-        hit = level.lost(plus(window, Ref(f"{own}_C")))
+        earlier = [times(number(instance), ref(f"{own}_C"))] if instance else []
+        until = plus(window, ref(f"{line}_Bit"))
+        hit = level.lost(plus(window, ref(f"{own}_C")))
         return plus(level.blocking, *earlier, *level.ladder.others(own, until), *hit)
 
-    busy = Ref(f"{own}_Busy")
+    busy = ref(f"{own}_Busy")
     demand = plus(level.blocking, *level.ladder.whole(own, busy), *level.lost(busy))
-    jitter, response = Ref(f"{own}_J"), Ref(f"{own}_R")
+    jitter, response = ref(f"{own}_J"), ref(f"{own}_R")
     items: list[Decl] = [Comment(f"[{message.element}] what delays it")]
     items += _busy(own, message.element, claim, demand)
-    sent = Ref(f"{own}_C")
+    sent = ref(f"{own}_C")
     last = OperatorChain("-", (response, jitter, sent)) if len(claim.windows) == 1 else None
     items += _windows(own, message.element, claim, waiting, (busy, jitter), last=last)
     if last is None:
         ends = [
-            less_periods(plus(jitter, Ref(f"{own}_W{_tail(claim, n)}"), sent), own, n)
+            less_periods(plus(jitter, ref(f"{own}_W{_tail(claim, n)}"), sent), own, n)
             for n in range(len(claim.windows))
         ]
         items.append(exact(response, ends, message.element, RESPONSE))
-    items.append(refuse(response, Ref(f"{own}_D"), message.element, LATE))
-    items.append(assured((response, Ref(f"{own}_D"))))
+    items.append(refuse(response, ref(f"{own}_D"), message.element, LATE))
+    items.append(assured((response, ref(f"{own}_D"))))
     return items
 
 
@@ -279,10 +282,10 @@ def _tail(claim: ResponseClaim, instance: int) -> str:
 
 def _busy(own: str, label: str, claim: ResponseClaim, demand: Expr) -> list[Decl]:
     """A busy period: no time at all would hold no demand as well."""
-    busy, needs = Ref(f"{own}_Busy"), Ref(f"{own}_Busy_Needs")
+    busy, needs = ref(f"{own}_Busy"), ref(f"{own}_Busy_Needs")
     return [
-        stated(busy.text, claim.busy),
-        named(needs.text, demand),
+        stated(busy, claim.busy),
+        named(needs, demand),
         exact(busy, [needs], label, BUSY, least=1),
     ]
 
@@ -300,14 +303,14 @@ def _windows(
 
     ``last`` is the only window where there is one.
     """
-    most = times(number(len(claim.windows)), Ref(f"{own}_T"))
+    most = times(number(len(claim.windows)), ref(f"{own}_T"))
     items: list[Decl] = [refuse(plus(*span_of), most, label, "can come again before it is sent")]
     for instance, length in enumerate(claim.windows):
         tail = _tail(claim, instance)
-        window, needs = Ref(f"{own}_{prefix}W{tail}"), Ref(f"{own}_{prefix}Needs{tail}")
+        window, needs = ref(f"{own}_{prefix}W{tail}"), ref(f"{own}_{prefix}Needs{tail}")
         items += [
-            named(window.text, number(length) if last is None else last),
-            named(needs.text, waiting(instance, window)),
+            named(window, number(length) if last is None else last),
+            named(needs, waiting(instance, window)),
             exact(window, [needs], label, RESPONSE),
         ]
     return items
@@ -321,14 +324,14 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
         return []
     here = bus.name, node.name
     processor = next(p for p in system.processors if (p.released_by, p.node) == here)
-    separation, reply = (Ref(f"{name_of(processor.name)}_{letter}") for letter in "TR")
+    separation, reply = (ref(f"{name_of(processor.name)}_{letter}") for letter in "TR")
     steps = []
     for one in received:
-        late, period = (Ref(f"{name_of(one.driver)}_R"), Ref(f"{name_of(one.message.element)}_T"))
+        late, period = (ref(f"{name_of(one.driver)}_R"), ref(f"{name_of(one.message.element)}_T"))
         steps.append(Interferer(name_of(one.element), (asked(W, late, period, separation),), 0))
     ladder = Ladder(tuple(steps), "Turn_Up", "Turn_Rest")
     line = name_of(processor.name)
-    busy = Ref(f"{line}_Busy")
+    busy = ref(f"{line}_Busy")
     first = claims.turns.get(wanted[0].element, ResponseClaim())
     whole = plus(*ladder.whole(steps[0].name, busy))
     items: list[Decl] = [
@@ -339,7 +342,7 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
     for one in wanted:
         own, label = name_of(one.element), one.element
         claim = claims.turns.get(label, ResponseClaim())
-        jitter, turn = Ref(f"{own}_Turn_J"), Ref(f"{own}_Turn")
+        jitter, turn = ref(f"{own}_Turn_J"), ref(f"{own}_Turn")
 
         def waiting(instance: int, window: Expr, own: str = own) -> Expr:
             earlier = [times(number(instance), separation)] if instance else []
@@ -348,15 +351,15 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
         words = f"[{label}] its turn in {processor.name}, and when it is handed over"
         items.append(Comment(words))
         if one.several:
-            items.append(named(f"{own}_T", Ref(f"{name_of(one.message.element)}_T")))
-        items.append(named(jitter.text, Ref(f"{name_of(one.driver)}_R")))
+            items.append(named(f"{own}_T", ref(f"{name_of(one.message.element)}_T")))
+        items.append(named(jitter, ref(f"{name_of(one.driver)}_R")))
         items += _windows(own, label, claim, waiting, (busy, jitter), "Turn_")
         ends = [
-            less_periods(plus(jitter, Ref(f"{own}_Turn_W{_tail(claim, n)}")), own, n)
+            less_periods(plus(jitter, ref(f"{own}_Turn_W{_tail(claim, n)}")), own, n)
             for n in range(len(claim.windows))
         ]
         items += [
-            stated(turn.text, claim.response),
+            stated(turn, claim.response),
             exact(turn, ends, label, RESPONSE),
             named(f"{own}_Handed", plus(turn, times(number(2), reply))),
         ]

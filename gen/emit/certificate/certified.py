@@ -11,9 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ravenchart.gen.emit.ada.declarations import Decl
+from ravenchart.gen.emit.ada.expressions import Expr, Indexed, Selected, both, equal
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import constant_name as name_of
 from ravenchart.gen.emit.ada.naming import row_name
-from ravenchart.gen.emit.ada.syntax import Decl, Expr, OperatorChain, Pragma, Ref, both
+from ravenchart.gen.emit.ada.statements import Pragma
 from ravenchart.gen.model.system import Processor, Slot
 
 from .terms import differs
@@ -21,9 +24,9 @@ from .terms import differs
 CERTIFICATE = "Timing_Certificate"
 
 
-def fact(element: str, what: str) -> Ref:
+def fact(element: str, what: str) -> DottedName:
     """A number of an element in the certificate, as the program sees it."""
-    return Ref(f"{CERTIFICATE}.{name_of(element)}_{what}")
+    return ref(CERTIFICATE, f"{name_of(element)}_{what}")
 
 
 def driver_element(bus: str) -> str:
@@ -37,20 +40,20 @@ def timed_by(processor: str, slots: Sequence[Slot], slot: Slot) -> str:
     return processor if always else slot.element
 
 
-def agrees(given: str, certified: Expr, element: str, what: str) -> Decl:
+def agrees(given: Named, certified: Expr, element: str, what: str) -> Decl:
     """A build fails where an instance was given anything but what is certified."""
-    return differs(Ref(given), certified, element, f"has another {what} than its certificate")
+    return differs(ref(given), certified, element, f"has another {what} than its certificate")
 
 
-def rows_agree(processor: Processor, table: str) -> list[Decl]:
+def rows_agree(processor: Processor, table: Named) -> list[Decl]:
     """The same for the rows of a table."""
     found: list[Decl] = []
     for slot in processor.slots:
-        row = f"{table} ({row_name(slot)})"
+        row = Indexed(table, ref(row_name(slot)))
         same = [
-            OperatorChain(
-                "=",
-                (Ref(f"{row}.{what}"), fact(timed_by(processor.name, processor.slots, slot), what)),
+            equal(
+                Selected(row, what),
+                fact(timed_by(processor.name, processor.slots, slot), what),
             )
             for what in ("Divisor", "Phase")
         ]

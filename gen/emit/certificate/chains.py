@@ -8,8 +8,11 @@ Which sums, the model says (`certificate_hops`); claims are numbers only.
 
 from __future__ import annotations
 
+from ravenchart.gen.emit.ada.declarations import Decl
+from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, number
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.model.claims import ChainClaim
 from ravenchart.gen.model.system import Chain, Processor, System
 
@@ -64,8 +67,8 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
             words.append(f"{hop.element} takes one of a queue: Wait_{place + 1}.")
             wait = f"{own}_Wait_{place + 1}"
             items += _queue(system, wait, (before, hop), next(waits, 0), chain.name)
-            reaction.append(Ref(wait))
-            age += [_renewal(system, hops[:place]), Ref(wait)]
+            reaction.append(ref(wait))
+            age += [_renewal(system, hops[:place]), ref(wait)]
             queued = True
         reaction.append(_response(hop))
         age.append(_response(hop))
@@ -85,11 +88,11 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
             named(f"{own}_{what}_Needs", plus(*terms)),
         ]
         label, low = f"chain {chain.name}", what.lower()
-        needs, claimed = Ref(f"{own}_{what}_Needs"), Ref(f"{own}_{what}")
+        needs, claimed = ref(f"{own}_{what}_Needs"), ref(f"{own}_{what}")
         items.append(exact(claimed, [needs], label, low))
         problem = f"can exceed the limit of its {low}"
-        items.append(refuse(claimed, Ref(f"{own}_{what}_Limit"), label, problem))
-        items.append(assured((needs, Ref(f"{own}_{what}_Limit"))))
+        items.append(refuse(claimed, ref(f"{own}_{what}_Limit"), label, problem))
+        items.append(assured((needs, ref(f"{own}_{what}_Limit"))))
         if not hops or without:
             problem = f"can have any {low}: " + (without[0] if without else "its way is broken")
             items.append(refuse(number(1), number(0), label, problem))
@@ -97,20 +100,20 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
 
 
 def _response(hop: ClaimedHop) -> Expr:
-    return Ref(f"{name_of(hop.element)}_{SUFFIX[hop.kind]}")
+    return ref(f"{name_of(hop.element)}_{SUFFIX[hop.kind]}")
 
 
 def _period(system: System, hop: ClaimedHop) -> Expr:
     """The distance of its outputs."""
     if hop.kind != "row":
-        return Ref(f"{name_of(hop.element)}_T")
+        return ref(f"{name_of(hop.element)}_T")
     processor = system.processor_of(hop.element)
-    return times(number(_divisor(processor, hop.element)), Ref(f"{name_of(processor.name)}_T"))
+    return times(number(_divisor(processor, hop.element)), ref(f"{name_of(processor.name)}_T"))
 
 
 def _longest(system: System, hop: ClaimedHop) -> Expr:
     """The longest distance of its outputs."""
-    return Ref(f"{name_of(hop.renewed)}_Renewal") if hop.renewed else _period(system, hop)
+    return ref(f"{name_of(hop.renewed)}_Renewal") if hop.renewed else _period(system, hop)
 
 
 def _sender(hops: tuple[ClaimedHop, ...]) -> ClaimedHop:
@@ -147,12 +150,12 @@ def _queue(
     late, period, cycle = _response(before), _period(system, before), _period(system, hop)
     burst = f"{wait}_Burst"
     label, many = f"chain {chain}", number(hop.at_once)
-    last = times(Ref(burst), many, cycle)
-    full = plus(times(plus(Ref(burst), number(1)), many, cycle), late)
-    following = OperatorChain("-", (full, times(Ref(burst), period)))
+    last = times(ref(burst), many, cycle)
+    full = plus(times(plus(ref(burst), number(1)), many, cycle), late)
+    following = OperatorChain("-", (full, times(ref(burst), period)))
     return [
         named(burst, plus(OperatorChain("/", (late, period)), number(1))),
         stated(wait, claimed),
         refuse(times(many, cycle), period, label, "can fill a queue"),
-        exact(Ref(wait), [last, following], label, "wait in a queue"),
+        exact(ref(wait), [last, following], label, "wait in a queue"),
     ]

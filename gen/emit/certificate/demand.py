@@ -5,8 +5,9 @@
 
 from __future__ import annotations
 
+from ravenchart.gen.emit.ada.expressions import Expr, number, plain
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import Expr, Ref, number
 from ravenchart.gen.model.system import System, Task
 
 from .interference import costs, of_tasks
@@ -15,7 +16,7 @@ from .terms import name_of, plus, times
 
 def switches(task: Task) -> Expr:
     """To a job and back, twice where it waits for its least separation as well."""
-    return Ref(f"{4 if task.sporadic else 2} * {ada_case(task.node)}_Context_Switch")
+    return times(plain(4 if task.sporadic else 2), ref(f"{ada_case(task.node)}_Context_Switch"))
 
 
 def sums(task: Task) -> dict[str, Expr]:
@@ -23,18 +24,18 @@ def sums(task: Task) -> dict[str, Expr]:
     budgets = [(slot.divisor, slot.element) for slot in task.slots] or [(1, task.element)]
     found: dict[str, Expr] = {}
     for divisor, name in costs(task).items():
-        terms = [Ref(f"{name_of(one)}_Budget") for n, one in budgets if n == divisor]
+        terms = [ref(f"{name_of(one)}_Budget") for n, one in budgets if n == divisor]
         found[name] = plus(*terms, switches(task)) if divisor == 1 else plus(*terms)
     return found
 
 
 def work(task: Task, jobs: int) -> Expr:
     """What so many jobs in a row execute, from one that executes all rows on."""
-    return plus(*(times(number(-(-jobs // n)), Ref(c)) for n, c in costs(task).items()))
+    return plus(*(times(number(-(-jobs // n)), ref(c)) for n, c in costs(task).items()))
 
 
 def demand(system: System, task: Task, window: Expr, own: Expr) -> Expr:
     """What ``own`` work of a task needs within a window, with all that can delay it."""
     name = name_of(task.element)
     others = of_tasks(system, system.node(task.node)).others(name, window)
-    return plus(own, Ref(f"{name}_B"), *others)
+    return plus(own, ref(f"{name}_B"), *others)

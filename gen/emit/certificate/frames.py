@@ -13,22 +13,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
+from ravenchart.gen.emit.ada.declarations import Aspect, Decl, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, Power, call, number, plain
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
-    Aspect,
-    Decl,
-    Expr,
-    OperatorChain,
-    Param,
-    Ref,
-    Subprogram,
-    call,
-    number,
-)
 from ravenchart.gen.model.buses import Bus, Message
 
 from .terms import ONE, ceiling, name_of, named, plus, stated, times
 
+SECOND = Power(10, 9)
+"""In nanoseconds."""
 UNSTUFFED = 13
 """CRC delimiter, acknowledgement and its delimiter, end of frame, three bits to the next frame."""
 
@@ -56,9 +50,9 @@ def _time_functions(bus: Bus, messages: Sequence[Message]) -> list[Decl]:
     if all(message.fd for message in messages):
         return []
     line = ada_case(bus.name)
-    rate, stuffed = Ref(f"{line}_Bit_Rate"), call("Time", Ref("Stuffed"))
+    rate, stuffed = ref(f"{line}_Bit_Rate"), call("Time", ref("Stuffed"))
     bits = plus(stuffed, number(UNSTUFFED), _quarter(stuffed))
-    time = ceiling(times(call(f"{line}_Bits", Ref("Stuffed")), Ref("10**9")), rate)
+    time = ceiling(times(call(f"{line}_Bits", ref("Stuffed")), SECOND), rate)
     return [
         Subprogram(
             f"{line}_{name}",
@@ -87,24 +81,27 @@ def length_terms(message: Message, bus: Bus) -> list[Decl]:
     """The bits of a message's longest frame, and its time."""
     own, line = name_of(message.element), ada_case(bus.name)
     if not message.fd:
-        stuffed = Ref(f"{_head(message)} + 8 * {own}_Length")
+        stuffed: Expr = plus(plain(_head(message)), _data_bits(own))
         return [named(f"{own}_C", call(f"{line}_Time_Of", stuffed))]
-    stuffed, bits, rate = Ref(f"{own}_Stuffed"), Ref(f"{own}_Bits"), Ref(f"{line}_Bit_Rate")
-    second = Ref("10**9")
-    head, early, body = (Ref(f"{own}_{part}") for part in ("Head", "Early", "Body"))
+    stuffed, bits, rate = ref(f"{own}_Stuffed"), ref(f"{own}_Bits"), ref(f"{line}_Bit_Rate")
+    head, early, body = (ref(f"{own}_{part}") for part in ("Head", "Early", "Body"))
     behind = _less(stuffed, head), _less(_quarter(stuffed), early)
-    cost: Expr = ceiling(times(plus(bits, body), second), rate)
+    cost: Expr = ceiling(times(plus(bits, body), SECOND), rate)
     if bus.data_rate is not None:
-        fast = Ref(f"{line}_Data_Rate")
-        cost = ceiling(times(plus(times(bits, fast), times(body, rate)), second), times(rate, fast))
+        fast = ref(f"{line}_Data_Rate")
+        cost = ceiling(times(plus(times(bits, fast), times(body, rate)), SECOND), times(rate, fast))
     return [
-        stated(head.text, _head(message)),
-        named(early.text, _quarter(head)),
-        named(stuffed.text, Ref(f"{head.text} + {CONTROL} + 8 * {own}_Length")),
-        named(body.text, plus(*behind, number(_checks(message)))),
-        named(bits.text, plus(head, early, number(UNSTUFFED))),
+        stated(head, _head(message)),
+        named(early, _quarter(head)),
+        named(stuffed, plus(head, plain(CONTROL), _data_bits(own))),
+        named(body, plus(*behind, number(_checks(message)))),
+        named(bits, plus(head, early, number(UNSTUFFED))),
         named(f"{own}_C", cost),
     ]
+
+
+def _data_bits(own: str) -> Expr:
+    return times(plain(8), ref(f"{own}_Length"))
 
 
 def _quarter(stuffed: Expr) -> Expr:
@@ -121,7 +118,7 @@ def rate_terms(bus: Bus, messages: Sequence[Message]) -> list[Decl]:
     line = ada_case(bus.name)
     rate = f"{line}_Bit_Rate"
     switched = [] if bus.data_rate is None else [stated(f"{line}_Data_Rate", bus.data_rate)]
-    bit = named(f"{line}_Bit", ceiling(number(10**9), Ref(rate)))
+    bit = named(f"{line}_Bit", ceiling(number(10**9), ref(rate)))
     return [stated(rate, bus.bit_rate), *switched, *_time_functions(bus, messages), bit]
 
 

@@ -13,28 +13,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
+from ravenchart.gen.emit.ada.declarations import Aspect, Decl, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import Call, Expr, arguments, call, number
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
-    Aspect,
-    Call,
-    Decl,
-    Expr,
-    Param,
-    Ref,
-    Subprogram,
-    arguments,
-    call,
-    number,
-)
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System, Task
 
 from .terms import name_of, times
 
-UNIT = "Ravenchart.Response_Times"
+UNIT = ref("Ravenchart.Response_Times")
 """Holds the functions below: Time, Window, Sum and Demand."""
 
-W = Ref("W")
+W = ref("W")
 """The parameter of each function."""
 
 
@@ -80,7 +71,7 @@ class Ladder:
         alike = [s.name for s in behind if s.level == self.steps[place].level]
         return [
             *self._before(place, window),
-            *(call(f"{other}_{self.rest}", window) for other in alike),
+            *(call(ref(f"{other}_{self.rest}"), window) for other in alike),
         ]
 
     def whole(self, name: str, window: Expr) -> list[Expr]:
@@ -127,7 +118,7 @@ def costs(task: Task) -> dict[int, str]:
 
 def _released(task: Task, divisor: int, cost: Expr) -> Expr:
     own = name_of(task.element)
-    return asked(W, Ref(f"{own}_J"), times(number(divisor), Ref(f"{own}_T")), cost)
+    return asked(W, ref(f"{own}_J"), times(number(divisor), ref(f"{own}_T")), cost)
 
 
 def by_priority(system: System, node: Node) -> list[Task]:
@@ -143,10 +134,10 @@ def platform(
     found: list[Expr] = []
     if node.release:
         for task in by_priority(system, node):
-            ready = times(number(1 + task.sporadic), Ref(f"{own}_Release"))
+            ready = times(number(1 + task.sporadic), ref(f"{own}_Release"))
             found.append(term(task, 1, ready))
     if node.tick is not None and node.tick.wcet:
-        found.append(asked(window, number(0), Ref(f"{own}_Tick_T"), Ref(f"{own}_Tick_C")))
+        found.append(asked(window, number(0), ref(f"{own}_Tick_T"), ref(f"{own}_Tick_C")))
     return found
 
 
@@ -155,7 +146,7 @@ def of_tasks(system: System, node: Node) -> Ladder:
     steps = (
         Interferer(
             name_of(task.element),
-            tuple(_released(task, divisor, Ref(c)) for divisor, c in costs(task).items()),
+            tuple(_released(task, divisor, ref(c)) for divisor, c in costs(task).items()),
             task.priority,
         )
         for task in by_priority(system, node)

@@ -14,7 +14,10 @@ and after the last of a cycle comes the first once more.
 from __future__ import annotations
 
 from ravenchart.gen.derive.instants import Instant, cycle_of, instants, lateness, phased
-from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
+from ravenchart.gen.emit.ada.declarations import Decl
+from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, number
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.claims import ResponseClaim
 from ravenchart.gen.model.system import System, Task
@@ -43,7 +46,7 @@ def offset_claims(system: System, task: Task, claim: ResponseClaim) -> list[Decl
     """That a job is done by its deadline, whichever instant its busy period begins at."""
     own, label = name_of(task.element), task.element
     reach = claim.response - lateness(system, task) - task.deadline
-    bound, jitter, period, deadline = (Ref(f"{own}_{letter}") for letter in "RJTD")
+    bound, jitter, period, deadline = (ref(f"{own}_{letter}") for letter in "RJTD")
     items: list[Decl] = [
         Comment(
             f"[{label}] is late with other offsets, by R, and not with its own. At are the "
@@ -54,7 +57,7 @@ def offset_claims(system: System, task: Task, claim: ResponseClaim) -> list[Decl
             "instants between Since, that of the one before or its Reach, and At."
         ),
         stated(f"{own}_Reach", reach),
-        refuse(OperatorChain("-", (bound, jitter, Ref(f"{own}_Reach"))), deadline, label, LATE),
+        refuse(OperatorChain("-", (bound, jitter, ref(f"{own}_Reach"))), deadline, label, LATE),
         refuse(deadline, period, label, OVERLAP),
     ]
     found = instants(system, task, reach) or ()
@@ -64,9 +67,9 @@ def offset_claims(system: System, task: Task, claim: ResponseClaim) -> list[Decl
     windows = (*claim.since, *[0] * len(found))
     for place, (instant, length) in enumerate(zip(found, windows, strict=False), 1):
         names = [f"{own}_{part}_{place}" for part in ("At", "W_At", "Needs_At")]
-        at, window, needs = map(Ref, names)
-        due = plus(Ref(f"{own}_O"), times(number(instant.release), period))
-        work = [Ref(c) for n, c in costs(task).items() if instant.release % n == 0]
+        at, window, needs = map(ref, names)
+        due = plus(ref(f"{own}_O"), times(number(instant.release), period))
+        work = [ref(c) for n, c in costs(task).items() if instant.release % n == 0]
         items += [
             stated(names[0], instant.time),
             stated(names[1], length),
@@ -76,7 +79,7 @@ def offset_claims(system: System, task: Task, claim: ResponseClaim) -> list[Decl
             refuse(plus(due, jitter, ONE), plus(at, period), label, UNLISTED),
             assured((needs, window)),
         ]
-        reached = OperatorChain("-", (due, Ref(f"{own}_Reach")))
+        reached = OperatorChain("-", (due, ref(f"{own}_Reach")))
         between += _all_between(system, task, found, place, reached, reach)
     return items + between
 
@@ -84,17 +87,17 @@ def offset_claims(system: System, task: Task, claim: ResponseClaim) -> list[Decl
 def _begun(system: System, task: Task) -> list[Decl]:
     """That the releases of its level repeat with the cycle, which all have begun before."""
     own, label = name_of(task.element), task.element
-    cycle = Ref(f"{own}_Cycle")
+    cycle = ref(f"{own}_Cycle")
     tasks = phased(system, task)
     items: list[Decl] = [stated(f"{own}_Cycle", cycle_of(tasks))]
     for other in tasks:
         name = name_of(other.element)
         for divisor in sorted({slot.divisor for slot in other.slots}):
-            period = times(number(divisor), Ref(f"{name}_T"))
+            period = times(number(divisor), ref(f"{name}_T"))
             whole = times(OperatorChain("/", (cycle, period)), period)
             items.append(refuse(cycle, whole, label, UNLISTED))
-        first = plus(Ref(f"{name}_O"), Ref(f"{name}_J"), cycle)
-        items.append(refuse(first, Ref(f"{own}_At_1"), label, UNLISTED))
+        first = plus(ref(f"{name}_O"), ref(f"{name}_J"), cycle)
+        items.append(refuse(first, ref(f"{own}_At_1"), label, UNLISTED))
     return items
 
 
@@ -103,18 +106,18 @@ def _all_between(
 ) -> list[Decl]:
     """That no instant is left out between one that is listed and that before it."""
     own, label = name_of(task.element), task.element
-    at, since = Ref(f"{own}_At_{place}"), Ref(f"{own}_Since_{place}")
-    before: Expr = Ref(f"{own}_At_{place - 1}")
+    at, since = ref(f"{own}_At_{place}"), ref(f"{own}_Since_{place}")
+    before: Expr = ref(f"{own}_At_{place - 1}")
     last = found[place - 2].time
     if place == 1:
-        before = OperatorChain("-", (Ref(f"{own}_At_{len(found)}"), Ref(f"{own}_Cycle")))
+        before = OperatorChain("-", (ref(f"{own}_At_{len(found)}"), ref(f"{own}_Cycle")))
         last = Ns(last - cycle_of(phased(system, task)))
     due = task.offset + found[place - 1].release * task.period
     missed = []
     for other in phased(system, task):
         name = name_of(other.element)
         begin = before if other is task else since
-        late, period = (Ref(f"{name}_O"), Ref(f"{name}_J")), Ref(f"{name}_T")
+        late, period = (ref(f"{name}_O"), ref(f"{name}_J")), ref(f"{name}_T")
         end = OperatorChain("-", (plus(begin, ONE), *late))
         missed.append(
             OperatorChain(
@@ -133,19 +136,19 @@ def _delay(system: System, task: Task, at: Expr, window: Expr) -> list[Expr]:
     """What delays a job: of processors the releases due in the window, the most of all others."""
     node = system.node(task.node)
     known = {other.element for other in phased(system, task)}
-    terms: list[Expr] = [Ref(f"{name_of(task.element)}_B")]
+    terms: list[Expr] = [ref(f"{name_of(task.element)}_B")]
 
     def term(other: Task, divisor: int, cost: Expr) -> Expr:
         own = name_of(other.element)
-        period = times(number(divisor), Ref(f"{own}_T"))
+        period = times(number(divisor), ref(f"{own}_T"))
         if other.element not in known:
-            return asked(window, Ref(f"{own}_J"), period, cost)
-        offset = Ref(f"{own}_O")
+            return asked(window, ref(f"{own}_J"), period, cost)
+        offset = ref(f"{own}_O")
         end = OperatorChain("-", (plus(at, window), offset))
-        begin = OperatorChain("-", (at, Ref(f"{own}_J"), offset))
+        begin = OperatorChain("-", (at, ref(f"{own}_J"), offset))
         return times(OperatorChain("-", (ceiling(end, period), ceiling(begin, period))), cost)
 
     for other in system.tasks:
         if other.node == task.node and other is not task and other.priority >= task.priority:
-            terms += [term(other, divisor, Ref(c)) for divisor, c in costs(other).items()]
+            terms += [term(other, divisor, ref(c)) for divisor, c in costs(other).items()]
     return [*terms, *platform(system, node, window, term)]

@@ -16,29 +16,34 @@ from __future__ import annotations
 from collections.abc import Sequence, Set
 
 from ravenchart.gen.derive.instants import has_offset
-from ravenchart.gen.emit.ada.naming import ada_case, priority
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import (
     SPARK,
     Aspect,
-    Comment,
     Decl,
-    Expr,
     Object,
-    OperatorChain,
     Package,
-    Ref,
     Subprogram,
     Unit,
     UsePackage,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    Attribute,
+    Expr,
+    OperatorChain,
+    StringLiteral,
     call,
     number,
-    units_named_in,
 )
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case, priority
+from ravenchart.gen.emit.ada.statements import Comment
+from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.model.claims import ChainClaim, Claims
 from ravenchart.gen.model.nodes import SUPERVISOR, Node
 from ravenchart.gen.model.system import SharedObject, System, Task
 
 from .buses import bus_claims, bus_terms
+from .certified import CERTIFICATE
 from .chains import chain_claims
 from .demand import demand, sums, switches, work
 from .hops import hops_of
@@ -76,7 +81,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     """The certificate of a system; its claims are those of the analysis."""
     items: list[Decl] = [
         Comment("SHA-256 of the model: the program and its trace carry it."),
-        Object("Model_Digest", "String", Ref(f'"{system.digest}"'), constant=True),
+        Object("Model_Digest", "String", StringLiteral(system.digest), constant=True),
         UsePackage(UNIT),
         Comment(LETTERS),
     ]
@@ -90,9 +95,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
             stated(f"{own}_Context_Switch", node.context_switch),
             stated(f"{own}_Critical_Section", node.critical_section),
         ]
-        items += [
-            stated(_section(system, item).text, item.section) for item in _longer(system, node)
-        ]
+        items += [stated(_section(system, item), item.section) for item in _longer(system, node)]
         if node.release:
             items.append(stated(f"{own}_Release", node.release))
         if node.tick is not None:
@@ -125,9 +128,9 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
         items += chain_claims(system, chain, claims.chains.get(chain.name, ChainClaim()))
     items += protection_claims(system, claims)
     package = Package(
-        f"{ada_case(system.name)}.Timing_Certificate", _used(items), (SPARK, Aspect("Pure"))
+        ref(ada_case(system.name), CERTIFICATE), _used(items), (SPARK, Aspect("Pure"))
     )
-    return Unit(header, ("System", UNIT), package)
+    return Unit(header, (ref("System"), UNIT), package)
 
 
 def _used(items: Sequence[Decl]) -> tuple[Decl, ...]:
@@ -136,7 +139,7 @@ def _used(items: Sequence[Decl]) -> tuple[Decl, ...]:
     called: set[str] = set()
     for item in reversed(items):
         if not isinstance(item, Subprogram) or item.name in called:
-            called |= units_named_in(item)
+            called |= {name.first for name in names_in(item)}
             kept.append(item)
     return tuple(reversed(kept))
 
@@ -163,11 +166,11 @@ def _longer(system: System, node: Node) -> list[SharedObject]:
     ]
 
 
-def _section(system: System, item: SharedObject) -> Ref:
+def _section(system: System, item: SharedObject) -> DottedName:
     """The longest time inside an object."""
     node = system.node(item.node)
     own = item.element if item in _longer(system, node) else f"{item.node}.critical"
-    return Ref(f"{name_of(own)}_Section")
+    return ref(f"{name_of(own)}_Section")
 
 
 def _silences(system: System, node: Node) -> list[Decl]:
@@ -183,8 +186,8 @@ def _silences(system: System, node: Node) -> list[Decl]:
     for processor in system.processors:
         if processor.node == node.name:
             name = name_of(processor.name)
-            items.append(named(f"{name}_L", plus(Ref(f"{name}_D"), Ref(f"{own}_Margin"))))
-            found = plus(Ref(f"{name}_L"), Ref(f"{task}_T"), Ref(f"{task}_R"))
+            items.append(named(f"{name}_L", plus(ref(f"{name}_D"), ref(f"{own}_Margin"))))
+            found = plus(ref(f"{name}_L"), ref(f"{task}_T"), ref(f"{task}_R"))
             items.append(named(f"{name}_S", found))
     return items
 
@@ -239,10 +242,10 @@ def _jitter(system: System, task: Task) -> Expr:
     if task.jitter or task.released_by is None:
         terms.append(number(task.jitter))
     if task.released_by is not None:
-        terms.append(Ref(f"{name_of(task.released_by)}_R"))
+        terms.append(ref(f"{name_of(task.released_by)}_R"))
     if task.timed and system.node(task.node).tick is not None:
         terms = [term for term in terms if term != number(0)]
-        terms.append(Ref(f"{ada_case(task.node)}_Tick_T"))
+        terms.append(ref(f"{ada_case(task.node)}_Tick_T"))
     return plus(*terms)
 
 
@@ -253,33 +256,33 @@ def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[
     """The jobs of a task, one after the other, and what they show of it and of these rows."""
     own, label = name_of(task.element), task.element
     windows = claims.of(label).windows
-    jitter, period, bound = (Ref(f"{own}_{letter}") for letter in "JTR")
+    jitter, period, bound = (ref(f"{own}_{letter}") for letter in "JTR")
     items: list[Decl] = [Comment(f"[{label}] what delays it")]
-    last: Expr = Ref(f"{own}_W")
+    last: Expr = ref(f"{own}_W")
     ends: list[Expr] = []
     for job, window in enumerate(windows):
         tail = "" if len(windows) == 1 else f"_{job + 1}"
-        last, needs = Ref(f"{own}_W{tail}"), f"{own}_Needs{tail}"
+        last, needs = ref(f"{own}_W{tail}"), f"{own}_Needs{tail}"
         if len(windows) == 1:
             items.append(named(f"{own}_W", OperatorChain("-", (bound, jitter))))
         else:
             items.append(stated(f"{own}_W{tail}", window))
         items.append(named(needs, demand(system, task, last, work(task, job + 1))))
-        items.append(exact(last, [Ref(needs)], label, RESPONSE))
+        items.append(exact(last, [ref(needs)], label, RESPONSE))
         ends.append(less_periods(plus(jitter, last), own, job))
     if len(windows) > 1:
         items.append(exact(bound, ends, label, RESPONSE))
-    deadline: Expr = Ref(f"{own}_D")
+    deadline: Expr = ref(f"{own}_D")
     if claims.of(label).since or len(windows) > 1:
         limit = times(number(len(windows)), period)
         items.append(refuse(plus(jitter, last), limit, label, OVERLAP))
-    held = Ref(f"{own}_Needs{tail}"), last
+    held = ref(f"{own}_Needs{tail}"), last
     if claims.of(label).since:
         items.append(assured(held))
         items += offset_claims(system, task, claims.of(label))
     else:
         if len(windows) == 1:
-            first = call("Time'Min", deadline, period)
+            first = call(Attribute("Time", "Min"), deadline, period)
             items.append(refuse(bound, first, label, f"{LATE} or overlap"))
         else:
             items.append(refuse(bound, deadline, label, LATE))
@@ -294,13 +297,13 @@ def _row(system: System, task: Task, place: int, bound: int) -> list[Decl]:
     """When the first ``place`` rows of a job are done, in a release that executes them all."""
     row, own = task.slots[place - 1].element, name_of(task.element)
     done = name_of(row)
-    budgets = [Ref(f"{name_of(slot.element)}_Budget") for slot in task.slots[:place]]
+    budgets = [ref(f"{name_of(slot.element)}_Budget") for slot in task.slots[:place]]
     needed = plus(switches(task), *budgets)
-    window = Ref(f"{done}_W")
+    window = ref(f"{done}_W")
     return [
         Comment(f"[{row}] done, from the event of its processor"),
         stated(f"{done}_Done", bound),
-        named(f"{done}_W", Ref(f"{done}_Done - {own}_J")),
+        named(f"{done}_W", OperatorChain("-", (ref(f"{done}_Done"), ref(f"{own}_J")))),
         named(f"{done}_Needs", demand(system, task, window, needed)),
-        exact(window, [Ref(f"{done}_Needs")], row, RESPONSE),
+        exact(window, [ref(f"{done}_Needs")], row, RESPONSE),
     ]

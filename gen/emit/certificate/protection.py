@@ -13,7 +13,10 @@ from __future__ import annotations
 
 from math import comb
 
-from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
+from ravenchart.gen.emit.ada.declarations import Decl
+from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, number
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.instances import End
@@ -60,7 +63,9 @@ def protection_claims(system: System, claims: Claims) -> list[Decl]:
 def _residual(message: Message, own: Protection, claimed: int) -> list[Decl]:
     """The probability that a corrupted frame is used, and how often that is in an hour."""
     element, profile = name_of(message.element), own.profile
-    bits, few, right = (Ref(f"{element}_{part}") for part in ("Data_Bits", "Few", "Residual"))
+    bits, few = (ref(f"{element}_{part}") for part in ("Data_Bits", "Few"))
+    residual = f"{element}_Residual"
+    right, needs = ref(residual), ref(f"{residual}_Needs")
     whole = OperatorChain("**", (number(100), bits))
     checks = OperatorChain("**", (number(2), number(profile.crc_bits)))
     patterns: list[Expr] = []
@@ -70,17 +75,16 @@ def _residual(message: Message, own: Protection, claimed: int) -> list[Decl]:
         )
         patterns.append(times(number(comb(8 * message.length, wrong)), sound))
     missed = OperatorChain("-", (whole, few))
-    needs = Ref(f"{right.text}_Needs")
     return [
         Comment(f"[{message.element}] what its {own.name} finds"),
-        named(bits.text, times(number(8), Ref(f"{element}_Length"))),
-        named(few.text, plus(*patterns)),
-        stated(right.text, claimed),
-        named(needs.text, ceiling(times(missed, number(10**18)), times(checks, whole))),
+        named(bits, times(number(8), ref(f"{element}_Length"))),
+        named(few, plus(*patterns)),
+        stated(right, claimed),
+        named(needs, ceiling(times(missed, number(10**18)), times(checks, whole))),
         exact(right, [needs], message.element, "residual error"),
         named(
-            f"{right.text}_Per_Hour",
-            ceiling(times(right, number(HOUR)), times(number(10**9), Ref(f"{element}_T"))),
+            f"{residual}_Per_Hour",
+            ceiling(times(right, number(HOUR)), times(number(10**9), ref(f"{element}_T"))),
         ),
     ]
 
@@ -94,11 +98,11 @@ def _stale(system: System, message: Message, end: End, claimed: int) -> list[Dec
     assert received is not None
     assert component.port_region is not None
     assert age is not None
-    limit, period = Ref(f"{own}_Max_Age"), Ref(f"{own}_Looks")
+    limit, period = ref(f"{own}_Max_Age"), ref(f"{own}_Looks")
     needs = plus(
-        Ref(f"{name_of(received.element)}_Handed"),
+        ref(f"{name_of(received.element)}_Handed"),
         times(plus(OperatorChain("/", (limit, period)), number(2)), period),
-        Ref(f"{name_of(processor.name)}_R"),
+        ref(f"{name_of(processor.name)}_R"),
     )
     words = (
         f"[{end}] Looks: the distance at which the age of its value is looked at; Stale: the time "
@@ -106,9 +110,9 @@ def _stale(system: System, message: Message, end: End, claimed: int) -> list[Dec
     )
     return [
         Comment(words),
-        stated(limit.text, age),
-        stated(period.text, component.port_region.period),
+        stated(limit, age),
+        stated(period, component.port_region.period),
         stated(f"{own}_Stale", claimed),
         named(f"{own}_Stale_Needs", needs),
-        exact(Ref(f"{own}_Stale"), [Ref(f"{own}_Stale_Needs")], str(end), "time until it is stale"),
+        exact(ref(f"{own}_Stale"), [ref(f"{own}_Stale_Needs")], str(end), "time until it is stale"),
     ]

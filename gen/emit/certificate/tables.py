@@ -11,8 +11,11 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+from ravenchart.gen.emit.ada.declarations import Decl
+from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, number
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import priority
-from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, OperatorChain, Ref, number
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System, Task
 
@@ -40,7 +43,7 @@ def order(system: System, node: Node) -> list[Decl]:
     """The tasks of a node have the order of priority that their sums suppose."""
     wrong: list[Expr] = []
     for high, low in pairwise(by_priority(system, node)):
-        above, below = (Ref(f"{name_of(level_of(t))}_Priority") for t in (high, low))
+        above, below = (ref(f"{name_of(level_of(t))}_Priority") for t in (high, low))
         if above == below:
             continue
         wrong.append(OperatorChain("/=" if high.priority == low.priority else "<=", (above, below)))
@@ -57,8 +60,8 @@ def table_terms(task: Task) -> list[Decl]:
     timed = {timed_by(task.element, task.slots, slot): slot for slot in task.slots}
     for element, slot in timed.items():
         own = name_of(element)
-        divisor, phase = Ref(f"{own}_Divisor"), Ref(f"{own}_Phase")
-        items += [stated(divisor.text, slot.divisor), stated(phase.text, slot.phase)]
+        divisor, phase = ref(f"{own}_Divisor"), ref(f"{own}_Phase")
+        items += [stated(divisor, slot.divisor), stated(phase, slot.phase)]
         wrong.append(OperatorChain("/=", (divisor, number(slot.divisor))))
         late: Expr = OperatorChain(">=", (phase, divisor))
         wrong.append(OperatorChain("/=", (phase, number(0))) if slot.divisor == 1 else late)

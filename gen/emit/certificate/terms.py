@@ -7,19 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ravenchart.gen.emit.ada.naming import constant_name
-from ravenchart.gen.emit.ada.syntax import (
-    Decl,
+from ravenchart.gen.emit.ada.declarations import Decl, Object
+from ravenchart.gen.emit.ada.expressions import (
+    Attribute,
     Expr,
-    Object,
     OperatorChain,
-    Pragma,
-    Ref,
+    StringLiteral,
     both,
     call,
     chain,
     number,
 )
+from ravenchart.gen.emit.ada.named import Named, ref
+from ravenchart.gen.emit.ada.naming import constant_name
+from ravenchart.gen.emit.ada.statements import Pragma
 
 name_of = constant_name
 """An element's name in the certificate, to which a letter is added."""
@@ -37,12 +38,12 @@ LONG = 69
 """A message of more columns is broken behind the name of its element."""
 
 
-def named(name: str, value: Expr) -> Decl:
+def named(name: Named, value: Expr) -> Decl:
     """``name : constant := value;``"""
     return Object(name, None, value, constant=True)
 
 
-def stated(name: str, value: int) -> Decl:
+def stated(name: Named, value: int) -> Decl:
     """A number as it is given."""
     return named(name, number(value))
 
@@ -64,7 +65,7 @@ def times(*factors: Expr) -> Expr:
 
 def less_periods(time: Expr, own: str, jobs: int) -> Expr:
     """Less the periods of an element that lie before a job, counted from 0."""
-    return OperatorChain("-", (time, times(number(jobs), Ref(f"{own}_T")))) if jobs else time
+    return OperatorChain("-", (time, times(number(jobs), ref(f"{own}_T")))) if jobs else time
 
 
 def ceiling(dividend: Expr, divisor: Expr) -> Expr:
@@ -84,9 +85,9 @@ def differs(left: Expr, right: Expr, element: str, problem: str) -> Decl:
 
 def _refused(condition: Expr, element: str, problem: str) -> Decl:
     words = f"{element} {problem}"
-    split: Expr = Ref(f'"{words}"')
+    split: Expr = StringLiteral(words)
     if len(words) > LONG:
-        split = OperatorChain("&", (Ref(f'"{element} "'), Ref(f'"{problem}"')))
+        split = OperatorChain("&", (StringLiteral(f"{element} "), StringLiteral(problem)))
     return Pragma("Compile_Time_Error", (condition, split))
 
 
@@ -103,7 +104,7 @@ def exact(claimed: Expr, terms: Sequence[Expr], element: str, what: str, least: 
     """
     longest = terms[-1]
     for term in reversed(terms[:-1]):
-        longest = call("Time'Max", term, longest)
+        longest = call(Attribute("Time", "Max"), term, longest)
     other: Expr = OperatorChain("/=", (claimed, longest))
     if least:
         other = OperatorChain("or else", (OperatorChain("<", (claimed, number(least))), other))

@@ -11,7 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, Ref, number
+from ravenchart.gen.emit.ada.declarations import Decl
+from ravenchart.gen.emit.ada.expressions import Expr, number
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.system import System
@@ -37,10 +40,10 @@ def transfer_claims(system: System, claims: Claims) -> list[Decl]:
     for message, transport, there, back in transferred(system):
         own, label = name_of(message.element), message.element
         claim = claims.transfers.get(message.element, (0, 0))
-        segment, answer = Ref(f"{name_of(there.element)}_Handed"), f"{name_of(back.element)}_Handed"
-        apart, row = Ref(f"{own}_T"), Ref(f"{own}_Row")
-        heard = plus(segment, Ref(f"{name_of(back.message.element)}_T"), Ref(answer))
-        trip, bound = Ref(f"{own}_Round_Trip"), Ref(f"{own}_Transfer")
+        segment, answer = ref(f"{name_of(there.element)}_Handed"), f"{name_of(back.element)}_Handed"
+        apart, row = ref(f"{own}_T"), ref(f"{own}_Row")
+        heard = plus(segment, ref(f"{name_of(back.message.element)}_T"), ref(answer))
+        trip, bound = ref(f"{own}_Round_Trip"), ref(f"{own}_Transfer")
         further = transport.segments - 1 - transport.rounds
         last: list[Expr] = [times(number(transport.rounds), trip)]
         last += [times(number(further), apart)] if further else []
@@ -58,7 +61,7 @@ def transfer_claims(system: System, claims: Claims) -> list[Decl]:
             exact(bound, [plus(*last, segment)], label, "transfer"),
             named(f"{own}_Renewal", plus(*last, apart)),
             stated(f"{own}_Timeout", transport.timeout),
-            refuse(plus(trip, segment), Ref(f"{own}_Timeout"), label, "can be given up in time"),
-            assured((plus(trip, segment), Ref(f"{own}_Timeout"))),
+            refuse(plus(trip, segment), ref(f"{own}_Timeout"), label, "can be given up in time"),
+            assured((plus(trip, segment), ref(f"{own}_Timeout"))),
         ]
     return items

@@ -9,23 +9,22 @@ each transition; `Is_Selection` says what is chosen. All proofs are about them.
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
-    FALSE,
+from ravenchart.gen.emit.ada.declarations import (
     SPARK,
     Aspect,
-    CaseExpr,
-    Comment,
     Decl,
+    Package,
+    Param,
+    Subprogram,
+    Unit,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    FALSE,
+    CaseExpr,
     Expr,
     ForSome,
     IfExpr,
-    Package,
-    Param,
-    Pragma,
-    Ref,
-    Subprogram,
-    Unit,
+    Indexed,
     both,
     call,
     chain,
@@ -33,17 +32,20 @@ from ravenchart.gen.emit.ada.syntax import (
     equal,
     number,
     one_of,
+    up_to,
 )
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.language.compound import PASSED, Firing, FiringKind
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 
-from .deferring import declared_deferrals
 from .history import restored_functions, restored_place
-from .lanes import declared_lanes
-from .lasting import declared_domains
+from .lanes import LIST, declared_lanes, firing_list
+from .lasting import declared_lasting
 from .operations import operations
 from .records import region_types
 from .safety import Safety
@@ -57,23 +59,20 @@ def emit_region(
 ) -> tuple[Unit, ...]:
     """Spec and body of the package of one region; ``noted`` as in `Site`."""
     shape = RegionShape(system, component, region, noted=noted)
-    withs = ["Ravenchart.Timers"] if shape.timers else []
-    withs += ["Ravenchart.Event_Lists"] if shape.deferring else []
+    withs = [ref("Ravenchart.Timers")] if shape.timers else []
+    withs += [ref("Ravenchart.Deferrals")] if shape.deferring else []
+    withs += [ref("Ravenchart.Firing_Lists")] if shape.listed else []
     spec = Package(shape.package, _spec(shape), (SPARK,))
-    body = Package(shape.package, (*_quiet(shape), *body_of(shape)), (SPARK,), is_body=True)
-    seen = ("Ravenchart.Steps",) if noted else ()
+    body = Package(shape.package, body_of(shape), (SPARK,), is_body=True)
+    seen = (ref("Ravenchart.Steps"),) if noted else ()
     return Unit(header, tuple(withs), spec), Unit(header, seen, body)
 
 
 def _spec(shape: RegionShape) -> tuple[Decl, ...]:
     safe = Safety(shape).declared()
-    return (*_quiet(shape), *region_types(shape), *_declared(shape), *safe, *operations(shape))
-
-
-def _quiet(shape: RegionShape) -> tuple[Pragma, ...]:
-    """Functions of a chart without transitions do not ask for what is active or occurs."""
-    words = () if shape.firings else ("formal parameter * is not referenced", "condition is always")
-    return tuple(Pragma("Warnings", (Ref("Off"), Ref(f'"*{word}*"'))) for word in words)
+    lists = firing_list(shape) if shape.listed else []
+    types = (*region_types(shape), *lists)
+    return (*types, *_declared(shape), *safe, *operations(shape))
 
 
 # --- The chart as declared ---------------------------------------------------
@@ -95,21 +94,21 @@ def _declared(shape: RegionShape) -> list[Decl]:
     targets = tuple((f.literal, _target(shape, f)) for f in shape.firings)
     if not targets:
         targets = (("None", start),)
-    in_source = call("In_Source", Ref("T"), Ref(f"Self.{shape.place}"))
+    in_source = call("In_Source", ref("T"), ref("Self", shape.place))
     items: list[Decl] = [
         Subprogram(
             "In_Source",
             (chosen, place),
             "Boolean",
             aspects=(Aspect("No_Inline"),) if len(shape.busy_lanes) > MANY_LANES else (),
-            expression=choice_of(Ref("T"), sources),
+            expression=choice_of(ref("T"), sources),
         ),
         Comment("The declared chart: the source of each transition. Is it the leaf, or around it?"),
         Subprogram(
             "Enabled",
             (chosen, *shape.situation),
             "Boolean",
-            expression=both(in_source, CaseExpr(Ref("T"), lines)),
+            expression=both(in_source, CaseExpr(ref("T"), lines)),
         ),
         Comment("The trigger and the guard of each transition."),
         *restored_functions(shape),
@@ -117,7 +116,7 @@ def _declared(shape: RegionShape) -> list[Decl]:
             "Target",
             (Param("T", "in", "Firing"), *shape.target_params()),
             shape.place_type,
-            expression=choice_of(Ref("T"), ((START, start), *targets)),
+            expression=choice_of(ref("T"), ((START, start), *targets)),
         ),
         Comment(
             "The leaf it leads to; that of a composite is its default."
@@ -125,11 +124,9 @@ def _declared(shape: RegionShape) -> list[Decl]:
             else "The leaves it leads to; those of a composite are its defaults."
         ),
     ]
-    items += declared_domains(shape)
+    items += declared_lasting(shape)
     items += _selections(shape)
     items += _passing(shape)
-    if shape.deferring:
-        items += declared_deferrals(shape)
     if shape.listed:
         items += declared_lanes(shape)
     return items
@@ -139,7 +136,7 @@ def _target(shape: RegionShape, firing: Firing) -> Expr:
     if firing.kind is FiringKind.RESTORE:
         return restored_place(shape, firing.sources[0])
     if firing.kind in (FiringKind.INTERNAL, FiringKind.DEFERRAL):
-        return Ref(shape.place)
+        return ref(shape.place)
     return shape.configuration(shape.leads_to(firing), shape.place)
 
 
@@ -150,10 +147,10 @@ def _selections(shape: RegionShape) -> list[Decl]:
     lines: list[Expr] = []
     for lane in shape.busy_lanes:
         name = shape.lane_name(lane)
-        right: Expr = is_selected(shape, f"C.{name}", lane)
+        right: Expr = is_selected(shape, ref("C", name), lane)
         if inner := shape.inner_lanes(lane):
-            idle = [equal(Ref(f"C.{shape.lane_name(n)}"), Ref("None")) for n in inner]
-            none = equal(Ref(f"C.{name}"), Ref("None"))
+            idle = [equal(ref("C", shape.lane_name(n)), ref("None")) for n in inner]
+            none = equal(ref("C", name), ref("None"))
             right = IfExpr(((chain("and then", idle), right),), none)
         lines.append(right)
     items: list[Decl] = [
@@ -175,18 +172,18 @@ def _selections(shape: RegionShape) -> list[Decl]:
                 f"Leaves_{ada_case(state)}",
                 (Param("T", "in", "Selection"),),
                 "Boolean",
-                expression=one_of(Ref("T"), names),
+                expression=one_of(ref("T"), names),
             ),
             Comment(f"Does it leave {state} from inside? Then it fires alone there."),
         ]
     for state in shape.watched:
-        left = call(f"Leaves_{ada_case(state)}", Ref("Fired.Items (I)"))
+        left = call(f"Leaves_{ada_case(state)}", Indexed("Fired.Items", ref("I")))
         items.append(
             Subprogram(
                 f"Has_Left_{ada_case(state)}",
-                (Param("Fired", "in", "Firing_List"),),
+                (Param("Fired", "in", LIST),),
                 "Boolean",
-                expression=ForSome("I", "1 .. Fired.Count", left),
+                expression=ForSome("I", up_to(ref("Fired.Count")), left),
             )
         )
     return items

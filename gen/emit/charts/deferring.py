@@ -5,49 +5,41 @@
 
 A kept event is due when no active state defers it, and also from the exit of a state that
 defers it: PSSM 8.5.5 gives it back to the pool then, though the state may be entered again.
-The list of kept events is in the order in which they came, so for each event one number
-says which are *freed* by an exit: those among the first so many.
+`Ravenchart.Deferrals` keeps the events; the chart declares which states defer which.
 """
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
+from collections.abc import Mapping
+
+from ravenchart.gen.emit.ada.declarations import Decl, GenericInstance, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import (
     FALSE,
-    Aggregate,
-    Arg,
-    Aspect,
-    Assign,
+    OTHERS,
     CaseExpr,
-    Comment,
-    Decl,
+    Choice,
     Expr,
-    ForAll,
-    IfExpr,
-    Old,
-    OperatorChain,
-    Param,
-    Prefix,
-    RecordComponent,
-    RecordDeclaration,
-    Ref,
-    Stmt,
-    Subprogram,
+    arguments,
     both,
     call,
     chain,
-    equal,
     number,
+    old,
     one_of,
 )
+from ravenchart.gen.emit.ada.named import Named, ref
+from ravenchart.gen.emit.ada.naming import component_name
+from ravenchart.gen.emit.ada.statements import Comment, Stmt, do
 from ravenchart.gen.emit.language.compound import FiringKind
-from ravenchart.gen.emit.language.events import name_of
+from ravenchart.gen.emit.language.events import carries, name_of, null_event
+from ravenchart.gen.emit.language.places import flat
 
-from .shape import RegionShape
+from .shape import ITEM, RegionShape
 
-FREED = "Self.Freed"
-COUNT = call("Deferrals.Count", Ref("Self.Deferred"))
-_TYPE = "Freed_Events"
+KEPT = ref("Self.Deferred")
+STORE = ref("Deferrals.Store")
+_NAME_OF, _IS_DEFERRED, _IS_FREED = "Name_Of", "Is_Deferred", "Is_Freed"
+_ITEM = ref(ITEM.name)
 
 
 def kept_events(shape: RegionShape) -> list[str]:
@@ -55,96 +47,79 @@ def kept_events(shape: RegionShape) -> list[str]:
     return [e for e in shape.region.events() if any(e in s.defers for s in shape.region.states)]
 
 
-def freed_type(shape: RegionShape) -> list[Decl]:
-    """For each event the length of the list when a state that defers it was exited last."""
-    rows = tuple(RecordComponent(ada_case(e), "Natural", number(0)) for e in kept_events(shape))
-    return [
-        Comment("Of each event those among the first so many were kept when an exit freed it."),
-        RecordDeclaration(_TYPE, rows),
-    ]
+def deferral_types(shape: RegionShape, spans: Mapping[str, Expr]) -> list[Decl]:
+    """What is deferred and what is freed, and the package that keeps it.
 
-
-def freed_field() -> RecordComponent:
-    """Its component of the region's state."""
-    return RecordComponent("Freed", _TYPE)
-
-
-def freed_by(shape: RegionShape, state: str) -> tuple[Stmt, ...]:
-    """The exit of a state frees what it defers."""
-    events = shape.region.state(state).defers
-    return tuple(Assign(f"{FREED}.{ada_case(e)}", COUNT) for e in events)
-
-
-def freed_after(shape: RegionShape, domain: Expr, count: Expr) -> Expr:
-    """The claim that all was freed that states in a domain defer."""
-    held = Old(f"Self.{shape.place}")
-    return equal(Ref(FREED), call("Freed_After", domain, held, count, Old(FREED)))
-
-
-def declared_deferrals(shape: RegionShape) -> list[Decl]:
-    """What is deferred, what is due, and what is due next."""
-    rows: list[tuple[str, Expr]] = []
-    limits: list[tuple[str, Expr]] = []
+    ``spans`` holds for each state the test whether a domain spans it.
+    """
+    names = "Event_Name" if carries(shape.component) else "Event"
+    deferred: list[tuple[Choice, Expr]] = []
+    freed: list[tuple[Choice, Expr]] = []
     for event in kept_events(shape):
         states = [s.name for s in shape.region.states if event in s.defers]
         inside = [shape.in_state(shape.place, s) for s in states]
-        rows.append((shape.event(event), chain("or else", inside)))
-        limits.append((shape.event(event), Ref(f"Freed.{ada_case(event)}")))
-    if len(rows) < len(shape.component.events):
-        rows.append(("others", FALSE))
-        limits.append(("others", number(0)))
-    item, place = Param("Item", "in", "Event"), Param(shape.place, "in", shape.place_type)
-    freed, index = Param("Freed", "in", _TYPE), Param("I", "in", "Positive")
-    kept = (Param("Kept", "in", "Deferrals.List"), place, freed, index)
-    name = Ref(name_of(shape.component, "Item"))
-    element = call("Deferrals.Element", Ref("Kept"), Ref("I"))
-    limit = call("Freed_Up_To", element, Ref("Freed"))
-    waits = call("Is_Deferred", element, Ref(place.name))
-    due = chain("or else", [Prefix("not", waits), OperatorChain("<=", (Ref("I"), limit))])
-    there = OperatorChain("<=", (Ref("I"), call("Deferrals.Count", Ref("Kept"))))
-    without = tuple(
-        Arg(
-            ada_case(e),
-            IfExpr(
-                ((OperatorChain("<=", (Ref("I"), of)), OperatorChain("-", (of, number(1)))),),
-                of,
-            ),
-        )
-        for e in kept_events(shape)
-        for of in (Ref(f"Freed.{ada_case(e)}"),)
-    )
+        left = [both(*flat([spans[s], shape.in_state(shape.place, s)])) for s in states]
+        deferred.append((shape.event(event), chain("or else", inside)))
+        freed.append((shape.event(event), chain("or else", left)))
+    if len(deferred) < len(shape.component.events):
+        deferred.append((OTHERS, FALSE))
+        freed.append((OTHERS, FALSE))
+    name, place = Param("Name", "in", names), Param(shape.place, "in", shape.place_type)
+    domain = Param("D", "in", "Domain")
     deferrals = [f.literal for f in shape.firings if f.kind is FiringKind.DEFERRAL]
+    chosen = Param("T", "in", "Selection")
     return [
-        Subprogram("Is_Deferred", (item, place), "Boolean", expression=CaseExpr(name, tuple(rows))),
+        Subprogram(_NAME_OF, (ITEM,), names, expression=name_of(shape.component, ITEM.name)),
+        Subprogram(
+            _IS_DEFERRED, (name, place), "Boolean", expression=CaseExpr(ref(name.name), deferred)
+        ),
         Comment("Does an active state defer it?"),
         Subprogram(
-            "Freed_Up_To", (item, freed), "Natural", expression=CaseExpr(name, tuple(limits))
+            _IS_FREED, (name, domain, place), "Boolean", expression=CaseExpr(ref(name.name), freed)
         ),
-        Comment("Among how many of the oldest was it kept when a state that defers it was exited?"),
-        Subprogram("Is_Due", kept, "Boolean", expression=both(there, due)),
-        Comment("Does no active state defer it, or was one exited that does?"),
-        Subprogram(
-            "Is_Released",
-            kept,
-            "Boolean",
-            aspects=(Aspect("Ghost"),),
-            expression=both(
-                is_due("Kept", place.name, "Freed", "I"),
-                ForAll("J", "1 .. I - 1", Prefix("not", is_due("Kept", place.name, "Freed", "J"))),
+        Comment("Is a state exited that defers it? Then it is due, whatever is entered."),
+        Subprogram("Is_Deferral", (chosen,), "Boolean", expression=one_of(ref("T"), deferrals)),
+        GenericInstance(
+            "Deferrals",
+            "Ravenchart.Deferrals",
+            arguments(
+                Event=ref(component_name(shape.component), "Event"),
+                Null_Event=null_event(shape.component),
+                Event_Name=ref(component_name(shape.component), names),
+                Name_Of=ref(_NAME_OF),
+                Capacity=number(shape.region.deferral_depth),
+                Configuration=shape.place_type,
+                Is_Deferred=ref(_IS_DEFERRED),
+                Domain=ref("Domain"),
+                Is_Freed=ref(_IS_FREED),
             ),
-        ),
-        Comment("Is it the oldest that is due?"),
-        Subprogram("Freed_Without", (index, freed), _TYPE, expression=Aggregate(without)),
-        Comment("What is freed when the event in this place is taken out."),
-        Subprogram(
-            "Is_Deferral",
-            (Param("T", "in", "Selection"),),
-            "Boolean",
-            expression=one_of(Ref("T"), deferrals),
         ),
     ]
 
 
-def is_due(kept: str, place: str, freed: str, index: str) -> Expr:
-    """A call of that function."""
-    return call("Is_Due", Ref(kept), Ref(place), Ref(freed), Ref(index))
+def change(chosen: Named, domain: Expr, before: Named) -> Stmt:
+    """What a firing does to the events that are kept."""
+    is_deferral = call("Is_Deferral", ref(chosen))
+    return do("Deferrals.Change", KEPT, is_deferral, _ITEM, domain, ref(before))
+
+
+def is_changed(shape: RegionShape, chosen: Named, domain: Expr) -> Expr:
+    """The claim that a firing has done that, and nothing else to them."""
+    is_deferral = call("Is_Deferral", ref(chosen))
+    held = old(shape.held)
+    return call("Deferrals.Is_Changed", old(KEPT), KEPT, is_deferral, _ITEM, domain, held)
+
+
+def due(shape: RegionShape) -> Expr:
+    """The place of the event that was due first."""
+    return call("Deferrals.Due", old(KEPT), shape.held)
+
+
+def is_taken(shape: RegionShape) -> Expr:
+    """The claim that the event that was due first is taken."""
+    return call("Deferrals.Is_Taken", old(KEPT), shape.held, _ITEM, KEPT)
+
+
+def take_due(shape: RegionShape, taken: Named) -> Stmt:
+    """Take the event that is due first, if there is one."""
+    return do("Deferrals.Take_Due", KEPT, shape.held, _ITEM, ref(taken))

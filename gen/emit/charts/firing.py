@@ -11,86 +11,94 @@ else. The order then follows from the preconditions.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 
-from ravenchart.gen.emit.ada.syntax import (
-    NULL,
-    TRUE,
-    Aggregate,
-    Arg,
+from ravenchart.gen.emit.ada.declarations import (
     Aspect,
-    Assign,
-    Comment,
     Decl,
-    Do,
-    Expr,
-    IfExpr,
-    IfStatement,
     Object,
-    Old,
     Package,
     Param,
-    PlainType,
-    Pragma,
-    Prefix,
-    Ref,
-    Stmt,
     Subprogram,
+    SubtypeDeclaration,
     UseType,
-    arguments,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    TRUE,
+    Choice,
+    Expr,
+    IfExpr,
+    Prefix,
+    Range,
+    RangeConstrained,
     both,
     call,
-    case_of,
     equal,
-    number,
+    old,
 )
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.statements import (
+    NULL,
+    Assign,
+    Comment,
+    Pragma,
+    Stmt,
+    case_of,
+    do,
+)
+from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.emit.language.compound import Effect, EntryStep, Firing, FiringKind
-from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.emit.language.terms import certain_sends, emit_flow, flow_names
 from ravenchart.gen.language.terms import Flow
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import PseudoKind
 
+from .deferring import STORE
 from .history import Restoring
 from .lasting import Lasting, asked, in_one_word, of_before, terminates
-from .moving import Moving
-from .nodes import NODES, Nodes, joined
+from .moving import BEFORE, Moving
+from .nodes import NODE, NODES, Nodes, joined
 from .safety import Safety, used
 from .shape import START, RegionShape
 
-MANY = 24
+MANY = 100
 """More transitions than so many, counted once for each lane, are fired by procedures of a few
 each (`BATCH`)."""
-BATCH = 6
+BATCH = 12
 """So many transitions each of them fires: what the prover must see at a time stays small."""
 
-_AGREED = "Is_Agreed"
 _BEFORE, _CHOSEN = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
+_WAS = "Was"
+"""The region before a firing, for the procedures that fire a few transitions each."""
+_BEGUN = "Is_Begun"
+_STILL = "Is_Still"
+_GHOST = (Aspect("Ghost"),)
 
 _Row = tuple[str, tuple[Stmt, ...]]
+"""A transition by its literal, and what it does."""
 
 
-def _between(claim: Expr, effect: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
+def _between(claim: Stmt, effect: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
     """An effect where a claim holds: said on both sides of it, it has no other place."""
-    said = Pragma("Assert", (claim,))
-    return (said, *effect, said) if effect else ()
+    return (claim, *effect, claim) if effect else ()
 
 
-def _range(rows: Sequence[_Row]) -> str:
-    return f"{rows[0][0]} .. {rows[-1][0]}"
+def _range(rows: Sequence[_Row]) -> Range:
+    return Range(ref(rows[0][0]), ref(rows[-1][0]))
 
 
 def _procedure(rows: Sequence[_Row], claims: tuple[Aspect, ...]) -> tuple[Decl, Decl]:
     """A procedure for some transitions, and their type."""
-    own = PlainType(f"From_{rows[0][0]}", f"Selection range {_range(rows)}", subtype=True)
-    body = (case_of(Ref("Chosen"), rows),)
+    own = SubtypeDeclaration(f"From_{rows[0][0]}", RangeConstrained("Selection", _range(rows)))
+    body = (case_of(ref("Chosen"), rows),)
     chosen = Param("Chosen", "in", own.name)
     return own, Subprogram(f"Fire_{own.name}", (chosen,), aspects=claims, body=body)
 
 
-def _call(rows: Sequence[_Row]) -> _Row:
-    return _range(rows), (Do(f"Fire_From_{rows[0][0]}", arguments(Ref("Chosen"))),)
+def _call(rows: Sequence[_Row]) -> tuple[Range, tuple[Stmt, ...]]:
+    return _range(rows), (do(f"Fire_From_{rows[0][0]}", ref("Chosen")),)
 
 
 class Moves:
@@ -100,11 +108,11 @@ class Moves:
         self.shape = shape
         self.region = shape.region
         self.scope = shape.scope("Self.Data")
-        self.held = f"Self.{shape.place}"
+        self.held = shape.held
         self.lasting = Lasting(shape)
         self.nodes = Nodes(shape)
         self.safety = Safety(shape)
-        self.moving = Moving(shape, self.nodes, self.lasting)
+        self.moving = Moving(shape, self.nodes)
         self._effects_given: list[Flow] = []
 
     def chart(self, fire: Subprogram) -> Package:
@@ -114,43 +122,64 @@ class Moves:
     # --- Fire
 
     def fire(self) -> Subprogram:
-        """Exits, effects and entries of one transition; `Target` says where it leads."""
-        start = (Assign("Self.Started", TRUE), *joined(self._steps(self.shape.start)))
-        rows = [(f.literal, self._row(f)) for f in self.shape.firings]
-        rows = rows or [("None", (NULL,))]
-        agreed: Expr = self.nodes.agreed()
-        batches: tuple[Decl, ...] = ()
-        if len(rows) * len(self.shape.lanes) > MANY:
-            agrees = Subprogram(_AGREED, (), "Boolean", (Aspect("Ghost"),), expression=agreed)
-            agreed = Ref(_AGREED)
-            past = [equal(Ref("Self.Past"), Ref("Past"))] if self.shape.memories else []
-            claims = self._claims(*past, agreed)
-            by_batch = [rows[at : at + BATCH] for at in range(0, len(rows), BATCH)]
-            batches = (agrees, *(d for batch in by_batch for d in _procedure(batch, claims)))
+        """What is declared, then exits, effects and entries of one transition."""
+        start = joined(self._steps(self.shape.start)) or (NULL,)
+        each = [(f.literal, self._row(f)) for f in self.shape.firings] or [("None", (NULL,))]
+        rows: list[tuple[Choice | str, tuple[Stmt, ...]]] = [*each]
+        moving = self.moving.procedures()
+        declared = self._declared()
+        constants = self._constants((*moving, *each, *declared))
+        batches: list[Decl] = []
+        if len(each) * len(self.shape.lanes) > MANY:
+            was = Object(_WAS, "Region", ref("Self"), constant=True, aspects=_GHOST)
+            by_batch = [each[at : at + BATCH] for at in range(0, len(each), BATCH)]
+            claims = self._claims_inside()
+            kept = [UseType(STORE)] if self.shape.deferring else []
+            batches = [*kept, was, self._begun(constants), self._still()]
+            batches += [d for batch in by_batch for d in _procedure(batch, claims)]
             rows = [_call(batch) for batch in by_batch]
-        procedures = self.moving.procedures()
         return Subprogram(
             "Fire",
             self.fire_params(),
             aspects=self._claims(),
             declarations=(
-                UseType(NODES),
+                *map(UseType, (NODE,) if self.shape.single else (NODES, NODE)),
                 *self.nodes.variables(),
-                *self._past(),
+                *constants,
                 *self.nodes.moved(),
-                *procedures,
+                *moving,
                 *batches,
             ),
             body=(
-                case_of(Ref("Chosen"), [(START, start), *rows]),
-                Pragma("Assert", (agreed,)),
+                *declared,
+                case_of(ref("Chosen"), [(START, start), *rows]),
+                Pragma("Assert", (self.nodes.agreed(),)),
             ),
         )
 
-    def _past(self) -> tuple[Object, ...]:
-        if not self.shape.memories:
-            return ()
-        return (Object("Past", "Memory", Ref("Self.Past"), constant=True),)
+    def _declared(self) -> tuple[Stmt, ...]:
+        """The configuration that the transition leads to, and what outlasts it."""
+        given = {self.shape.place: ref(BEFORE), "Past": ref("Past")}
+        return (
+            Assign("Self.Started", TRUE),
+            Assign(self.held, self._goal(given)),
+            *self.lasting.moved("Chosen", BEFORE),
+        )
+
+    def _goal(self, before: Mapping[str, Expr]) -> Expr:
+        """Where the transition leads, with what the region held before."""
+        own = (before[p.name] for p in self.shape.target_params())
+        return call("Target", ref("Chosen"), *own)
+
+    def _constants(self, named_in: object) -> list[Object]:
+        """What statements need to know of the region before the firing."""
+        named = {name.first for name in names_in(named_in)}
+        parts = ((BEFORE, self.shape.place_type, self.shape.place), ("Past", "Memory", "Past"))
+        return [
+            Object(name, of_type, ref("Self", part), constant=True)
+            for name, of_type, part in parts
+            if name in named
+        ]
 
     def claims(self) -> list[Decl]:
         """What Fire asks for, and what it does, each in one word."""
@@ -164,16 +193,47 @@ class Moves:
             *in_one_word(self._fired, "Is the region after it as declared?"),
         ]
 
-    def _claims(self, *inside: Expr) -> tuple[Aspect, ...]:
-        """Both of a procedure that fires; ``inside`` holds of what only Fire knows.
+    def _claims(self) -> tuple[Aspect, ...]:
+        """Both of Fire.
 
         `Is_Safe` stands beside `Is_Fired`: gnatprove then names it where an invariant breaks.
         """
-        fired = asked(self._fired, Before=Old("Self"))
+        fired = asked(self._fired, Before=old("Self"))
         return (
-            Aspect("Pre", both(self.ready("Chosen"), *inside)),
-            Aspect("Post", both(fired, *self.safety.holds(), *inside[-1:])),
+            Aspect("Pre", self.ready("Chosen")),
+            Aspect("Post", both(fired, *self.safety.holds())),
         )
+
+    def _claims_inside(self) -> tuple[Aspect, ...]:
+        """Both of a procedure that fires a few transitions, and changes nothing declared."""
+        kept = call(_STILL, old("Self"))
+        return (
+            Aspect("Pre", call(_BEGUN, ref("Chosen"))),
+            Aspect("Post", both(kept, *self.safety.holds(), self.nodes.agreed())),
+        )
+
+    def _begun(self, constants: Sequence[Object]) -> Subprogram:
+        """What holds when such a procedure begins; nothing has acted yet."""
+        shape = self.shape
+        goal = self._goal({p.name: ref(_WAS, p.name) for p in shape.target_params()})
+        ready = asked(self._ready("Chosen"), Self=ref(_WAS))
+        facts = [ready, ref("Self.Started"), equal(self.held, goal)]
+        facts += [equal(ref("Self.Data"), ref(_WAS, "Data"))] if self.safety else []
+        for one in constants:
+            assert isinstance(one.value, DottedName)
+            facts.append(equal(ref(one.name), ref(_WAS, one.value.last)))
+        facts += self.nodes.begun(_WAS)
+        return Subprogram(_BEGUN, (_CHOSEN,), "Boolean", _GHOST, expression=both(*facts))
+
+    def _still(self) -> Subprogram:
+        """What such a procedure leaves as it was."""
+        shape = self.shape
+        parts = ["Started", shape.place]
+        parts += ["Past"] if shape.memories else []
+        parts += ["Timers"] if shape.timers else []
+        parts += ["Deferred"] if shape.deferring else []
+        same = both(*(equal(ref("Self", p), ref("Before", p)) for p in parts))
+        return Subprogram(_STILL, (_BEFORE,), "Boolean", _GHOST, expression=same)
 
     def ready(self, chosen: str) -> Expr:
         """That a transition may be fired."""
@@ -181,18 +241,18 @@ class Moves:
 
     def _ready(self, chosen: str) -> Subprogram:
         first, later = self.safety.ready(chosen)
-        sources = call("In_Source", Ref(chosen), Ref(self.held))
+        sources = call("In_Source", ref(chosen), self.held)
         ready = IfExpr(
-            ((equal(Ref(chosen), Ref(START)), both(Prefix("not", Ref("Self.Started")), *first)),),
-            both(Ref("Self.Started"), sources, *later),
+            ((equal(ref(chosen), ref(START)), both(Prefix("not", ref("Self.Started")), *first)),),
+            both(ref("Self.Started"), sources, *later),
         )
         return self._claim_of("Is_Ready", ready, Param(chosen, "in", "Firing"))
 
     @cached_property
     def _fired(self) -> Subprogram:
         done = both(
-            Ref("Self.Started"),
-            of_before(equal(Ref(self.held), self.shape.target("Chosen"))),
+            ref("Self.Started"),
+            of_before(equal(self.held, self.shape.target("Chosen"))),
             *([] if self._lasts is None else [asked(self._lasts)]),
         )
         return self._claim_of("Is_Fired", done, _CHOSEN, _BEFORE)
@@ -209,7 +269,7 @@ class Moves:
         values = (p for p in self.shape.step_params()[1:] if p.name in ("Ins", "Item"))
         of_region = Param("Self", "in", "Region")
         params = used([*before, of_region, *values, chosen], claim)
-        return Subprogram(name, params, "Boolean", (Aspect("Ghost"),), expression=claim)
+        return Subprogram(name, params, "Boolean", _GHOST, expression=claim)
 
     def flows(self) -> list[Flow]:
         """The behaviours given so far: the exit of a state that is never left is not among them."""
@@ -224,7 +284,7 @@ class Moves:
         idle -= self.safety.reads()
         params = [p for p in self.shape.step_params() if p.name not in idle]
         if self._fills_outbox():
-            params = [p._replace(mode="out") if p.name == "Box" else p for p in params]
+            params = [replace(p, mode="out") if p.name == "Box" else p for p in params]
         return (*params, Param("Chosen", "in", "Firing"))
 
     def _fills_outbox(self) -> bool:
@@ -253,13 +313,11 @@ class Moves:
 
     def _row(self, firing: Firing) -> tuple[Stmt, ...]:
         effect = self._effects(firing.effects)
-        if firing.kind is FiringKind.DEFERRAL:
-            return self._defer(firing)
-        if firing.kind is FiringKind.INTERNAL:
+        if firing.kind in (FiringKind.INTERNAL, FiringKind.DEFERRAL):
             return effect or (NULL,)
         assert firing.domain is not None
         out = self._leave(firing)
-        effect = _between(self._claim(firing.domain), effect)
+        effect = _between(self.nodes.empty(firing.domain), effect)
         if terminates(self.shape, firing):
             entered = self._steps(firing.entries[:-1])
             return joined((*out, *effect, *entered, *self._stop(firing)))
@@ -274,14 +332,7 @@ class Moves:
     def _stop(self, firing: Firing) -> tuple[Stmt, ...]:
         """The region stops: nothing is active any more, and nothing more is left."""
         goal = self.shape.leads_to(firing)
-        stops = [
-            Assign(self.shape.at(self.held, lane), Ref(self.shape.literal(leaf)))
-            for lane, leaf in goal.items()
-        ]
-        if self.shape.timers:
-            stopped = Aggregate((Arg("others", Ref("Ravenchart.Timers.Stopped")),))
-            stops.append(Assign("Self.Timers", stopped))
-        return (*stops, *self.nodes.stopped(goal[self.shape.lanes[-1]]))
+        return tuple(self.nodes.stopped(goal[self.shape.lanes[-1]]))
 
     def _effects(self, effects: tuple[Effect, ...]) -> tuple[Stmt, ...]:
         self._effects_given += [e.flow for e in effects]
@@ -289,18 +340,6 @@ class Moves:
             s
             for e in effects
             for s in (*self.shape.note(f"{e.name}.effect"), *emit_flow(self.scope, e.flow))
-        )
-
-    def _defer(self, firing: Firing) -> tuple[Stmt, ...]:
-        item = self.shape.deferred_item(firing)
-        full = equal(
-            call("Deferrals.Count", Ref("Self.Deferred")), number(self.region.deferral_depth)
-        )
-        return (
-            IfStatement(
-                ((full, (Assign("Self.Lost", TRUE),)),),
-                (Do("Deferrals.Append", arguments(Ref("Self.Deferred"), item)),),
-            ),
         )
 
     def _path(self, firing: Firing) -> list[str]:
@@ -330,13 +369,6 @@ class Moves:
     def _splits(self, vertex: str, firing: Firing) -> bool:
         """Is it an orthogonal state around the source? Then all its lanes are left."""
         return vertex != firing.sources[0] and self.region.state(vertex).is_orthogonal
-
-    def _claim(self, domain: Place) -> Expr:
-        """Everything in the region that holds the transition has been left, nothing else."""
-        inside = [self.shape.lane_of(domain), *self.nodes.lanes_inside(domain)]
-        others = [lane for lane in self.shape.lanes if lane not in inside]
-        kept = flat([self.nodes.agreed(others)]) if others else []
-        return both(*self.nodes.empty(domain), *kept)
 
     def _steps(self, steps: tuple[EntryStep, ...]) -> tuple[Stmt, ...]:
         found: list[Stmt] = []

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from ravenchart.gen.emit.ada.named import DottedName
 from ravenchart.gen.emit.language.terms import operators_in
 from ravenchart.gen.language import terms as m
 from ravenchart.gen.model.statechart import Region, When
@@ -24,6 +25,6 @@ def flows_of(region: Region) -> list[m.Flow]:
     return [*flows, region.initial.effect]
 
 
-def guard_operators(region: Region) -> set[str]:
+def guard_operators(region: Region) -> set[DottedName]:
     """The runtime's types whose operators its guards use."""
     return {name for guard in guards_of(region) for name in operators_in(guard)}

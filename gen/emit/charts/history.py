@@ -12,24 +12,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import Decl, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import (
+    FALSE,
     Aggregate,
     Arg,
-    Comment,
-    Decl,
     Expr,
     IfExpr,
-    IfStatement,
-    Param,
-    Ref,
-    Stmt,
-    Subprogram,
     both,
     call,
-    case_of,
     choice_of,
     equal,
 )
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.statements import Comment, IfStatement, Stmt, case_of
 from ravenchart.gen.emit.language.compound import PASSED, Enter, EntryStep
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import Lane, PseudoKind
@@ -65,7 +61,7 @@ def restored_functions(shape: RegionShape) -> list[Decl]:
     items: list[Decl] = []
     for memory, deep in _wanted(shape):
         rows = tuple(
-            (shape.literal(leaf), Ref(shape.literal(_again(shape, memory.place, leaf, deep))))
+            (shape.literal(leaf), shape.literal(_again(shape, memory.place, leaf, deep)))
             for leaf in shape.literals_in(memory.place)
         )
         result = shape.memory_type(memory)
@@ -75,8 +71,8 @@ def restored_functions(shape: RegionShape) -> list[Decl]:
                 (Param("Past", "in", "Memory"),),
                 result,
                 expression=IfExpr(
-                    ((Ref(f"Past.{memory.known}"), choice_of(Ref(f"Past.{memory.last}"), rows)),),
-                    Ref(shape.literal(_default(shape, memory.place))),
+                    ((ref("Past", memory.known), choice_of(ref("Past", memory.last), rows)),),
+                    shape.literal(_default(shape, memory.place)),
                 ),
             ),
             Comment(
@@ -115,7 +111,7 @@ def restored_place(shape: RegionShape, history: str) -> Expr:
     place = shape.compounds.place(history)
     deep = shape.region.pseudostate(history).kind is PseudoKind.DEEP_HISTORY  # type: ignore[union-attr]
     memory = shape.memory(place)
-    leaf = call(_function(memory, deep), Ref("Past"))
+    leaf = call(_function(memory, deep), ref("Past"))
     if shape.single:
         return leaf
     own = shape.region.lane(history)
@@ -128,42 +124,42 @@ def restored_place(shape: RegionShape, history: str) -> Expr:
             here = _lane_again(shape, memory, lane, deep)
         if here is not None:
             rows.append(Arg(shape.lane_field(lane), here))
-    return Aggregate(tuple(rows), base=shape.place if len(rows) < len(shape.lanes) else None)
+    return Aggregate(tuple(rows), base=ref(shape.place) if len(rows) < len(shape.lanes) else None)
 
 
 def _lane_again(shape: RegionShape, memory: HistoryMemory, lane: Lane, deep: bool) -> Expr:
     """The leaf of a lane below: remembered, by default, or as it was when not entered."""
     assert lane.owner is not None
-    default = Ref(shape.literal(shape.default_leaf(lane)))
-    kept = Ref(shape.at(shape.place, lane))
+    default = shape.literal(shape.default_leaf(lane))
+    kept = shape.at(shape.place, lane)
     outer = shape.region.lane(lane.owner)
-    owner = Ref(shape.literal(lane.owner))
+    owner = shape.literal(lane.owner)
     if outer == shape.lane_of(memory.place):
-        entered = equal(call(_function(memory, deep), Ref("Past")), owner)
+        entered = equal(call(_function(memory, deep), ref("Past")), owner)
         remembered: Expr = _all_remembered(shape, memory, lane)
     else:
         above = shape.memory(Place(outer.owner, outer.name)) if deep else None
         entered = equal(_lane_again(shape, memory, outer, deep), owner)
-        remembered = Ref("False")
+        remembered = FALSE
         if above is not None:
             remembered = _all_remembered(shape, memory, lane)
     if not deep:
         return IfExpr(((entered, default),), kept)
     own = shape.memory(Place(lane.owner, lane.name))
-    return IfExpr(((remembered, call(_function(own, True), Ref("Past"))), (entered, default)), kept)
+    return IfExpr(((remembered, call(_function(own, True), ref("Past"))), (entered, default)), kept)
 
 
 def _all_remembered(shape: RegionShape, memory: HistoryMemory, lane: Lane) -> Expr:
     assert lane.owner is not None
     outer = shape.region.lane(lane.owner)
-    owner = Ref(shape.literal(lane.owner))
+    owner = shape.literal(lane.owner)
     if outer == shape.lane_of(memory.place):
-        return both(Ref(f"Past.{memory.known}"), equal(Ref(f"Past.{memory.last}"), owner))
+        return both(ref("Past", memory.known), equal(ref("Past", memory.last), owner))
     above = shape.memory(Place(outer.owner, outer.name))
     return both(
         _all_remembered(shape, memory, outer),
-        Ref(f"Past.{above.known}"),
-        equal(Ref(f"Past.{above.last}"), owner),
+        ref("Past", above.known),
+        equal(ref("Past", above.last), owner),
     )
 
 
@@ -184,8 +180,8 @@ class Restoring:
             for leaf in self.shape.literals_in(place)
         )
         default = self._steps(self.shape.compounds.default(place))
-        known = (case_of(Ref(f"Past.{memory.last}"), rows),)
-        return (IfStatement(((Ref(f"Past.{memory.known}"), known),), default),)
+        known = (case_of(ref("Past", memory.last), rows),)
+        return (IfStatement(((ref("Past", memory.known), known),), default),)
 
     def _steps(self, steps: tuple[EntryStep, ...]) -> tuple[Stmt, ...]:
         return self.run(steps)

@@ -12,41 +12,50 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
-    Aggregate,
-    Arg,
+from ravenchart.gen.emit.ada.declarations import (
     Aspect,
-    Assign,
-    Call,
-    Comment,
     Decl,
-    Do,
+    GenericInstance,
+    Object,
+    Param,
+    Subprogram,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    Arg,
+    Attribute,
+    Call,
     Expr,
     ForAll,
-    ForSome,
     IfExpr,
-    IfStatement,
-    Loop,
-    Object,
-    Old,
+    Indexed,
     OperatorChain,
-    Param,
-    Pragma,
     Prefix,
-    Ref,
-    Say,
-    Stmt,
-    Subprogram,
     arguments,
     both,
     call,
     chain,
-    do,
     equal,
     member,
     number,
+    old,
     one_of,
+    plain,
+    result,
+    up_to,
+)
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import (
+    Assign,
+    Comment,
+    Do,
+    ExitStatement,
+    ForLoop,
+    IfStatement,
+    Loop,
+    Pragma,
+    Stmt,
+    do,
 )
 from ravenchart.gen.emit.language.compound import Firing, FiringKind
 from ravenchart.gen.model.statechart import Lane
@@ -58,59 +67,55 @@ from .shape import START, RegionShape
 
 def fire(moves: Moves, chosen: str) -> Do:
     names = (p.name for p in moves.fire_params())
-    return Do("Fire", arguments(*(Ref(chosen if n == "Chosen" else n) for n in names)))
-
-
-def _nothing() -> Aggregate:
-    """An empty list of firings."""
-    return Aggregate(
-        (Arg("Count", number(0)), Arg("Items", Aggregate((Arg("others", Ref("None")),))))
-    )
+    return do("Fire", *(ref(chosen if n == "Chosen" else n) for n in names))
 
 
 # --- The contract ------------------------------------------------------------
 
 
+def firing_list(shape: RegionShape) -> list[Decl]:
+    """The list of what one step fires, with the segments that it may hold."""
+    names = [f.literal for f in shape.firings if is_segment(shape, f)]
+    none = equal(ref("T"), ref("None"))
+    chosen = Param("T", "in", "Selection")
+    goes_on = one_of(ref("T"), names) if shape.passes else none
+    return [
+        Subprogram("Is_Segment", (chosen,), "Boolean", expression=goes_on),
+        Comment(_SEGMENTS if shape.passes else _NO_SEGMENTS),
+        GenericInstance(
+            "Firings",
+            "Ravenchart.Firing_Lists",
+            arguments(
+                Selection=ref("Selection"),
+                No_Selection=ref("None"),
+                Is_Segment=ref("Is_Segment"),
+                Most_Segments=number(shape.most_segments),
+                Capacity=number(shape.most_firings),
+            ),
+        ),
+    ]
+
+
 def declared_lanes(shape: RegionShape) -> list[Decl]:
     """Choose, and what a step may fire of a choice."""
-    fired = Param("Fired", "in", "Firing_List")
-    items: list[Decl] = [*_starts_with(shape, fired)]
     if shape.single:
-        return items
+        return []
+    fired = Param("Fired", "in", LIST)
     params = shape.situation
-    chosen = Call("Is_Choice", (Arg(None, Ref("Choose'Result")), *shape.situation_args()))
-    found = ForSome("I", _FIRED, equal(Ref(_ITEM), Ref("T")))
-    earlier = OperatorChain("<", (Ref("Fired.Items (J)"), Ref(_ITEM)))
-    pairs = ForAll("J", "1 .. I - 1", _unless_segment(shape, earlier, "J"))
+    chosen = Call("Is_Choice", (Arg(None, result("Choose")), *shape.situation_args()))
     choice = Param("C", "in", "Choice")
     ghost = (Aspect("Ghost"),)
     return [
-        *items,
         Subprogram("Choose", params, "Choice", aspects=(Aspect("Post", chosen),)),
         Comment("The transitions that one occurrence asks for."),
-        Subprogram(
-            "Has",
-            (fired, Param("T", "in", "Selection")),
-            "Boolean",
-            aspects=() if shape.watched else ghost,
-            expression=found,
-        ),
         Subprogram(
             _IS_OF,
             (fired, choice, Param("Last", "in", "Selection")),
             "Boolean",
             aspects=ghost,
-            expression=_of_choice(shape),
+            expression=both(call("Firings.Is_Ordered", _FIRED), _of_choice(shape)),
         ),
-        Comment("Is what has fired chosen, and none of it after Last?"),
-        Subprogram(
-            "Is_Ordered",
-            (fired,),
-            "Boolean",
-            aspects=ghost,
-            expression=ForAll("I", _FIRED, _unless_segment(shape, pairs, "I")),
-        ),
-        Comment("Do the lanes fire in their order?"),
+        Comment("Is what has fired chosen, in the order of the lanes, and none of it after Last?"),
         Subprogram(
             "Follows", (fired, choice), "Boolean", aspects=ghost, expression=_follows(shape)
         ),
@@ -120,22 +125,30 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
 
 def _of_choice(shape: RegionShape) -> Expr:
     """Each is chosen for a lane, or goes on from a choice or history."""
-    chosen = " | ".join(f"C.{shape.lane_name(n)}" for n in shape.busy_lanes)
-    due = both(OperatorChain("<=", (Ref(_ITEM), Ref("Last"))), member(Ref(_ITEM), chosen))
-    return ForAll("I", _FIRED, _unless_segment(shape, due, "I"))
+    chosen = (ref("C", shape.lane_name(n)) for n in shape.busy_lanes)
+    due: Expr = both(OperatorChain("<=", (_ITEM, ref("Last"))), member(_ITEM, *chosen))
+    if shape.passes:
+        due = OperatorChain("or else", (call("Is_Segment", _ITEM), due))
+    return ForAll("I", up_to(_COUNT), due)
 
 
-def _is_of(lane: str) -> Expr:
-    return call(_IS_OF, Ref("Fired"), Ref("C"), Ref(f"{lane}_Transition'Last"))
+def _is_of(shape: RegionShape, lane: Lane) -> Expr:
+    last = Attribute(shape.transitions_of(lane), "Last")
+    return call(_IS_OF, _FIRED, ref("C"), last)
 
 
 BEFORE = "Place_Before"
 """The configuration before anything has fired."""
 
+LIST = ref("Firings.List")
+"""The type of the list of what a step fires."""
+
 _IS_OF = "Is_Of_Choice"
-_FIRED = "1 .. Fired.Count"
-_ITEM = "Fired.Items (I)"
-_ORDERED = call("Is_Ordered", Ref("Fired"))
+_FIRED = ref("Fired")
+_COUNT = ref("Fired.Count")
+_ITEM = Indexed("Fired.Items", ref("I"))
+_SEGMENTS = "Does it go on from a choice or history?"
+_NO_SEGMENTS = "None does: the chart has neither choices nor histories."
 _FOLLOWS = (
     "A deferral is fired alone. Otherwise what is chosen is fired, lane by lane, and nothing else; "
 )
@@ -143,38 +156,9 @@ _OVERTAKEN = "a lane inside a state that transitions leave may be overtaken by a
 _DROPPED = "of two that conflict, as one leaves a state in which the other fires, the earlier one."
 
 
-def _starts_with(shape: RegionShape, fired: Param) -> list[Decl]:
-    first = [
-        OperatorChain(
-            ">" if shape.passes else "=", (Ref("Fired.Count"), number(0 if shape.passes else 1))
-        ),
-        equal(Ref("Fired.Items (1)"), Ref("T")),
-    ]
-    items: list[Decl] = []
-    if shape.passes:
-        names = [f.literal for f in shape.firings if is_segment(shape, f)]
-        items = [
-            Subprogram(
-                "Is_Segment",
-                (Param("T", "in", "Selection"),),
-                "Boolean",
-                expression=one_of(Ref("T"), names),
-            ),
-            Comment("Does it go on from a choice or history?"),
-        ]
-        rest = call("Is_Segment", Ref(_ITEM))
-        first.append(ForAll("I", "2 .. Fired.Count", rest))
-    return [
-        *items,
-        Subprogram(
-            "Is_Only",
-            (fired, Param("T", "in", "Selection")),
-            "Boolean",
-            aspects=(Aspect("Ghost"),),
-            expression=both(*first),
-        ),
-        Comment("Is that fired, with the segments of its way, and nothing else?"),
-    ]
+def is_only(chosen: Expr) -> Expr:
+    """That is fired, with the segments of its way, and nothing else."""
+    return call("Firings.Is_Only", _FIRED, chosen)
 
 
 def is_segment(shape: RegionShape, firing: Firing) -> bool:
@@ -182,23 +166,13 @@ def is_segment(shape: RegionShape, firing: Firing) -> bool:
     return shape.region.pseudostate(firing.sources[0]) is not None
 
 
-def _unless_segment(shape: RegionShape, fact: Expr, index: str) -> Expr:
-    if not shape.passes:
-        return fact
-    return OperatorChain("or else", (call("Is_Segment", Ref(f"Fired.Items ({index})")), fact))
-
-
 def _choice(shape: RegionShape, lane: Lane) -> Expr:
-    return Ref(f"C.{shape.lane_name(lane)}")
+    return ref("C", shape.lane_name(lane))
 
 
 def _follows(shape: RegionShape) -> Expr:
-    last = shape.lane_name(shape.busy_lanes[-1])
-    facts = both(_is_of(last), _ORDERED, *_asked(shape, shape.busy_lanes))
-    deferrals = tuple(
-        (call("Is_Deferral", lane), call("Is_Only", Ref("Fired"), lane))
-        for lane in _deferring(shape)
-    )
+    facts = both(_is_of(shape, shape.busy_lanes[-1]), *_asked(shape, shape.busy_lanes))
+    deferrals = tuple((call("Is_Deferral", lane), is_only(lane)) for lane in _deferring(shape))
     return IfExpr(deferrals, facts) if deferrals else facts
 
 
@@ -214,21 +188,21 @@ def _asked(shape: RegionShape, lanes: Sequence[Lane]) -> list[Expr]:
     if not shape.passes:
         return [fact for n in lanes for fact in (_has(shape, n), *_apart(shape, n))]
     rows = (
-        (OperatorChain("/=", (_choice(shape, n), Ref("None"))), _fired(shape, n)) for n in lanes
+        (OperatorChain("/=", (_choice(shape, n), ref("None"))), _fired(shape, n)) for n in lanes
     )
     return [IfExpr(tuple(rows), None)]
 
 
 def _has(shape: RegionShape, lane: Lane) -> Expr:
     """What is chosen for a lane is fired, unless what conflicts with it was."""
-    asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), Ref("None")))]
+    asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), ref("None")))]
     before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
     asked += [Prefix("not", clash) for clash in _clashes(shape, lane, before)]
     return IfExpr(((both(*asked), _fired(shape, lane)),), None)
 
 
 def _fired(shape: RegionShape, lane: Lane) -> Expr:
-    return call("Has", Ref("Fired"), _choice(shape, lane))
+    return call("Firings.Has", _FIRED, _choice(shape, lane))
 
 
 def _clashes(shape: RegionShape, lane: Lane, others: Sequence[Lane]) -> Iterator[Expr]:
@@ -253,16 +227,14 @@ def _apart(shape: RegionShape, lane: Lane) -> Iterator[Expr]:
 
 def _unmoved(shape: RegionShape, done: Sequence[Lane]) -> Iterator[Expr]:
     """Where something is chosen for a lane still to come, and no state around it has been
-    left, it is as it was."""
+    left, it is as it was: of a lane with one leaf the compiler knows that."""
     for lane in () if shape.passes else shape.busy_lanes[len(done) :]:
         around = [ada_case(s) for s in shape.watched if lane in shape.lanes_in(s)]
-        if around:
-            stays = [Prefix("not", call(f"Has_Left_{s}", Ref("Fired"))) for s in around]
-            asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), Ref("None"))), *stays]
-            same = [
-                equal(Ref(shape.at(f"Self.{shape.place}", n)), Ref(shape.at(BEFORE, n)))
-                for n in shape.lanes_around(lane)
-            ]
+        moving = [n for n in shape.lanes_around(lane) if len(shape.literals(n)) > 1]
+        if around and moving:
+            stays = [Prefix("not", call(f"Has_Left_{s}", _FIRED)) for s in around]
+            asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), ref("None"))), *stays]
+            same = [equal(shape.at(shape.held, n), shape.at(BEFORE, n)) for n in moving]
             yield IfExpr(((both(*asked), both(*same)),), None)
 
 
@@ -274,12 +246,12 @@ def _overtaken(shape: RegionShape, lane: Lane) -> bool:
 
 def followed(shape: RegionShape) -> Expr:
     """What Step says of all that it has fired."""
-    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
-    choice = Call("Choose", shape.situation_args(Self=Old("Self")))
-    only = call("Is_Only", Ref("Fired"), Ref(START))
-    follows = call("Follows", Ref("Fired"), choice)
+    begun = equal(ref("Now"), ref("Start_Of_Region"))
+    choice = Call("Choose", shape.situation_args(Self=old("Self")))
+    only = is_only(ref(START))
+    follows = call("Follows", _FIRED, choice)
     #  no `if`: 'Old behind a condition known on entry wants an exception handler
-    goes_on = OperatorChain("/=", (Ref("Now"), Ref("Start_Of_Region")))
+    goes_on = OperatorChain("/=", (ref("Now"), ref("Start_Of_Region")))
     return OperatorChain(
         "or", (OperatorChain("and", (begun, only)), OperatorChain("and", (goes_on, follows)))
     )
@@ -292,7 +264,7 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
     """Every lane's transition in order; what conflicts with an earlier one is dropped."""
     work: tuple[Stmt, ...] = (
         *moves.safety.alone(),
-        *(s for lane in shape.busy_lanes for s in (_lane(shape, lane), _so_far(shape, lane))),
+        *(s for lane in shape.busy_lanes for s in (_lane(shape, lane), *_so_far(shape, lane))),
     )
     if deferred := _deferring(shape):
         rows = [(call("Is_Deferral", one), (do("Fire_Whole", one),)) for one in deferred]
@@ -300,7 +272,7 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
     choose = Assign("C", Call("Choose", shape.situation_args()))
     declared: list[Decl] = [Object("C", "Choice")]
     if shape.watched and not shape.passes:
-        held, ghost = Ref(f"Self.{shape.place}"), (Aspect("Ghost"),)
+        held, ghost = shape.held, (Aspect("Ghost"),)
         declared.append(Object(BEFORE, shape.place_type, held, constant=True, aspects=ghost))
     return _step(shape, moves, profile, declared, (choose, *work))
 
@@ -308,8 +280,8 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
 def passing_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
     """One transition, then the segments that its way passes."""
     pick = Assign("Chosen", whole(shape, shape.lanes[0]))
-    some = OperatorChain("/=", (Ref("Chosen"), Ref("None")))
-    work = (pick, IfStatement(((some, (do("Fire_Whole", Ref("Chosen")),)),)))
+    some = OperatorChain("/=", (ref("Chosen"), ref("None")))
+    work = (pick, IfStatement(((some, (do("Fire_Whole", ref("Chosen")),)),)))
     return _step(shape, moves, profile, [Object("Chosen", "Selection")], work)
 
 
@@ -321,14 +293,14 @@ def _step(
     work: tuple[Stmt, ...],
 ) -> Subprogram:
     """At the start of the region its initial entry; later ``work``, with what it declares."""
-    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
+    begun = equal(ref("Now"), ref("Start_Of_Region"))
     return Subprogram(
         "Step",
         profile,
         declarations=(*declared, _fire_whole(shape, moves)),
         body=(
-            Assign("Fired", _nothing()),
-            IfStatement(((begun, (do("Fire_Whole", Ref(START)),)),), work),
+            Assign("Fired", ref("Firings.Nothing")),
+            IfStatement(((begun, (do("Fire_Whole", ref(START)),)),), work),
         ),
     )
 
@@ -337,7 +309,7 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
     """Fire the transition of a lane, unless an earlier one left its state, or it would leave
     a state in which an earlier one fired: one that was dropped is no obstacle."""
     chosen = _choice(shape, lane)
-    free: list[Expr] = [OperatorChain("/=", (chosen, Ref("None")))]
+    free: list[Expr] = [OperatorChain("/=", (chosen, ref("None")))]
     around = [s for s in shape.watched if lane in shape.lanes_in(s)]
     for state in around:
         inside = shape.lanes_in(state)
@@ -345,97 +317,75 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
         if not earlier:
             continue
         name = ada_case(state)
-        still = [Prefix("not", call("Has", Ref("Fired"), _choice(shape, n))) for n in earlier]
+        still = [Prefix("not", _fired(shape, n)) for n in earlier]
         stays = Prefix("not", call(f"Leaves_{name}", chosen))
-        free.append(Prefix("not", call(f"Has_Left_{name}", Ref("Fired"))))
+        free.append(Prefix("not", call(f"Has_Left_{name}", _FIRED)))
         free.append(OperatorChain("or else", (stays, chain("and then", still))))
     if lane != shape.busy_lanes[0] and _overtaken(shape, lane):
-        free.append(call("In_Source", chosen, Ref(f"Self.{shape.place}")))
+        free.append(call("In_Source", chosen, shape.held))
     return IfStatement(((chain("and then", free), (do("Fire_Whole", chosen),)),))
 
 
-def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
-    """What has been fired of the lanes up to this one; types bound it when it is the last."""
+def _so_far(shape: RegionShape, lane: Lane) -> tuple[Pragma, ...]:
+    """What has been fired of the lanes up to this one; types bound it when it is the last.
+
+    After the last one provers need it only where transitions conflict.
+    """
     done = shape.busy_lanes[: shape.busy_lanes.index(lane) + 1]
-    few: list[Expr] = []
-    if lane != shape.busy_lanes[-1]:
-        few = [OperatorChain("<=", (_COUNT, number(len(done) * (1 + shape.most_segments))))]
-    of_lanes = _is_of(shape.lane_name(lane))
-    facts = (*few, of_lanes, _ORDERED, *_asked(shape, done), *_unmoved(shape, done))
-    return Pragma("Assert", (both(*facts),))
+    is_last = lane == shape.busy_lanes[-1]
+    if is_last and (shape.passes or not shape.watched):
+        return ()
+    most = number(len(done) * (1 + shape.most_segments))
+    few = () if is_last else (OperatorChain("<=", (_COUNT, most)),)
+    facts = (*few, _is_of(shape, lane), *_asked(shape, done), *_unmoved(shape, done))
+    return (Pragma("Assert", (both(*facts),)),)
 
 
 def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
     """A transition with the segments that its way passes, and note what fired."""
-    held = Ref(f"Self.{shape.place}")
+    held = shape.held
     safe = moves.safety.holds()
     most = shape.most_segments
     before = shape.most_firings - 1 - most
     room = OperatorChain("<=" if before else "=", (_COUNT, number(before)))
     left = call("Segments_Left", held)
-    body: list[Stmt] = [fire(moves, "T"), *_note("T")]
+    body: list[Stmt] = [fire(moves, "T"), _note("T")]
     declarations: tuple[Decl, ...] = ()
-    grown = equal(_COUNT, Ref("Fired.Count'Old + 1"))
-    settled: list[Expr] = []
+    settled = equal(held, shape.target("T"))
     if most:
         ghost = (Aspect("Ghost"),)
         declarations = (
-            Object("Before", "Firing_List", Ref("Fired"), constant=True, aspects=ghost),
+            Object("Before", LIST, _FIRED, constant=True, aspects=ghost),
             Object("Segment", "Selection"),
         )
-        bound = OperatorChain("<=", (left, OperatorChain("-", (number(most + 1), Ref("I")))))
-        counted = equal(_COUNT, Ref("Before.Count + I"))
-        noted = _noted(shape, "Before.Count", "Before.Items")
-        going_on = Pragma("Loop_Invariant", (both(counted, *noted, bound, *safe),))
+        bound = OperatorChain("<=", (left, OperatorChain("-", (number(most + 1), ref("I")))))
+        counted = equal(_COUNT, OperatorChain("+", (ref("Before.Count"), ref("I"))))
+        added = call("Firings.Is_Added", ref("Before"), ref("T"), _FIRED)
+        facts = both(counted, added, ref("Self.Started"), bound, *safe)
         body.append(
             Loop(
-                f"for I in 1 .. {most}",
+                ForLoop("I", up_to(plain(most))),
                 (
-                    going_on,
-                    IfStatement(((equal(left, number(0)), (Say("exit"),)),)),
+                    Pragma("Loop_Invariant", (facts,)),
+                    IfStatement(((equal(left, number(0)), (ExitStatement(),)),)),
                     Assign("Segment", segment(shape)),
                     fire(moves, "Segment"),
-                    *_note("Segment"),
+                    _note("Segment"),
                 ),
             )
         )
-        if before:
-            grown = member(_COUNT, f"Fired.Count'Old + 1 .. Fired.Count'Old + {most + 1}")
-        else:
-            grown = OperatorChain(">=", (_COUNT, number(1)))
-        settled = [equal(left, number(0))]
-    else:
-        settled = [equal(held, shape.target("T"))]
-    facts = (grown, *_noted(shape, "Fired.Count'Old", "Fired.Items'Old"), *settled, *safe)
+        settled = equal(left, number(0))
+    added = call("Firings.Is_Added", old(_FIRED), ref("T"), _FIRED)
+    post = both(added, ref("Self.Started"), settled, *safe)
     return Subprogram(
         "Fire_Whole",
         (Param("T", "in", "Firing"),),
-        aspects=(Aspect("Pre", both(moves.ready("T"), room)), Aspect("Post", both(*facts))),
+        aspects=(Aspect("Pre", both(moves.ready("T"), room)), Aspect("Post", post)),
         declarations=declarations,
         body=tuple(body),
     )
 
 
-_COUNT = Ref("Fired.Count")
-
-
-def _noted(shape: RegionShape, count: str, items: str) -> list[Expr]:
-    """The transition and its segments stand behind what was fired before."""
-    item = Ref("Fired.Items (J)")
-    facts: list[Expr] = [
-        Ref("Self.Started"),
-        equal(Ref(f"Fired.Items ({count} + 1)"), Ref("T")),
-        ForAll("J", f"1 .. {count}", equal(item, Ref(f"{items} (J)"))),
-    ]
-    if shape.passes:
-        segments = ForAll("J", f"{count} + 2 .. Fired.Count", call("Is_Segment", item))
-        facts.append(segments)
-    return facts
-
-
-def _note(fired: str) -> tuple[Stmt, ...]:
+def _note(fired: str) -> Stmt:
     """It is the last that has fired."""
-    return (
-        Assign("Fired.Count", OperatorChain("+", (_COUNT, number(1)))),
-        Assign("Fired.Items (Fired.Count)", Ref(fired)),
-    )
+    return do("Firings.Add", _FIRED, ref(fired))

@@ -7,75 +7,70 @@ The *domain* of a transition is the innermost region that holds all it leaves an
 enters (the "transition domain" of SCXML 3.13). Everything active inside it is left,
 and what is active inside it afterwards was entered. From the domain and the
 configurations before and after follow the time-outs that are cancelled and started,
-and the leaves that histories remember; `Timer_After` and `Remembered` declare it,
-and the contract of each firing claims it.
+and the leaves that histories remember; `Timers_After` and `Remembered` declare it,
+and each firing does it by them.
 """
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import Decl, EnumType, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import (
     Aggregate,
     Arg,
-    Call,
-    CaseExpr,
-    Comment,
-    Decl,
-    EnumType,
+    Attribute,
     Expr,
     IfExpr,
-    Old,
+    Indexed,
     OperatorChain,
-    Param,
-    Pragma,
-    Prefix,
-    Ref,
-    Subprogram,
+    all_else,
     both,
     call,
-    chain,
     choice_of,
     equal,
     number,
+    old,
     one_of,
+    plain,
 )
-from ravenchart.gen.emit.language.compound import TOP, Firing, FiringKind
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Assign, Comment, Pragma, Stmt
+from ravenchart.gen.emit.ada.walking import rewritten
+from ravenchart.gen.emit.language.compound import TOP, Firing
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import After, Every
 
-from .deferring import freed_after, kept_events
+from .deferring import change, is_changed
 from .shape import START, HistoryMemory, RegionShape
 
-_STOPPED = "Ravenchart.Timers.Stopped"
+_STOPPED = ref("Ravenchart.Timers.Stopped")
+TIME_OUTS = "Time_Outs"
+"""The type of a region's timers."""
+_TIMERS, _PAST = ref("Self.Timers"), ref("Self.Past")
 
 
 def in_one_word(fact: Subprogram, told: str) -> list[Decl]:
     """A function that provers see as what it stands for."""
-    inlined = Ref("GNATprove"), Ref("Inline_For_Proof"), Ref(fact.name)
+    inlined = ref("GNATprove"), ref("Inline_For_Proof"), ref(fact.name)
     return [fact, Comment(told), Pragma("Annotate", inlined)]
 
 
 def asked(fact: Subprogram, **given: Expr) -> Expr:
     """A call of it where its parameters' names are those of what is given."""
-    return call(fact.name, *(given.get(p.name, Ref(p.name)) for p in fact.params))
+    return call(fact.name, *(given.get(p.name, ref(p.name)) for p in fact.params))
 
 
 def of_before(fact: Expr) -> Expr:
     """A fact over ``Self.X'Old``, over ``Before.X`` instead."""
-    match fact:
-        case Old(name, part):
-            return Ref(f"Before.{name.removeprefix('Self.')}{part}")
-        case OperatorChain(operator, operands):
-            return OperatorChain(operator, tuple(map(of_before, operands)))
-        case Prefix(operator, operand):
-            return Prefix(operator, of_before(operand))
-        case Call(name, args):
-            return Call(name, tuple(Arg(a.name, of_before(a.value)) for a in args))
-        case IfExpr(branches, otherwise):
-            rows = tuple((of_before(c), of_before(v)) for c, v in branches)
-            return IfExpr(rows, otherwise and of_before(otherwise))
-    return fact
+
+    def before(node: object) -> DottedName | None:
+        match node:
+            case Attribute(DottedName(parts), "Old"):
+                return ref("Before", *parts[1:])
+        return None
+
+    return rewritten(fact, before)
 
 
 def has_domains(shape: RegionShape) -> bool:
@@ -101,67 +96,46 @@ def _domain(shape: RegionShape, firing: Firing) -> str:
 # --- The chart as declared ---------------------------------------------------
 
 
-def declared_domains(shape: RegionShape) -> list[Decl]:
-    """Domain, Domain_Of, Timer_After and Remembered, as far as the chart needs them."""
+def domain_types(shape: RegionShape) -> list[Decl]:
+    """Domain and Domain_Of, where something outlasts a firing."""
     if not has_domains(shape):
         return []
-    rows = tuple((f.literal, Ref(_domain(shape, f))) for f in shape.firings)
+    rows = tuple((f.literal, ref(_domain(shape, f))) for f in shape.firings)
     regions = [Place(s.name, r.name) for s in shape.region.states for r in s.regions]
-    found = {_domain(shape, f) for f in shape.firings}
-    ends = ("Ending",) if "Ending" in found else ()
+    ends = ("Ending",) if _ends(shape) else ()
     literals = ("Nothing", *map(_inside, regions), "Everything", "Beginning", *ends)
-    items: list[Decl] = [
+    return [
         Comment("The innermost region that holds all that a transition leaves and enters."),
         EnumType("Domain", literals),
         Subprogram(
             "Domain_Of",
             (Param("T", "in", "Firing"),),
             "Domain",
-            expression=choice_of(Ref("T"), ((START, Ref("Beginning")), *rows)),
+            expression=choice_of(ref("T"), ((START, ref("Beginning")), *rows)),
         ),
         Comment("Everything active inside it is left, and what is active then is entered."),
     ]
-    if shape.timers:
-        items += _timer_after(shape, bool(ends))
-    if shape.memories:
-        items += _remembered(shape)
-    if shape.deferring:
-        items += _freed(shape)
-    return items
 
 
-def _freed(shape: RegionShape) -> list[Decl]:
-    rows: list[Arg] = []
-    for event in kept_events(shape):
-        exits = [
-            both(
-                *flat([_spans(shape.compounds.places(s.name)), shape.in_state(shape.place, s.name)])
-            )
-            for s in shape.region.states
-            if event in s.defers
-        ]
-        before = Ref(f"Freed.{ada_case(event)}")
-        freed = IfExpr(((chain("or else", exits), Ref("Count")),), before)
-        rows.append(Arg(ada_case(event), freed))
-    return [
-        Subprogram(
-            "Freed_After",
-            (
-                Param("D", "in", "Domain"),
-                Param(shape.place, "in", shape.place_type),
-                Param("Count", "in", "Natural"),
-                Param("Freed", "in", "Freed_Events"),
-            ),
-            "Freed_Events",
-            expression=Aggregate(tuple(rows)),
-        ),
-        Comment("Each exit of a state frees the events that it defers, of those kept till then."),
-    ]
+def declared_lasting(shape: RegionShape) -> list[Decl]:
+    """Timers_After and Remembered, as far as the chart needs them."""
+    timers = _timers_after(shape, _ends(shape)) if shape.timers else []
+    return timers + (_remembered(shape) if shape.memories else [])
+
+
+def spans_of_states(shape: RegionShape) -> dict[str, Expr]:
+    """For each state the test whether a domain holds a region around it."""
+    return {s.name: _spans(shape.compounds.places(s.name)) for s in shape.region.states}
+
+
+def _ends(shape: RegionShape) -> bool:
+    """Does a transition stop the region?"""
+    return any(terminates(shape, f) for f in shape.firings)
 
 
 def _spans(places: list[Place], *more: str) -> Expr:
     names = [_inside(p) for p in places] + list(more)
-    return one_of(Ref("D"), names)
+    return one_of(ref("D"), names)
 
 
 def _fresh(shape: RegionShape, index: int) -> Expr:
@@ -173,39 +147,36 @@ def _fresh(shape: RegionShape, index: int) -> Expr:
     return call("Ravenchart.Timers.Started", *args)
 
 
-def _timer_after(shape: RegionShape, ends: bool) -> list[Decl]:
-    rows = []
+def _timers_after(shape: RegionShape, ends: bool) -> list[Decl]:
+    rows: list[Arg] = []
     for i, timed in enumerate(shape.timers, 1):
         places = shape.compounds.places(timed.source)
         active = both(
             *flat(
                 [
-                    OperatorChain("/=", (Ref("D"), Ref("Beginning"))),
+                    OperatorChain("/=", (ref("D"), ref("Beginning"))),
                     shape.in_state("Before", timed.source),
                 ]
             )
         )
         after = shape.in_state("After", timed.source)
-        spanned = _spans(places, "Beginning")
-        moved = call(
-            "Ravenchart.Timers.Moved", Ref("Timer"), spanned, active, after, _fresh(shape, i)
-        )
-        rows.append((str(i), moved))
-    choice: Expr = CaseExpr(Ref("I"), (*rows, ("others", Ref("Timer"))))
+        spanned, timer = _spans(places, "Beginning"), Indexed("Timers", plain(i))
+        moved = call("Ravenchart.Timers.Moved", timer, spanned, active, after, _fresh(shape, i))
+        rows.append(Arg(plain(i), moved))
+    moves: Expr = Aggregate(tuple(rows))
     if ends:
-        choice = IfExpr(((equal(Ref("D"), Ref("Ending")), Ref(_STOPPED)),), choice)
+        moves = IfExpr(((equal(ref("D"), ref("Ending")), all_else(_STOPPED)),), moves)
     return [
         Subprogram(
-            "Timer_After",
+            "Timers_After",
             (
-                Param("I", "in", "Positive"),
+                Param("Timers", "in", TIME_OUTS),
                 Param("D", "in", "Domain"),
                 Param("Before", "in", shape.place_type),
                 Param("After", "in", shape.place_type),
-                Param("Timer", "in", "Ravenchart.Timers.Timer"),
             ),
-            "Ravenchart.Timers.Timer",
-            expression=choice,
+            TIME_OUTS,
+            expression=moves,
         ),
         Comment("Each time-out: cancelled when its state is left, started when it is entered."),
     ]
@@ -214,14 +185,12 @@ def _timer_after(shape: RegionShape, ends: bool) -> list[Decl]:
 def _remembered(shape: RegionShape) -> list[Decl]:
     rows: list[Arg] = []
     for memory in shape.memories:
-        leaf = Ref(shape.at(shape.place, shape.lane_of(memory.place)))
+        leaf = shape.at(shape.place, shape.lane_of(memory.place))
         left = flat([_left(shape, memory), _active(shape, memory)])
         children = shape.region.children(memory.place.owner, memory.place.region)
-        goes_on = [
-            OperatorChain("/=", (leaf, Ref(shape.literal(s.name)))) for s in children if s.final
-        ]
-        last = IfExpr(((both(*left, *goes_on), leaf),), Ref(f"Past.{memory.last}"))
-        known = IfExpr(((both(*left), both(*goes_on)),), Ref(f"Past.{memory.known}"))
+        goes_on = [OperatorChain("/=", (leaf, shape.literal(s.name))) for s in children if s.final]
+        last = IfExpr(((both(*left, *goes_on), leaf),), ref("Past", memory.last))
+        known = IfExpr(((both(*left), both(*goes_on)),), ref("Past", memory.known))
         rows += [Arg(memory.last, last), Arg(memory.known, known)]
     return [
         Subprogram(
@@ -261,7 +230,7 @@ def _active(shape: RegionShape, memory: HistoryMemory) -> Expr:
     passed = {p.name for p in shape.region.pseudostates}
     leaf = shape.at(shape.place, shape.lane_of(memory.place))
     not_left = [
-        OperatorChain("/=", (Ref(leaf), Ref(shape.literal(v))))
+        OperatorChain("/=", (leaf, shape.literal(v)))
         for v in shape.literals_in(memory.place)
         if v in passed
     ]
@@ -272,72 +241,37 @@ def _active(shape: RegionShape, memory: HistoryMemory) -> Expr:
 
 
 class Lasting:
-    """What outlasts the exits, entries and firings of one region."""
+    """What outlasts the firings of one region."""
 
     def __init__(self, shape: RegionShape) -> None:
         self.shape = shape
         self.region = shape.region
 
-    def timed(self, state: str) -> list[int]:
-        """The numbers of a state's time-outs."""
-        return [i for i, t in enumerate(self.shape.timers, 1) if t.source == state]
-
-    def remembered(self, leaf: str) -> list[tuple[HistoryMemory, bool]]:
-        """The memories that the exit of a leaf changes; False: there is nothing to remember."""
-        if not self.shape.is_literal(leaf):
-            return []
-        around = self.shape.compounds.places(leaf)
-        lane = self.region.lane(leaf)
-        final = self.region.state(leaf).final
-        return [
-            (m, not (final and around[0] == m.place))
-            for m in self.shape.memories
-            if m.place in around and self.shape.lane_of(m.place) == lane
-        ]
+    def moved(self, chosen: str, before: str) -> list[Stmt]:
+        """What a firing does to them; ``before`` holds the configuration that it leaves."""
+        shape = self.shape
+        domain, left = call("Domain_Of", ref(chosen)), ref(before)
+        done: list[Stmt] = []
+        if shape.timers:
+            after = call("Timers_After", _TIMERS, domain, left, shape.held)
+            done.append(Assign(_TIMERS, after))
+        if shape.memories:
+            done.append(Assign(_PAST, call("Remembered", domain, left, _PAST)))
+        if shape.deferring:
+            done.append(change(chosen, domain, before))
+        return done
 
     def fired(self, chosen: str) -> list[Expr]:
         """After a firing: what is declared; ``chosen`` names the transition."""
         facts: list[Expr] = []
-        held = f"Self.{self.shape.place}"
-        domain = call("Domain_Of", Ref(chosen))
-        for i in range(1, len(self.shape.timers) + 1):
-            before = Old("Self.Timers", f" ({i})")
-            after = call("Timer_After", number(i), domain, Old(held), Ref(held), before)
-            facts.append(equal(Ref(f"Self.Timers ({i})"), after))
-        ends = any(terminates(self.shape, f) for f in self.shape.firings)
-        goes_on = OperatorChain("/=", (domain, Ref("Ending")))
+        held = self.shape.held
+        domain = call("Domain_Of", ref(chosen))
+        if self.shape.timers:
+            after = call("Timers_After", old(_TIMERS), domain, old(held), held)
+            facts.append(equal(_TIMERS, after))
         if self.shape.memories:
-            recalled = call("Remembered", domain, Old(held), Old("Self.Past"))
-            known = equal(Ref("Self.Past"), recalled)
-            kept = equal(Ref("Self.Past"), Old("Self.Past"))
-            #  where the region ends, nothing will be remembered
-            later: Expr = IfExpr(((goes_on, known),), None) if ends else known
-            facts.append(IfExpr(((Old("Self.Started"), later),), kept))
+            recalled = call("Remembered", domain, old(held), old(_PAST))
+            facts.append(equal(_PAST, recalled))
         if self.shape.deferring:
-            count = call("Deferrals.Count", Old("Self.Deferred"))
-            freed = freed_after(self.shape, domain, count)
-            facts.append(IfExpr(((goes_on, freed),), None) if ends else freed)
-        return [*facts, *self._deferred(chosen)]
-
-    def _deferred(self, chosen: str) -> list[Expr]:
-        """A deferral keeps its event, or counts it as lost; nothing else touches what is kept."""
-        shape = self.shape
-        deferrals = [f for f in shape.firings if f.kind is FiringKind.DEFERRAL]
-        if not deferrals:
-            return []
-        kept, before = Ref("Self.Deferred"), Old("Self.Deferred")
-        full = equal(call("Deferrals.Count", before), number(self.region.deferral_depth))
-        lost = equal(Ref("Self.Lost"), OperatorChain("or", (Old("Self.Lost"), full)))
-        names: dict[Ref, list[str]] = {}
-        for firing in deferrals:
-            names.setdefault(shape.deferred_item(firing), []).append(firing.literal)
-        one = len(names) == 1
-        added = tuple(
-            (
-                call("Is_Deferral", Ref(chosen)) if one else one_of(Ref(chosen), of),
-                both(call("Deferrals.Is_Appended", before, item, kept), lost),
-            )
-            for item, of in names.items()
-        )
-        same = both(equal(kept, before), equal(Ref("Self.Lost"), Old("Self.Lost")))
-        return [IfExpr(added, same)]
+            facts.append(is_changed(self.shape, chosen, domain))
+        return facts

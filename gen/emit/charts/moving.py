@@ -3,43 +3,37 @@
 
 """Exits and entries of one region: a procedure for each state where one does something.
 
-A state without actions, time-outs or history is exited and entered in the ghost of the
-active states alone, for which there is no code. The procedures have neither parameters nor
-contracts: gnatprove inlines them where they are called, and proves the caller with their work.
+A state without actions and completion is exited and entered in the ghost of the active
+states alone, for which there is no code. The procedures have neither parameters nor contracts:
+gnatprove inlines them where they are called, and proves the caller with their work.
 """
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import Decl, Subprogram
+from ravenchart.gen.emit.ada.expressions import (
     FALSE,
     TRUE,
-    Assign,
-    Decl,
-    Do,
+    Choice,
     Expr,
-    IfStatement,
-    Ref,
-    Stmt,
-    Subprogram,
-    arguments,
+    Qualified,
     both,
     call,
-    case_of,
     chain,
     equal,
-    number,
 )
-from ravenchart.gen.emit.language.compound import Enter
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Assign, IfStatement, Stmt, case_of, do
 from ravenchart.gen.emit.language.terms import emit_flow
 from ravenchart.gen.language.terms import Flow
 from ravenchart.gen.model.chart.tree import Place
-from ravenchart.gen.model.statechart import After, Every
 
-from .deferring import freed_by
-from .lasting import Lasting
 from .nodes import Nodes, joined
 from .shape import RegionShape
+
+BEFORE = "Before"
+"""The configuration before a firing."""
 
 
 def _leave_name(place: Place) -> str:
@@ -49,13 +43,12 @@ def _leave_name(place: Place) -> str:
 class Moving:
     """Gives the statements of exits and entries, and remembers which procedures they need."""
 
-    def __init__(self, shape: RegionShape, nodes: Nodes, lasting: Lasting) -> None:
+    def __init__(self, shape: RegionShape, nodes: Nodes) -> None:
         self.shape = shape
         self.region = shape.region
         self.nodes = nodes
-        self.lasting = lasting
         self.scope = shape.scope("Self.Data")
-        self.held = f"Self.{shape.place}"
+        self.held = shape.held
         self._exited: set[str] = set()
         self._entered: set[str] = set()
         self._left: set[Place] = set()
@@ -66,29 +59,29 @@ class Moving:
             return (self.nodes.exit(state),)
         if state in self._exited or self._work_of_exit(state):
             self._exited.add(state)
-            return (Do(f"Exit_{ada_case(state)}"),)
+            return (do(f"Exit_{ada_case(state)}"),)
         return (*self._noted(state, "exit"), self.nodes.exit(state))
 
     def enter(self, vertex: str) -> tuple[Stmt, ...]:
         """The entry of one state, or of a pseudostate that is passed."""
         if self.region.pseudostate(vertex) is not None:
-            return (self.nodes.enter(vertex), *self._place(vertex))
+            return (self.nodes.enter(vertex),)
         if vertex in self._entered or any(self._work_of_entry(vertex)):
             self._entered.add(vertex)
-            return (Do(f"Enter_{ada_case(vertex)}"),)
-        return (self.nodes.enter(vertex), *self._place(vertex), *self._noted(vertex, "entry"))
+            return (do(f"Enter_{ada_case(vertex)}"),)
+        return (self.nodes.enter(vertex), *self._noted(vertex, "entry"))
 
     def leave(self, place: Place) -> Stmt:
         """The exits of all that is active in a region."""
         if place.owner is not None and self._is_silent(place):
-            return self.nodes.leave(place)
+            return self.nodes.leave(place, BEFORE)
         if place not in self._left:
             self._left.add(place)
             for child in self.region.children(place.owner, place.region):
                 self.exit(child.name)
                 for nested in child.regions:
                     self.leave(Place(child.name, nested.name))
-        return Do(_leave_name(place))
+        return do(_leave_name(place))
 
     def _is_silent(self, place: Place) -> bool:
         """Whether nothing is done there however it is left, and no lane ends there."""
@@ -134,67 +127,32 @@ class Moving:
         return () if self.region.state(state).final else self.shape.note(f"{state}.{what}")
 
     def _work_of_exit(self, state: str) -> tuple[Stmt, ...]:
-        """What the exit of a state does: actions, time-outs, what it frees, what is remembered."""
-        stops = tuple(
-            Do("Ravenchart.Timers.Disarm", arguments(Ref(f"Self.Timers ({i})")))
-            for i in self.lasting.timed(state)
-        )
-        completed = Assign(f"Self.{self.shape.completed(state)}", FALSE)
+        """What the exit of a state does: actions, and that its completion is over."""
+        completed = Assign(ref("Self", self.shape.completed(state)), FALSE)
         undone = (completed,) if state in self.shape.completing else ()
-        action = emit_flow(self.scope, self.region.state(state).exit)
-        freed = freed_by(self.shape, state)
-        return (*action, *stops, *undone, *freed, *self._remember(state))
-
-    def _remember(self, leaf: str) -> tuple[Stmt, ...]:
-        found: list[Stmt] = []
-        for memory, goes_on in self.lasting.remembered(leaf):
-            if goes_on:
-                found.append(Assign(f"Self.Past.{memory.last}", Ref(self.shape.literal(leaf))))
-            found.append(Assign(f"Self.Past.{memory.known}", TRUE if goes_on else FALSE))
-        return tuple(found)
+        return (*emit_flow(self.scope, self.region.state(state).exit), *undone)
 
     def _entry(self, vertex: str) -> Subprogram:
         first, then = self._work_of_entry(vertex)
         noted = self._noted(vertex, "entry")
         return Subprogram(
             f"Enter_{ada_case(vertex)}",
-            body=(*self._place(vertex), *first, self.nodes.enter(vertex), *noted, *then),
-        )
-
-    def _place(self, vertex: str) -> tuple[Stmt, ...]:
-        """The leaves that an entry sets."""
-        return tuple(
-            Assign(self.shape.at(self.held, lane), Ref(self.shape.literal(leaf)))
-            for lane, leaf in self.shape.after((Enter(vertex),)).items()
+            body=(*first, self.nodes.enter(vertex), *noted, *then),
         )
 
     def _work_of_entry(self, state: str) -> tuple[tuple[Stmt, ...], tuple[Stmt, ...]]:
-        """What the entry of a state does: its time-outs and visits; its action and completion."""
+        """What the entry of a state does: another visit; its action and completion."""
         action = emit_flow(self.scope, self.region.state(state).entry)
-        return (
-            (*self._arm(state), *self._begin_work(state)),
-            (*action, *self._complete(state)),
-        )
-
-    def _arm(self, state: str) -> tuple[Stmt, ...]:
-        found: list[Stmt] = []
-        for i in self.lasting.timed(state):
-            trigger = self.shape.timers[i - 1].trigger
-            assert isinstance(trigger, After | Every)
-            args = [Ref(f"Self.Timers ({i})"), number(trigger.executions)]
-            if isinstance(trigger, Every):
-                args.append(number(trigger.executions))
-            found.append(Do("Ravenchart.Timers.Arm", arguments(*args)))
-        return tuple(found)
+        return self._begin_work(state), (*action, *self._complete(state))
 
     def _begin_work(self, state: str) -> tuple[Stmt, ...]:
         """Another visit, in which the do activity is not done yet."""
         if state not in self.shape.working:
             return ()
-        visits = f"Self.{self.shape.visits(state)}"
+        visits = ref("Self", self.shape.visits(state))
         return (
-            Assign(visits, call("Ravenchart.Next", Ref(visits))),
-            Assign(f"Self.{self.shape.done(state)}", FALSE),
+            Assign(visits, call("Ravenchart.Next", ref(visits))),
+            Assign(ref("Self", self.shape.done(state)), FALSE),
         )
 
     def _complete(self, vertex: str) -> tuple[Stmt, ...]:
@@ -202,17 +160,17 @@ class Moving:
         state = self.region.state(vertex)
         shape = self.shape
         if vertex in shape.completing and state.is_leaf and vertex not in shape.working:
-            return (Assign(f"Self.{shape.completed(vertex)}", TRUE),)
+            return (Assign(ref("Self", shape.completed(vertex)), TRUE),)
         owner = state.parent
         if not state.final or owner is None or owner not in shape.completing:
             return ()
-        done = Assign(f"Self.{shape.completed(owner)}", TRUE)
+        done = Assign(ref("Self", shape.completed(owner)), TRUE)
         others = [r for r in self.region.state(owner).regions if r.name != state.region]
-        parts: list[Expr] = [Ref(f"Self.{shape.done(owner)}")] if owner in shape.working else []
+        parts: list[Expr] = [ref("Self", shape.done(owner))] if owner in shape.working else []
         for nested in others:
-            leaf = Ref(shape.at(self.held, shape.lane_of(Place(owner, nested.name))))
+            leaf = shape.at(self.held, shape.lane_of(Place(owner, nested.name)))
             finals = [
-                equal(leaf, Ref(shape.literal(s.name)))
+                equal(leaf, shape.literal(s.name))
                 for s in self.region.children(owner, nested.name)
                 if s.final
             ]
@@ -222,13 +180,13 @@ class Moving:
     def _leaving(self, place: Place) -> Subprogram:
         assert place.owner is not None
         shape = self.shape
-        rows: list[tuple[str, tuple[Stmt, ...]]] = []
+        rows: list[tuple[Choice, tuple[Stmt, ...]]] = []
         for child in self.region.children(place.owner, place.region):
             inner = [self.leave(Place(child.name, r.name)) for r in child.regions]
             rows.append((shape.literal(child.name), joined((*inner, *self.exit(child.name)))))
         rows += [(shape.literal(p), self.exit(p)) for p in shape.compounds.passed(place)]
         lane = shape.lane_of(place)
-        leaf = shape.at(self.held, lane)
+        leaf: Expr = shape.at(BEFORE, lane)
         if not self.region.state(place.owner).is_orthogonal:
-            leaf = f"{shape.literal(place.owner)}'({leaf})"
-        return Subprogram(_leave_name(place), body=(case_of(Ref(leaf), rows),))
+            leaf = Qualified(shape.literal(place.owner), leaf)
+        return Subprogram(_leave_name(place), body=(case_of(leaf, rows),))

@@ -16,27 +16,34 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import (
     Aspect,
-    Assign,
-    Call,
     Decl,
     EnumType,
-    Expr,
-    IfExpr,
     Object,
-    OperatorChain,
     Package,
     Param,
-    Ref,
-    Stmt,
+    RecordComponent,
+    RecordDeclaration,
     Subprogram,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    TRUE,
+    Aggregate,
+    Arg,
+    Attribute,
+    Call,
+    Expr,
+    IfExpr,
+    OperatorChain,
     both,
     call,
     equal,
-    names_in,
     number,
 )
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.statements import Assign, Stmt
+from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.emit.language.own_names import node_literal
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.model.chart.tree import Place
@@ -44,64 +51,72 @@ from ravenchart.gen.model.statechart import Lane
 
 from .shape import RegionShape
 
-NODES = "Chart.Node"
+CHART = "Chart"
+NODE = ref(CHART, "Node")
+NODES = ref(CHART, "Nodes")
+"""Of charts with several lanes: a node for each."""
 _GHOST = Aspect("Ghost")
 _NOWHERE = "Nowhere"
 _DISORDER = "Disorder"
-_NONE_ACTIVE = Ref(f"Chart.{_NOWHERE}")
-_NO_ORDER = Ref(f"Chart.{_DISORDER}")
+_NONE_ACTIVE = ref(CHART, _NOWHERE)
+_NO_ORDER = ref(CHART, _DISORDER)
 
+_ACTIVE = ref("Active")
+_AT_FIRST = ref("Active_At_First")
 _MOVED = "Moved"
 _IN_ORDER = "In_Order"
 
 
 def joined(statements: Sequence[Stmt]) -> tuple[Stmt, ...]:
-    """Exits and entries that do nothing, one after the other, as one move."""
+    """Exits, entries and claims that do nothing, one after the other, as one move.
+
+    What one of them asks for is about other lanes, which the others do not change.
+    """
     found: list[Stmt] = []
     for statement in statements:
         match (found[-1:], statement):
             case (
-                [Assign(one, Call("Moved", (active, start, via)))],
-                Assign(other, Call("Moved", (_, then, goal))),
+                [Assign(one, Call(DottedName(("Moved",)), (active, start, via, *first)))],
+                Assign(other, Call(DottedName(("Moved",)), (_, then, goal, *more))),
             ) if one == other and via == then:
-                found[-1] = Assign(one, Call("Moved", (active, start, goal)))
+                asked = dict.fromkeys(arg.value for arg in (*first, *more))
+                all_asked = (Arg(None, both(*flat([*asked]))),) if asked else ()
+                found[-1] = Assign(one, Call(_MOVED, (active, start, goal, *all_asked)))
             case _:
                 found.append(statement)
     return tuple(found)
 
 
-def node(state: str) -> Ref:
+def node(state: str) -> DottedName:
     """A state or pseudostate of the ghost."""
-    return Ref(f"Chart.{node_literal(state)}")
+    return ref(CHART, node_literal(state))
 
 
 class Nodes:
-    """The innermost active states of one region: a ghost variable for each lane."""
+    """The innermost active states of one region: a ghost variable with a part for each lane."""
 
     def __init__(self, shape: RegionShape) -> None:
         self.shape = shape
         self.region = shape.region
-        self._moves = self._asks = False
+        self._moves = self._asks = self._leaves = False
 
     def chart(self, fire: Subprogram) -> Package:
-        """The ghost package: the innermost active vertex of a configuration.
+        """The ghost package: the innermost active vertex of each lane of a configuration.
 
-        It has all leaves, and the composites and functions that ``fire`` needs: joined
-        moves pass by the others.
+        It has all leaves, and the composites that ``fire`` needs: joined moves pass by the
+        others.
         """
         shape = self.shape
         literals = [leaf for lane in shape.lanes for leaf in shape.literals(lane)]
         composites = [s.name for s in self.region.states if not shape.is_literal(s.name)]
         named = set(names_in(fire)) if composites else set()
-        composites = [name for name in composites if node(name).text in named]
+        composites = [name for name in composites if node(name) in named]
         names = tuple(node_literal(v) for v in (*literals, *composites))
-        functions: list[Decl] = []
-        before = 1
-        for lane in shape.lanes:
-            functions.append(self._innermost(lane, before))
-            before += len(shape.literals(lane))
-        nodes = EnumType("Node", (_NOWHERE, *names, _DISORDER))
-        return Package("Chart", (nodes, *functions), (_GHOST,))
+        items: list[Decl] = [EnumType("Node", (_NOWHERE, *names, _DISORDER))]
+        if not shape.single:
+            rows = tuple(RecordComponent(shape.lane_name(n), "Node") for n in shape.lanes)
+            items.append(RecordDeclaration("Nodes", rows))
+        return Package(CHART, (*items, self._innermost()), (_GHOST,))
 
     def moved(self) -> tuple[Subprogram, ...]:
         """What an exit or entry does, which none does before the region has started.
@@ -111,30 +126,35 @@ class Nodes:
         """
         if not self._moves:
             return ()
-        ready: list[Expr] = [Ref("Self.Started"), equal(Ref("Active_Node"), Ref("From_Node"))]
-        params = [Param(name, "in", NODES) for name in ("Active_Node", "From_Node", "To_Node")]
+        ready: list[Expr] = [ref("Self.Started"), equal(ref("Active_Node"), ref("From_Node"))]
+        params = [Param(name, "in", NODE) for name in ("Active_Node", "From_Node", "To_Node")]
         if self._asks:
-            ready.append(Ref(_IN_ORDER))
-            params.append(Param(_IN_ORDER, "in", "Boolean := True"))
-        goal = IfExpr(((both(*ready), Ref("To_Node")),), _NO_ORDER)
-        return (Subprogram(_MOVED, tuple(params), NODES, (_GHOST,), expression=goal),)
+            ready.append(ref(_IN_ORDER))
+            params.append(Param(_IN_ORDER, "in", "Boolean", default=TRUE))
+        goal = IfExpr(((both(*ready), ref("To_Node")),), _NO_ORDER)
+        return (Subprogram(_MOVED, tuple(params), NODE, (_GHOST,), expression=goal),)
 
-    def _innermost(self, lane: Lane, before: int) -> Subprogram:
-        """A leaf, which stands among the nodes in the order of its type; a number for provers."""
+    def _innermost(self) -> Subprogram:
+        """Leaves, which stand among the nodes in the order of their types; numbers for provers."""
         shape = self.shape
-        held = f"Self.{shape.place}"
-        leaf = call(f"{shape.states}.{shape.lane_type(lane)}'Pos", Ref(shape.at(held, lane)))
-        found: Expr = call("Node'Val", OperatorChain("+", (leaf, number(before))))
-        active: list[Expr] = [Ref("Self.Started")]
-        active += [] if lane.owner is None else flat([shape.in_state(held, lane.owner)])
-        found = IfExpr(((both(*active), found),), Ref(_NOWHERE))
+        held = shape.held
+        rows: list[Arg] = []
+        before = 1
+        for lane in shape.lanes:
+            of_lane = ref(shape.states, shape.lane_type(lane))
+            leaf = call(Attribute(of_lane, "Pos"), shape.at(held, lane))
+            found: Expr = call(Attribute("Node", "Val"), OperatorChain("+", (leaf, number(before))))
+            active: list[Expr] = [ref("Self.Started")]
+            active += [] if lane.owner is None else flat([shape.in_state(held, lane.owner)])
+            found = IfExpr(((both(*active), found),), ref(_NOWHERE))
+            rows.append(Arg(shape.lane_name(lane), found))
+            before += len(shape.literals(lane))
         params = (Param("Self", "in", "Region"),)
-        return Subprogram(f"Innermost{self._suffix(lane)}", params, "Node", expression=found)
+        if shape.single:
+            return Subprogram("Innermost", params, "Node", expression=rows[0].value)
+        return Subprogram("Innermost", params, "Nodes", expression=Aggregate(tuple(rows)))
 
-    def _suffix(self, lane: Lane) -> str:
-        return "" if self.shape.single else f"_{self.shape.lane_name(lane)}"
-
-    def _around(self, vertex: str) -> Ref:
+    def _around(self, vertex: str) -> DottedName:
         """The state around a vertex in its lane, if there is one."""
         place = self.shape.compounds.place(vertex)
         if place.owner is None or self.region.state(place.owner).is_orthogonal:
@@ -143,72 +163,80 @@ class Nodes:
 
     # --- the variables
 
-    def active(self, lane: Lane) -> Ref:
+    def _part(self, nodes: DottedName, lane: Lane) -> DottedName:
+        return nodes if self.shape.single else ref(nodes, self.shape.lane_name(lane))
+
+    def active(self, lane: Lane) -> DottedName:
         """The innermost active state of a lane."""
-        return Ref(f"Active{self._suffix(lane)}")
+        return self._part(_ACTIVE, lane)
 
     def variables(self) -> list[Decl]:
-        """One for each lane, as the configuration says."""
-        return [
-            Object(
-                self.active(lane).text,
-                NODES,
-                self.innermost(lane),
-                aspects=(_GHOST,),
-            )
-            for lane in self.shape.lanes
-        ]
+        """What is active, and where something leaves a lane at once, what was at first."""
+        of_type = NODE if self.shape.single else NODES
+        ghost = (_GHOST,)
+        found: list[Decl] = [Object(_ACTIVE, of_type, self.innermost("Self"), aspects=ghost)]
+        if self._leaves:
+            found.append(Object(_AT_FIRST, of_type, _ACTIVE, constant=True, aspects=ghost))
+        return found
 
-    def innermost(self, lane: Lane) -> Expr:
-        """The innermost active state of a lane by the region's configuration."""
-        return call(f"Chart.Innermost{self._suffix(lane)}", Ref("Self"))
+    def innermost(self, region: str) -> Expr:
+        """The innermost active states by the configuration of a region."""
+        return call(ref(CHART, "Innermost"), ref(region))
 
-    def agreed(self, lanes: Sequence[Lane] | None = None) -> Expr:
-        """What is active is as the configuration says, in these lanes or all."""
-        among = self.shape.lanes if lanes is None else lanes
-        return both(*(equal(self.active(n), self.innermost(n)) for n in among))
+    def agreed(self, region: str = "Self") -> Expr:
+        """What is active is as the configuration of a region says."""
+        return equal(_ACTIVE, self.innermost(region))
+
+    def begun(self, region: str) -> list[Expr]:
+        """The same before anything has moved."""
+        at_first = [equal(_AT_FIRST, _ACTIVE)] if self._leaves else []
+        return [self.agreed(region), *at_first]
 
     def exit(self, state: str) -> Assign:
         """The exit of a state."""
-        return Assign(self._of(state).text, self.exited(state))
-
-    def enter(self, vertex: str) -> Assign:
-        """The entry of a state."""
-        return Assign(self._of(vertex).text, self.entered(vertex))
-
-    def leave(self, place: Place) -> Assign:
-        """The exits of what is active in a region of one lane, all at once."""
-        assert place.owner is not None
-        self._moves = self._asks = True
-        active = self.active(self.shape.lane_of(place))
-        within = self.shape.in_state(f"Self.{self.shape.place}", place.owner)
-        start, goal = self.innermost(self.shape.lane_of(place)), self._inside(place)
-        return Assign(active.text, call(_MOVED, active, start, goal, within))
-
-    def stands(self, vertex: str) -> Expr:
-        """A vertex is the innermost active one of its lane."""
-        return equal(self._of(vertex), node(vertex))
-
-    def exited(self, state: str) -> Expr:
-        """The state around, where it is the innermost and nothing inside it is active."""
         lanes = self._idle(self.shape.lanes_of(state))
         return self._moved(state, (node(state), self._around(state)), lanes)
 
-    def entered(self, vertex: str) -> Expr:
-        """The state itself, where its parent is active and nothing in its own region is."""
+    def enter(self, vertex: str) -> Assign:
+        """The entry of a vertex, where its parent is active and nothing in its own region is."""
         place = self.shape.compounds.place(vertex)
         others = self._idle(self.shape.lanes_of(vertex))
         if place.owner is not None and self.region.state(place.owner).is_orthogonal:
             others = [equal(self._of(place.owner), node(place.owner)), *others]
         return self._moved(vertex, (self._around(vertex), node(vertex)), others)
 
-    def _moved(self, vertex: str, way: tuple[Ref, Ref], others: Sequence[Expr]) -> Expr:
+    def leave(self, place: Place, before: str) -> Assign:
+        """The exits of what was active ``before`` in a region of one lane, all at once."""
+        assert place.owner is not None
+        self._moves = self._asks = self._leaves = True
+        active = self.active(self.shape.lane_of(place))
+        within = self.shape.in_state(before, place.owner)
+        start = self._part(_AT_FIRST, self.shape.lane_of(place))
+        return Assign(active, call(_MOVED, active, start, self._inside(place), within))
+
+    def stands(self, vertex: str) -> Assign:
+        """The claim that a vertex is the innermost active one of its lane."""
+        return self._moved(vertex, (node(vertex), node(vertex)), ())
+
+    def empty(self, place: Place) -> Assign:
+        """The claim that nothing in a region is active."""
+        self._moves = True
+        idle = self._idle(self.lanes_inside(place))
+        self._asks |= bool(idle)
+        active, inside = self.active(self.shape.lane_of(place)), self._inside(place)
+        asked = (both(*idle),) if idle else ()
+        return Assign(active, call(_MOVED, active, inside, inside, *asked))
+
+    def _moved(
+        self, vertex: str, way: tuple[DottedName, DottedName], others: Sequence[Expr]
+    ) -> Assign:
         self._moves = True
         self._asks |= bool(others)
         asked = (both(*others),) if others else ()
-        return call(_MOVED, self._of(vertex), *way, *asked)
+        active = self._of(vertex)
+        return Assign(active, call(_MOVED, active, *way, *asked))
 
-    def _of(self, vertex: str) -> Ref:
+    def _of(self, vertex: str) -> DottedName:
         """The variable of the lane that a vertex stands in."""
         return self.active(self.shape.lane_of(self.shape.compounds.place(vertex)))
 
@@ -218,15 +246,10 @@ class Nodes:
         for lane in self.shape.lanes:
             active = self.active(lane)
             end = node(end_of_all) if lane.owner is None else _NONE_ACTIVE
-            found.append(Assign(active.text, IfExpr(((equal(active, _NO_ORDER), _NO_ORDER),), end)))
+            found.append(Assign(active, IfExpr(((equal(active, _NO_ORDER), _NO_ORDER),), end)))
         return found
 
-    def empty(self, place: Place) -> list[Expr]:
-        """Nothing in a region is active."""
-        active = self.active(self.shape.lane_of(place))
-        return [equal(active, self._inside(place)), *self._idle(self.lanes_inside(place))]
-
-    def _inside(self, place: Place) -> Ref:
+    def _inside(self, place: Place) -> DottedName:
         """The state around a region, in the lane whose leaves it holds."""
         owner = place.owner if self.shape.lane_of(place).owner != place.owner else None
         return _NONE_ACTIVE if owner is None else node(owner)

@@ -8,32 +8,35 @@ All contracts are in terms of the chart as declared.
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
-    Aspect,
+from ravenchart.gen.emit.ada.declarations import Aspect, Decl, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import (
+    OTHERS,
+    Attribute,
     CaseExpr,
-    Comment,
-    Decl,
+    Choice,
     Expr,
     ForAll,
     ForSome,
     IfExpr,
-    Old,
+    Indexed,
     OperatorChain,
-    Param,
     Prefix,
-    Ref,
-    Subprogram,
+    Range,
     both,
     call,
     equal,
     member,
     number,
+    old,
+    plain,
 )
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.language.events import name_of
 
-from .deferring import FREED
-from .lanes import followed
+from .deferring import due, is_taken
+from .lanes import LIST, followed, is_only
 from .lasting import Lasting
 from .safety import Safety
 from .selection import is_selected
@@ -43,35 +46,37 @@ from .working import notices
 
 def operations(shape: RegionShape) -> list[Decl]:
     self_out = Param("Self", "in out", "Region")
-    held = f"Self.{shape.place}"
+    held = shape.held
     safety = Safety(shape)
     same = both(
-        equal(Ref(held), Old(held)),
-        equal(Ref("Self.Started"), Old("Self.Started")),
+        equal(held, old(held)),
+        equal(ref("Self.Started"), old("Self.Started")),
         *safety.unchanged(),
     )
     items: list[Decl] = []
     if shape.timers:
-        ticked = call("Ravenchart.Timers.Ticked", Old("Self.Timers", " (I)"))
-        nearer = ForAll("I", "Self.Timers'Range", equal(Ref("Self.Timers (I)"), ticked))
+        ticked = call("Ravenchart.Timers.Ticked", _TIMER_BEFORE)
+        nearer = ForAll("I", _EACH_TIMER, equal(Indexed("Self.Timers", ref("I")), ticked))
         items += [
             Subprogram("Tick", (self_out,), aspects=(Aspect("Post", both(same, nearer)),)),
             Comment("One more execution: the time-outs come nearer."),
         ]
     items += notices(shape, same)
     if shape.region.events():
-        rows_of = tuple((shape.event(e), Ref(f"On_{ada_case(e)}")) for e in shape.region.events())
+        rows_of: list[tuple[Choice, Expr]] = [
+            (shape.event(e), ref(f"On_{ada_case(e)}")) for e in shape.region.events()
+        ]
         if len(rows_of) < len(shape.component.events):
-            rows_of += (("others", Ref("Conditions")),)
+            rows_of.append((OTHERS, ref("Conditions")))
         items += [
             Subprogram(
                 "To_Occurrence",
                 (Param("Item", "in", "Event"),),
                 "Occurrence",
-                expression=CaseExpr(Ref(name_of(shape.component, "Item")), rows_of),
+                expression=CaseExpr(name_of(shape.component, "Item"), rows_of),
             ),
         ]
-    due = equal(equal(Ref("Now"), Ref("Start_Of_Region")), Prefix("not", Ref("Self.Started")))
+    due = equal(equal(ref("Now"), ref("Start_Of_Region")), Prefix("not", ref("Self.Started")))
     post = [same, *_taken(shape)] if shape.polls_out else []
     items += [
         Subprogram(
@@ -81,7 +86,7 @@ def operations(shape: RegionShape) -> list[Decl]:
         ),
         Comment(_POLLS if shape.polls_more else _POLLS_TIME),
     ]
-    fired = "Firing_List" if shape.listed else "Selection"
+    fired = LIST if shape.listed else "Selection"
     params = shape.step_params()
     items += [
         Subprogram(
@@ -94,7 +99,7 @@ def operations(shape: RegionShape) -> list[Decl]:
             ),
             aspects=(
                 Aspect("Pre", both(*safety.kept(), due)),
-                Aspect("Post", both(Ref("Self.Started"), *safety.kept(), *_stepped(shape))),
+                Aspect("Post", both(ref("Self.Started"), *safety.kept(), *_stepped(shape))),
             ),
         ),
         Comment("One run-to-completion step."),
@@ -111,51 +116,46 @@ _POLLS = (
 
 def _next(shape: RegionShape) -> list[Expr]:
     """Which occurrence comes next, once the region has started."""
-    now = Ref("Now")
+    now = ref("Now")
     rows: list[tuple[Expr, Expr]] = [
         (
-            Old(f"Self.{shape.completed(s)}"),
-            equal(now, Ref(f"Completion_Of_{ada_case(s)}")),
+            old(ref("Self", shape.completed(s))),
+            equal(now, ref(f"Completion_Of_{ada_case(s)}")),
         )
         for s in shape.completing
     ]
     if shape.timers:
         names = [f"Expiry_Of_{ada_case(t.name)}" for t in shape.timers]
-        due = ForSome("I", "Self.Timers'Range", call(_IS_DUE, Old("Self.Timers", " (I)")))
-        rows.append((due, member(now, " .. ".join(dict.fromkeys((names[0], names[-1]))))))
+        due = ForSome("I", _EACH_TIMER, call(_IS_DUE, _TIMER_BEFORE))
+        first, last = ref(names[0]), ref(names[-1])
+        rows.append((due, member(now, first if first == last else Range(first, last))))
     if shape.deferring:
         rows.append(_released(shape))
-    rest = equal(now, Ref("Conditions"))
+    rest = equal(now, ref("Conditions"))
     polled = IfExpr(tuple(rows), rest) if rows else rest
-    return [IfExpr(((Ref("Self.Started"), polled),), None)]
+    return [IfExpr(((ref("Self.Started"), polled),), None)]
 
 
-_IS_DUE = "Ravenchart.Timers.Is_Due"
+_IS_DUE = ref("Ravenchart.Timers.Is_Due")
+_EACH_TIMER = Attribute("Self.Timers", "Range")
+_TIMER_BEFORE = Indexed(old("Self.Timers"), ref("I"))
 
 
 def _released(shape: RegionShape) -> tuple[Expr, Expr]:
     """When an event is released from deferral, it comes next."""
-    each = f"1 .. {shape.region.deferral_depth}"
-    kept = Old("Self.Deferred")
-    freed = Old(FREED)
-    released = call("Is_Released", kept, Ref(f"Self.{shape.place}"), freed, Ref("I"))
-    item = call("Deferrals.Element", kept, Ref("I"))
-    comes = [equal(Ref("Now"), call("To_Occurrence", item))]
-    comes += [equal(Ref("Item"), item)] if shape.takes_item else []
-    comes.append(equal(Ref(FREED), call("Freed_Without", Ref("I"), freed)))
-    then = IfExpr(((released, both(*comes)),), None)
-    return ForSome("I", each, released), ForAll("I", each, then)
+    comes = equal(ref("Now"), call("To_Occurrence", ref("Item")))
+    return OperatorChain(">", (due(shape), number(0))), both(is_taken(shape), comes)
 
 
 def _taken(shape: RegionShape) -> list[Expr]:
     """What is taken is gone, and nothing else."""
     facts: list[Expr] = []
     for state in shape.completing:
-        flag = f"Self.{shape.completed(state)}"
-        other = OperatorChain("/=", (Ref("Now"), Ref(f"Completion_Of_{ada_case(state)}")))
-        facts.append(equal(Ref(flag), both(Old(flag), other)))
+        flag = ref("Self", shape.completed(state))
+        other = OperatorChain("/=", (ref("Now"), ref(f"Completion_Of_{ada_case(state)}")))
+        facts.append(equal(flag, both(old(flag), other)))
     if shape.timers:
-        times = Old("Self.Timers"), Ref("Self.Timers")
+        times = old("Self.Timers"), ref("Self.Timers")
         rows = [
             (
                 f"Expiry_Of_{ada_case(t.name)}",
@@ -163,29 +163,29 @@ def _taken(shape: RegionShape) -> list[Expr]:
             )
             for i, t in enumerate(shape.timers, 1)
         ]
-        facts.append(CaseExpr(Ref("Now"), (*rows, ("others", equal(*times)))))
+        facts.append(CaseExpr(ref("Now"), (*rows, (OTHERS, equal(*times)))))
     return facts
 
 
 def _stepped(shape: RegionShape) -> list[Expr]:
     """What a step achieves, in terms of the chart as declared."""
-    held = f"Self.{shape.place}"
-    kept = equal(Ref(held), Old(held))
-    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
-    first = "Fired.Items (1)" if shape.listed else "Fired"
-    chosen = is_selected(shape, first, shape.lanes[-1], Self=Old("Self"))
-    started = equal(Ref(first), Ref(START))
+    held = shape.held
+    kept = equal(held, old(held))
+    begun = equal(ref("Now"), ref("Start_Of_Region"))
+    first = Indexed("Fired.Items", plain(1)) if shape.listed else ref("Fired")
+    chosen = is_selected(shape, first, shape.lanes[-1], Self=old("Self"))
+    started = equal(first, ref(START))
     if not shape.listed:
-        none = equal(Ref("Fired"), Ref("None"))
-        moved = both(equal(Ref(held), shape.target("Fired")), *Lasting(shape).fired("Fired"))
+        none = equal(ref("Fired"), ref("None"))
+        moved = both(equal(held, shape.target("Fired")), *Lasting(shape).fired("Fired"))
         return [IfExpr(((begun, started),), chosen), IfExpr(((none, kept),), moved)]
-    facts: list[Expr] = [IfExpr(((equal(Ref("Fired.Count"), number(0)), kept),), None)]
+    facts: list[Expr] = [IfExpr(((equal(ref("Fired.Count"), number(0)), kept),), None)]
     if shape.passes:
-        rests = equal(call("Segments_Left", Old(held)), number(0))
-        still = equal(call("Segments_Left", Ref(held)), number(0))
+        rests = equal(call("Segments_Left", old(held)), number(0))
+        still = equal(call("Segments_Left", held), number(0))
         facts.append(IfExpr(((rests, still),), None))
     if not shape.single:
         return [*facts, followed(shape)]
-    only = call("Is_Only", Ref("Fired"), Ref(first))
-    some = IfExpr(((OperatorChain(">", (Ref("Fired.Count"), number(0))), only),), None)
+    only = is_only(first)
+    some = IfExpr(((OperatorChain(">", (ref("Fired.Count"), number(0))), only),), None)
     return [*facts, IfExpr(((begun, started),), chosen), some]

@@ -7,40 +7,41 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ravenchart.gen.emit.ada.declarations import (
+    Decl,
+    EnumType,
+    IndexConstrained,
+    RecordComponent,
+    RecordDeclaration,
+    SubtypeDeclaration,
+    UseType,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    FALSE,
+    Range,
+    RangeConstrained,
+    plain,
+    up_to,
+)
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import (
     ada_case,
-    component_name,
     default_value,
     type_name,
     value,
     where,
 )
-from ravenchart.gen.emit.ada.syntax import (
-    FALSE,
-    Aggregate,
-    Arg,
-    Comment,
-    Decl,
-    EnumType,
-    GenericInstance,
-    PlainType,
-    RecordDeclaration,
-    Ref,
-    UseType,
-    arguments,
-    number,
-)
-from ravenchart.gen.emit.ada.syntax import RecordComponent as Field
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.components.packages import reading_type
-from ravenchart.gen.emit.language.events import null_event
 
-from .deferring import freed_field, freed_type
+from .deferring import STORE, deferral_types
 from .guards import guard_operators, guards_of
+from .lasting import TIME_OUTS, domain_types, spans_of_states
 from .safety import Safety
 from .shape import START, RegionShape
 from .working import done_types, work_fields
 
-TIMED = ("Ravenchart.Timers.Timer", "Ravenchart.Timers.Timer_Array")
+TIMED = (ref("Ravenchart.Timers.Timer"), ref("Ravenchart.Timers.Timer_Array"))
 """The types whose equality the contracts of time-outs use."""
 
 
@@ -54,10 +55,8 @@ def region_types(shape: RegionShape) -> list[Decl]:
         EnumType("Occurrence", shape.occurrences()),
         Comment(f"[{path}.transitions] in order of precedence, innermost source first"),
         EnumType("Selection", (START, *names, "None"), _places(shape)),
-        PlainType(
-            "Firing", f"Selection range {START} .. {names[-1] if names else 'None'}", subtype=True
-        ),
-        PlainType("Transition", _selection_of(names), subtype=True),
+        SubtypeDeclaration("Firing", _selection_of((START, *(names or ("None",))))),
+        SubtypeDeclaration("Transition", _selection_of(names)),
     ]
     if not shape.single:
         items += _lane_types(shape)
@@ -74,19 +73,20 @@ def _places(shape: RegionShape) -> tuple[Comment, ...]:
     )
 
 
-def _selection_of(names: Sequence[str]) -> str:
+def _selection_of(names: Sequence[str]) -> RangeConstrained:
     """The range of these transitions; a chart without any has None, which is never enabled."""
     first, last = (names[0], names[-1]) if names else ("None", "None")
-    return f"Selection range {first} .. {last}"
+    return RangeConstrained("Selection", Range(ref(first), ref(last)))
 
 
 def _use_types(shape: RegionShape) -> list[Decl]:
     """The types whose operators the declared chart uses."""
     region = shape.region
-    own = {f"{shape.states}.{shape.lane_type(n)}" for n in shape.lanes}
+    own = {ref(shape.states, shape.lane_type(n)) for n in shape.lanes}
     if not shape.single:
         own.add(shape.place_type)
-    ordered = [f"{shape.states}.Leaf", *sorted(own - {f"{shape.states}.Leaf"})]
+    leaf = ref(shape.states, "Leaf")
+    ordered = [leaf, *sorted(own - {leaf})]
     return [
         UseType(n)
         for n in (
@@ -100,12 +100,12 @@ def _use_types(shape: RegionShape) -> list[Decl]:
 
 def _lane_types(shape: RegionShape) -> list[Decl]:
     items: list[Decl] = []
-    fields: list[Field] = []
+    fields: list[RecordComponent] = []
     for lane in shape.busy_lanes:
         own = [f.literal for f in shape.firings if f.lane == lane]
         name = shape.lane_name(lane)
-        items.append(PlainType(f"{name}_Transition", _selection_of(own), subtype=True))
-        fields.append(Field(name, "Selection", Ref("None")))
+        items.append(SubtypeDeclaration(shape.transitions_of(lane), _selection_of(own)))
+        fields.append(RecordComponent(name, "Selection", ref("None")))
     items += [
         Comment("What one occurrence fires: at most one transition in each lane."),
         RecordDeclaration("Choice", tuple(fields)),
@@ -118,7 +118,7 @@ def _records(shape: RegionShape) -> list[Decl]:
     items: list[Decl] = []
     if region.writes:
         rows = tuple(
-            Field(
+            RecordComponent(
                 ada_case(d.name),
                 type_name(shape.system, d.type),
                 value(shape.system, d.type, d.initial),
@@ -132,64 +132,47 @@ def _records(shape: RegionShape) -> list[Decl]:
         ]
     if shape.inputs:
         rows = tuple(
-            Field(ada_case(n), reading_type(shape.system, component, n)) for n in shape.inputs
+            RecordComponent(ada_case(n), reading_type(shape.system, component, n))
+            for n in shape.inputs
         )
         items += [
             Comment("What it reads, copied in once per execution."),
             RecordDeclaration("Inputs", rows),
         ]
     if shape.has_box:
-        sent: list[Field] = [Field("Raised", "Event_Lists.List")] if region.raises else []
+        sent: list[RecordComponent] = (
+            [RecordComponent("Raised", "Event_Lists.List")] if region.raises else []
+        )
         for port in component.outputs():
             if port.name in region.sends:
                 name = ada_case(port.name)
                 of_type = type_name(shape.system, port.type)
                 if not port.is_void:
-                    sent.append(Field(name, of_type, default_value(shape.system, port.type)))
-                sent.append(Field(f"{name}_Sent", "Boolean", FALSE))
+                    sent.append(
+                        RecordComponent(name, of_type, default_value(shape.system, port.type))
+                    )
+                sent.append(RecordComponent(f"{name}_Sent", "Boolean", FALSE))
         items += [
             Comment("What one step sends and raises."),
             RecordDeclaration("Outbox", tuple(sent)),
         ]
     if shape.memories:
-        past: list[Field] = []
+        past: list[RecordComponent] = []
         for one in shape.memories:
             first = next(iter(shape.literals_in(one.place)))
-            past.append(Field(one.last, shape.memory_type(one), Ref(shape.literal(first))))
-            past.append(Field(one.known, "Boolean", FALSE))
+            past.append(RecordComponent(one.last, shape.memory_type(one), shape.literal(first)))
+            past.append(RecordComponent(one.known, "Boolean", FALSE))
         items += [
             Comment("What histories ask for: the last leaf left in a region, if any."),
             RecordDeclaration("Memory", tuple(past)),
         ]
+    if shape.timers:
+        each = up_to(plain(len(shape.timers)))
+        timers = IndexConstrained("Ravenchart.Timers.Timer_Array", each)
+        items.append(SubtypeDeclaration(TIME_OUTS, timers))
+    items += [*done_types(shape), *domain_types(shape)]
     if shape.deferring:
-        items += [
-            GenericInstance(
-                "Deferrals",
-                "Ravenchart.Event_Lists",
-                arguments(
-                    Event=Ref(f"{component_name(component)}.Event"),
-                    Null_Event=null_event(component),
-                    Capacity=number(region.deferral_depth),
-                ),
-            ),
-            UseType("Deferrals.List"),
-            *freed_type(shape),
-        ]
-    if shape.listed:
-        most = shape.most_firings
-        none = Aggregate((Arg("others", Ref("None")),))
-        items += [
-            PlainType("Firing_Array", f"array (1 .. {most}) of Selection"),
-            Comment("What one step has fired, in order; None behind the last."),
-            RecordDeclaration(
-                "Firing_List",
-                (
-                    Field("Count", f"Natural range 0 .. {most}", number(0)),
-                    Field("Items", "Firing_Array", none),
-                ),
-            ),
-        ]
-    items += done_types(shape)
+        items += deferral_types(shape, spans_of_states(shape))
     items += [
         Comment("The region's own state."),
         RecordDeclaration("Region", _region_fields(shape)),
@@ -197,21 +180,19 @@ def _records(shape: RegionShape) -> list[Decl]:
     return items
 
 
-def _region_fields(shape: RegionShape) -> tuple[Field, ...]:
+def _region_fields(shape: RegionShape) -> tuple[RecordComponent, ...]:
     rows = [
-        Field("Started", "Boolean", FALSE),
-        Field(shape.place, shape.place_type, shape.initial() if shape.single else None),
+        RecordComponent("Started", "Boolean", FALSE),
+        RecordComponent(shape.place, shape.place_type, shape.initial() if shape.single else None),
     ]
     if shape.memories:
-        rows.append(Field("Past", "Memory"))
+        rows.append(RecordComponent("Past", "Memory"))
     if shape.timers:
-        rows.append(Field("Timers", f"Ravenchart.Timers.Timer_Array (1 .. {len(shape.timers)})"))
-    rows += [Field(shape.completed(s), "Boolean", FALSE) for s in shape.completing]
+        rows.append(RecordComponent("Timers", TIME_OUTS))
+    rows += [RecordComponent(shape.completed(s), "Boolean", FALSE) for s in shape.completing]
     rows += work_fields(shape)
     if shape.deferring:
-        rows.append(Field("Deferred", "Deferrals.List"))
-        rows.append(freed_field())
-        rows.append(Field("Lost", "Boolean", FALSE))
+        rows.append(RecordComponent("Deferred", STORE))
     if shape.region.writes:
-        rows.append(Field("Data", "Variables"))
+        rows.append(RecordComponent("Data", "Variables"))
     return tuple(rows)

@@ -10,33 +10,37 @@ Exits and entries have no contract: gnatprove inlines them, so the proof of `Fir
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
-    Aggregate,
+from ravenchart.gen.emit.ada.declarations import (
     Aspect,
+    Decl,
+    Object,
+    Param,
+    Subprogram,
+    SubtypeDeclaration,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    BOX,
+    OTHERS,
+    TRUE,
     Call,
     CaseExpr,
-    Comment,
-    Decl,
     Expr,
     IfExpr,
-    Object,
-    Old,
-    Param,
-    PlainType,
-    Pragma,
     Prefix,
-    Ref,
-    Subprogram,
+    all_else,
     both,
     call,
     equal,
-    names_in,
+    old,
 )
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Comment, Pragma
+from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.emit.language.compound import Firing
 from ravenchart.gen.emit.language.places import flat
 from ravenchart.gen.emit.language.terms import Scope, emit_expression, operators_in
@@ -73,7 +77,7 @@ class Safety:
             return []
         items: list[Decl] = []
         if self.has_data:
-            items.append(Object(_INITIAL, "Variables", Ref("(others => <>)"), constant=True))
+            items.append(Object(_INITIAL, "Variables", all_else(BOX), constant=True))
         for name, function in zip(self.safe.invariants, self._invariants, strict=True):
             told = f"[{self.shape.component.name}.{name}] the condition of `never` is false."
             items += [function, Comment(told)]
@@ -84,8 +88,8 @@ class Safety:
             self._is_kept,
             Comment("The region between steps; before the first one its data are initial."),
         ]
-        kept = Aspect("Predicate", call(_KEPT, Ref(_SAFE_REGION)))
-        items.append(PlainType(_SAFE_REGION, "Region", subtype=True, aspects=(kept,)))
+        kept = Aspect("Predicate", call(_KEPT, ref(_SAFE_REGION)))
+        items.append(SubtypeDeclaration(_SAFE_REGION, "Region", aspects=(kept,)))
         if self._guards is not None:
             items += [self._guards, Comment(_GUARDS)]
         return items
@@ -128,23 +132,23 @@ class Safety:
 
     @cached_property
     def _is_safe(self) -> Subprogram:
-        parts = [_of(function, "") for function in self._invariants]
-        parts += [] if self._facts is None else [_of(self._facts, "")]
+        parts = [_of(function) for function in self._invariants]
+        parts += [] if self._facts is None else [_of(self._facts)]
         safe = both(*parts)
         return Subprogram("Is_Safe", self._place_and_data(safe), "Boolean", expression=safe)
 
     @cached_property
     def _is_kept(self) -> Subprogram:
-        parts: list[Expr] = [_of(function, "Self.") for function in self._invariants]
+        parts: list[Expr] = [_of(function, "Self") for function in self._invariants]
         started: list[tuple[Expr, Expr]] = []
         if self._facts is not None:
-            started.append((Ref("Self.Started"), _of(self._facts, "Self.")))
+            started.append((ref("Self.Started"), _of(self._facts, "Self")))
         if self.has_data:
-            first = equal(Ref("Self.Data"), Ref(_INITIAL))
+            first = equal(ref("Self.Data"), ref(_INITIAL))
             if started:
                 parts.append(IfExpr(tuple(started), first))
             else:
-                parts.append(IfExpr(((Prefix("not", Ref("Self.Started")), first),), None))
+                parts.append(IfExpr(((Prefix("not", ref("Self.Started")), first),), None))
         return Subprogram(
             _KEPT, (Param("Self", "in", "Region"),), "Boolean", expression=both(*parts)
         )
@@ -154,7 +158,7 @@ class Safety:
         rows = [(f.literal, said) for f in self.shape.firings if (said := self._guard(f))]
         if not rows:
             return None
-        choice = CaseExpr(Ref("T"), (*((name, both(*flat(s))) for name, s in rows), _OTHERS))
+        choice = CaseExpr(ref("T"), (*((name, both(*flat(s))) for name, s in rows), _OTHERS))
         params = used([DATA, Param("Ins", "in", "Inputs"), ITEM], choice)
         return Subprogram(
             "Guards_Hold", (Param("T", "in", "Firing"), *params), "Boolean", expression=choice
@@ -181,19 +185,19 @@ class Safety:
         for firing in self.shape.firings:
             if self._is_alone(firing):
                 lanes = self.shape.busy_lanes[: self.shape.busy_lanes.index(firing.lane)]
-                none = [equal(Ref(f"C.{self.shape.lane_name(n)}"), Ref("None")) for n in lanes]
-                own = Ref(f"C.{self.shape.lane_name(firing.lane)}")
-                said.append(IfExpr(((equal(own, Ref(firing.literal)), both(*none)),), None))
+                none = [equal(ref("C", self.shape.lane_name(n)), ref("None")) for n in lanes]
+                own = ref("C", self.shape.lane_name(firing.lane))
+                said.append(IfExpr(((equal(own, ref(firing.literal)), both(*none)),), None))
         return tuple(Pragma("Assert", (one,)) for one in said)
 
     @cached_property
     def _scope(self) -> Scope:
         """Conditions ask for the region's own states and data."""
 
-        def variable(name: str) -> str:
+        def variable(name: str) -> DottedName:
             if name.lower() == self.region.name.lower():
-                return self.shape.place
-            return f"Data.{ada_case(name)}"
+                return ref(self.shape.place)
+            return ref("Data", ada_case(name))
 
         return replace(self.shape.scope("Data"), variable=variable)
 
@@ -214,7 +218,7 @@ class Safety:
             case _:
                 return expression
 
-    def operators(self) -> set[str]:
+    def operators(self) -> set[DottedName]:
         """The runtime's types whose operators the declared form uses."""
         if self.safe is None:
             return set()
@@ -230,20 +234,20 @@ class Safety:
             return [], []
         first: list[Expr] = []
         if self.has_data:
-            first.append(equal(Ref("Self.Data"), Ref(_INITIAL)))
+            first.append(equal(ref("Self.Data"), ref(_INITIAL)))
         return first, [*self.holds(), *self.guarded(chosen)]
 
     def holds(self) -> list[Expr]:
         """That the region is safe, in the middle of a step too."""
-        return [] if self.safe is None else [_of(self._is_safe, "Self.")]
+        return [] if self.safe is None else [_of(self._is_safe, "Self")]
 
     def guarded(self, chosen: str) -> list[Expr]:
         """That the guard of a transition holds."""
         if self.safe is None or self._guards is None:
             return []
         names = [p.name for p in self._guards.params[1:]]
-        args = (Ref("Self.Data" if n == "Data" else n) for n in names)
-        return [call("Guards_Hold", Ref(chosen), *args)]
+        args = (ref("Self.Data" if n == "Data" else n) for n in names)
+        return [call("Guards_Hold", ref(chosen), *args)]
 
     def reads(self) -> set[str]:
         """The parameters of `Guards_Hold`, as `Fire` must have them."""
@@ -253,13 +257,13 @@ class Safety:
 
     def kept(self) -> list[Expr]:
         """That a region is as instances keep it."""
-        return [] if self.safe is None else [call(_KEPT, Ref("Self"))]
+        return [] if self.safe is None else [call(_KEPT, ref("Self"))]
 
     def unchanged(self) -> list[Expr]:
         """That data are as before: what no behaviour does to them."""
         if self.safe is None or not self.has_data:
             return []
-        return [equal(Ref("Self.Data"), Old("Self.Data"))]
+        return [equal(ref("Self.Data"), old("Self.Data"))]
 
 
 _SAFE_REGION = "Safe_Region"
@@ -270,31 +274,17 @@ _GUARDS = (
     "The guards of transitions and segments; True where something else may have fired before in "
     "the same step."
 )
-_OTHERS = ("others", Ref("True"))
+_OTHERS = (OTHERS, TRUE)
 
 
 def used(params: Sequence[Param], expression: Expr) -> tuple[Param, ...]:
     """The parameters that an expression names."""
-    named = {text.partition(".")[0].partition("'")[0] for text in names_in(expression)}
-    named |= {
-        text.partition(".")[0] for one in _aggregates(expression) if (text := one.base) is not None
-    }
+    named = {name.first for name in names_in(expression)}
     return tuple(p for p in params if p.name in named)
 
 
-def _aggregates(construct: object) -> Iterable[Aggregate]:
-    if isinstance(construct, Aggregate):
-        yield construct
-    if isinstance(construct, Ref | str) or construct is None:
-        return
-    slots = getattr(construct, "__slots__", ())
-    parts = construct if isinstance(construct, tuple) else [getattr(construct, s) for s in slots]
-    for part in parts:
-        yield from _aggregates(part)
-
-
-def _of(function: Subprogram, prefix: str) -> Call | Ref:
-    """A call with the parameters' own names, those of a region's components behind a prefix."""
+def _of(function: Subprogram, *within: str) -> Call | DottedName:
+    """A call with the parameters' own names, of the components of ``within`` if that is given."""
     if not function.params:
-        return Ref(function.name)
-    return call(function.name, *(Ref(f"{prefix}{p.name}") for p in function.params))
+        return ref(function.name)
+    return call(function.name, *(ref(*within, p.name) for p in function.params))

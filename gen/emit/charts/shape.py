@@ -6,25 +6,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
-from ravenchart.gen.emit.ada.naming import ada_case, component_name, region_package
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import Param
+from ravenchart.gen.emit.ada.expressions import (
+    FALSE,
     Arg,
-    Do,
     Expr,
-    Old,
-    Param,
-    Ref,
-    Stmt,
-    arguments,
+    StringLiteral,
     both,
     call,
     chain,
-    equal,
-    member,
+    old,
+    one_of,
 )
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
+from ravenchart.gen.emit.ada.naming import ada_case, component_name, region_package
+from ravenchart.gen.emit.ada.statements import Stmt, do
 from ravenchart.gen.emit.language.compound import PASSED, TOP, EntryStep, Firing, FiringKind
 from ravenchart.gen.emit.language.events import carries, event_value
 from ravenchart.gen.emit.language.own_names import event_literal, lane_name
@@ -67,8 +66,7 @@ TYPES = frozenset(
         *("safe_region", "initial_data"),
         *("occurrence", "selection", "firing", "transition", "choice", "domain", "memory", "chart"),
         *("variables", "inputs", "outbox", "region", "item"),
-        *("firing_list", "firing_array", "done_states", "freed_events"),
-        "deferrals",
+        *("firings", "deferrals", "done_states", "time_outs"),
     )
 )
 """What hides an event of the same name inside a region's package."""
@@ -141,6 +139,10 @@ class RegionShape(Places):
         """Its component of a choice."""
         return "Top" if lane.owner is None else lane_name(lane.name)
 
+    def transitions_of(self, lane: Lane) -> str:
+        """The subtype of a lane's transitions, where there are several lanes."""
+        return f"{self.lane_name(lane)}_Transition"
+
     def lane_of(self, place: Place) -> Lane:
         """The lane whose leaves a region holds."""
         if place.owner is None:
@@ -179,6 +181,11 @@ class RegionShape(Places):
     # --- steps
 
     @cached_property
+    def held(self) -> DottedName:
+        """The configuration in the region's own state."""
+        return ref("Self", self.place)
+
+    @cached_property
     def deferring(self) -> bool:
         """Does a state defer events?"""
         return any(s.defers for s in self.region.states)
@@ -215,9 +222,9 @@ class RegionShape(Places):
         found = {state for _, state in self.component.completing(self.region.name)}
         return tuple(s.name for s in self.region.states if s.name in found)
 
-    def done(self, state: str) -> str:
+    def done(self, state: str) -> DottedName:
         """The component that says that a do activity of an active state is done."""
-        return f"Done_In.{ada_case(state)}"
+        return ref("Done_In", ada_case(state))
 
     def visits(self, state: str) -> str:
         """The component that counts the entries of a state with a do activity."""
@@ -225,17 +232,17 @@ class RegionShape(Places):
 
     def is_complete(self, state: str) -> Expr | None:
         """Has an active state completed? None: always."""
-        parts = self.finals(state, f"Self.{self.place}")
-        parts += [Ref(f"Self.{self.done(state)}")] if state in self.working else []
+        parts = self.finals(state, self.held)
+        parts += [ref("Self", self.done(state))] if state in self.working else []
         return both(*flat(parts)) if parts else None
 
-    def finals(self, state: str, holder: str) -> list[Expr]:
+    def finals(self, state: str, holder: Named) -> list[Expr]:
         """For each region of a state: is it in a final state?"""
         parts: list[Expr] = []
         for nested in self.region.state(state).regions:
             finals = [s for s in self.region.children(state, nested.name) if s.final]
             inside = [self.in_state(holder, s.name) for s in finals]
-            parts.append(chain("or else", inside, Ref("False")))
+            parts.append(chain("or else", inside, FALSE))
         return parts
 
     @property
@@ -252,14 +259,14 @@ class RegionShape(Places):
         """The profile of Poll; a deferred event comes with its value."""
         mode = "in out" if self.polls_out else "in"
         params = [Param("Self", mode, "Region"), Param("Now", "out", "Occurrence")]
-        if self.deferring and self.takes_item:
-            params.append(ITEM._replace(mode="out"))
+        if self.deferring:
+            params.append(replace(ITEM, mode="out"))
         return tuple(params)
 
-    def compared_in(self, expressions: Iterable[m.Expression]) -> set[str]:
+    def compared_in(self, expressions: Iterable[m.Expression]) -> set[DottedName]:
         """The types of other regions' states that expressions compare."""
         compared = compared_states(self.component, expressions)
-        return {name for name in compared if not name.startswith(f"{self.states}.")}
+        return {name for name in compared if name.first != self.states}
 
     @cached_property
     def safe(self) -> SafeRegion | None:
@@ -279,12 +286,12 @@ class RegionShape(Places):
         """In a program for simulation: say that a behaviour is executed."""
         if not self.noted:
             return ()
-        return (Do("Ravenchart.Steps.Note", arguments(Ref(f'"{text}"'))),)
+        return (do("Ravenchart.Steps.Note", StringLiteral(text)),)
 
     # --- packages and types
 
     @property
-    def package(self) -> str:
+    def package(self) -> DottedName:
         """Full name of the region's package."""
         return region_package(self.system, self.component, self.region)
 
@@ -310,12 +317,12 @@ class RegionShape(Places):
         """The memory of a region that has one."""
         return next(one for one in self.memories if one.place == place)
 
-    def memory_type(self, memory: HistoryMemory) -> str:
+    def memory_type(self, memory: HistoryMemory) -> DottedName:
         """The type of its last leaf."""
         owner = self.region.state(memory.place.owner or "")
         if owner.is_orthogonal:
-            return f"{self.states}.{ada_case(memory.place.region)}_Leaf"
-        return f"{self.states}.{ada_case(owner.name)}"
+            return ref(self.states, f"{ada_case(memory.place.region)}_Leaf")
+        return ref(self.states, ada_case(owner.name))
 
     # --- occurrences
 
@@ -372,33 +379,23 @@ class RegionShape(Places):
     def _enabled_when(self, firing: Firing) -> Expr:
         scope = self.scope("Self.Data")
         triggers = self.triggers(firing)
-        now = Ref("Now")
-        parts: list[Expr] = [
-            equal(now, Ref(triggers[0]))
-            if len(triggers) == 1
-            else member(now, " | ".join(triggers))
-        ]
+        parts: list[Expr] = [one_of(ref("Now"), triggers)]
         whens = (t for t in firing.triggers if isinstance(t, When))
         parts += [emit_expression(scope, when.condition) for when in whens]
         if firing.kind is FiringKind.RESTORE:
             memory = self.memory(self.compounds.place(firing.sources[0]))
-            parts.append(Ref(f"Self.Past.{memory.known}"))
+            parts.append(ref("Self.Past", memory.known))
         parts += [emit_expression(scope, guard) for guard in firing.guards]
         if len(firing.sources) > 1:
             parts += [p for s in firing.sources if (p := self.is_complete(s)) is not None]
         return both(*flat(parts))
 
-    def deferred_item(self, firing: Firing) -> Ref:
-        """What a deferral keeps: the event with its value, where events have one."""
-        (event,) = firing.triggers
-        assert isinstance(event, str)
-        return Ref("Item" if self.takes_item else self.event(event))
-
-    def event(self, event: str) -> str:
+    def event(self, event: str) -> DottedName:
         """The event as the region's package names it."""
         name = event_literal(event)
-        hidden = name.lower() in TYPES or name.lower().endswith("_transition")
-        return f"{component_name(self.component)}.{name}" if hidden else name
+        types = {self.transitions_of(lane).lower() for lane in self.busy_lanes}
+        hidden = name.lower() in TYPES or name.lower() in types
+        return ref(component_name(self.component), name) if hidden else ref(name)
 
     # --- what it reads
 
@@ -422,7 +419,8 @@ class RegionShape(Places):
     def fires_with_item(self) -> bool:
         """Does a behaviour ask for the event's value, or is the event kept?"""
         flows = (e for flow in flows_of(self.region) for e in expressions_in(flow))
-        return carries(self.component) and (any(map(asks_event, flows)) or self.deferring)
+        asks = carries(self.component) and any(map(asks_event, flows))
+        return asks or self.deferring
 
     @cached_property
     def situation(self) -> tuple[Param, ...]:
@@ -452,8 +450,8 @@ class RegionShape(Places):
 
     def target(self, chosen: str) -> Expr:
         """A call of Target over the region's state before a call."""
-        own = (Old(f"Self.{p.name}") for p in self.target_params())
-        return call("Target", Ref(chosen), *own)
+        own = (old(ref("Self", p.name)) for p in self.target_params())
+        return call("Target", ref(chosen), *own)
 
     def step_params(self) -> tuple[Param, ...]:
         """The profile of Step and Fire, without what was chosen."""
@@ -470,9 +468,8 @@ class RegionShape(Places):
         """Names in guards (``data`` = Data) and in behaviours (``data`` = Self.Data)."""
         writes = {n.lower() for n in self.region.writes}
 
-        def variable(name: str) -> str:
-            prefix = data if name.lower() in writes else "Ins"
-            return f"{prefix}.{ada_case(name)}"
+        def variable(name: str) -> DottedName:
+            return ref(data if name.lower() in writes else "Ins", ada_case(name))
 
         def raised(event: str, given: Expr | None) -> tuple[Stmt, ...]:
             item = event_value(self.component, event, given)
@@ -482,12 +479,12 @@ class RegionShape(Places):
             self.system,
             self.component,
             variable,
-            lambda name: f"{data}.{ada_case(name)}",
-            lambda port: (f"Box.{ada_case(port)}", f"Box.{ada_case(port)}_Sent"),
+            lambda name: ref(data, ada_case(name)),
+            lambda port: (ref("Box", ada_case(port)), ref("Box", f"{ada_case(port)}_Sent")),
             raised,
         )
 
 
 def plain_args(params: tuple[Param, ...], **replaced: Expr) -> tuple[Arg, ...]:
     """Positional arguments that repeat the parameters, some replaced."""
-    return tuple(Arg(None, replaced.get(p.name, Ref(p.name))) for p in params)
+    return tuple(Arg(None, replaced.get(p.name, ref(p.name))) for p in params)

@@ -5,39 +5,28 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
-    Assign,
-    Case,
-    Decl,
-    Do,
+from ravenchart.gen.emit.ada.declarations import Decl, Object, Param, Subprogram, UseType
+from ravenchart.gen.emit.ada.expressions import (
+    FALSE,
+    OTHERS,
     Expr,
-    ForAll,
-    IfStatement,
-    Loop,
-    Object,
+    IfExpr,
     OperatorChain,
-    Param,
-    Pragma,
     Prefix,
-    Ref,
-    Say,
-    Stmt,
-    Subprogram,
-    UseType,
-    arguments,
-    both,
     call,
     equal,
-    number,
+    plain,
 )
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Assign, Case, IfStatement, Stmt, do
 from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.terms import expressions_in, flow_operators
 
-from .deferring import FREED, is_due
+from .deferring import take_due
 from .firing import Moves
 from .guards import guard_operators, guards_of
-from .lanes import fire, lane_step, passing_step
+from .lanes import LIST, fire, lane_step, passing_step
 from .safety import Safety
 from .selection import selectors, whole
 from .shape import START, RegionShape
@@ -52,7 +41,7 @@ def body_of(shape: RegionShape) -> tuple[Decl, ...]:
     compared = shape.compared_in(e for flow in moves.flows() for e in expressions_in(flow))
     operators = {name for flow in moves.flows() for name in flow_operators(flow)}
     more = sorted(operators - guard_operators(region) - Safety(shape).operators())
-    more += ["Ravenchart.Event_Count"] if shape.working else []
+    more += [ref("Ravenchart.Event_Count")] if shape.working else []
     more += sorted(compared - shape.compared_in(guards_of(region)))
     return (
         *(UseType(name) for name in more),
@@ -73,30 +62,30 @@ def _polling(shape: RegionShape) -> list[Decl]:
     self_out = Param("Self", "in out", "Region")
     items: list[Decl] = []
     if shape.timers:
-        tick = Do("Ravenchart.Timers.Tick", arguments(Ref("Self.Timers")))
+        tick = do("Ravenchart.Timers.Tick", ref("Self.Timers"))
         items.append(Subprogram("Tick", (self_out,), body=(tick,)))
     branches: list[tuple[Expr, tuple[Stmt, ...]]] = [
-        (Prefix("not", Ref("Self.Started")), (Assign("Now", Ref("Start_Of_Region")),))
+        (Prefix("not", ref("Self.Started")), (Assign("Now", ref("Start_Of_Region")),))
     ]
     for state in shape.completing:
-        done = f"Self.{shape.completed(state)}"
-        occurs = Assign("Now", Ref(f"Completion_Of_{ada_case(state)}"))
-        branches.append((Ref(done), (Assign(done, Ref("False")), occurs)))
+        done = ref("Self", shape.completed(state))
+        occurs = Assign("Now", ref(f"Completion_Of_{ada_case(state)}"))
+        branches.append((done, (Assign(done, FALSE), occurs)))
     declarations: list[Decl] = [Object("Due", "Natural")] if shape.timers else []
-    declarations += [Object("Released", "Natural")] if shape.deferring else []
+    declarations += [Object("Released", "Boolean")] if shape.deferring else []
     params = shape.poll_params()
     before: tuple[Stmt, ...] = ()
     if len(params) > 2:
         before = (Assign("Item", null_event(shape.component)),)
-    rest = _deferred(shape) if shape.deferring else (Assign("Now", Ref("Conditions")),)
+    rest = _deferred(shape) if shape.deferring else (Assign("Now", ref("Conditions")),)
     if shape.timers:
         rows = [
-            (str(i), (Assign("Now", Ref(f"Expiry_Of_{ada_case(t.name)}")),))
+            (plain(i), (Assign("Now", ref(f"Expiry_Of_{ada_case(t.name)}")),))
             for i, t in enumerate(shape.timers, 1)
         ]
         rest = (
-            Do("Ravenchart.Timers.Take_Due", arguments(Ref("Self.Timers"), Ref("Due"))),
-            Case(Ref("Due"), (*rows, ("others", rest))),
+            do("Ravenchart.Timers.Take_Due", ref("Self.Timers"), ref("Due")),
+            Case(ref("Due"), (*rows, (OTHERS, rest))),
         )
     items.append(
         Subprogram(
@@ -111,33 +100,9 @@ def _polling(shape: RegionShape) -> list[Decl]:
 
 def _deferred(shape: RegionShape) -> tuple[Stmt, ...]:
     """The oldest deferred event that is due."""
-    held = f"Self.{shape.place}"
-    item = call("Deferrals.Element", Ref("Self.Deferred"), Ref("Released"))
-    none_yet = equal(Ref("Released"), number(0))
-    due_j, due_i = (is_due("Self.Deferred", held, FREED, index) for index in "JI")
-    waiting = ForAll("J", "1 .. I - 1", Prefix("not", due_j))
-    search = Loop(
-        "for I in 1 .. Deferrals.Count (Self.Deferred)",
-        (
-            Pragma("Loop_Invariant", (both(none_yet, waiting),)),
-            IfStatement(((due_i, (Assign("Released", Ref("I")), Say("exit"))),)),
-        ),
-    )
-    found = (Ref("Self.Deferred"), Ref(held), Ref(FREED), Ref("Released"))
-    taken = (Assign("Item", item),) if shape.takes_item else ()
-    take = (
-        Pragma("Assert", (call("Is_Released", *found),)),
-        Assign("Now", call("To_Occurrence", item)),
-        *taken,
-        Do("Deferrals.Remove", arguments(Ref("Self.Deferred"), Ref("Released"))),
-        Assign(FREED, call("Freed_Without", Ref("Released"), Ref(FREED))),
-    )
-    return (
-        Assign("Now", Ref("Conditions")),
-        Assign("Released", number(0)),
-        search,
-        IfStatement(((OperatorChain(">", (Ref("Released"), number(0))), take),)),
-    )
+    released = ref("Released")
+    taken = IfExpr(((released, call("To_Occurrence", ref("Item"))),), ref("Conditions"))
+    return (take_due(shape, released), Assign("Now", taken))
 
 
 # --- the step ----------------------------------------------------------------
@@ -149,7 +114,7 @@ def _step(shape: RegionShape, moves: Moves) -> Subprogram:
         params[0],
         Param("Now", "in", "Occurrence"),
         *params[1:],
-        Param("Fired", "out", "Firing_List" if shape.listed else "Selection"),
+        Param("Fired", "out", LIST if shape.listed else "Selection"),
     )
     if not shape.listed:
         return Subprogram("Step", profile, body=_plain_step(shape, moves))
@@ -160,9 +125,9 @@ def _step(shape: RegionShape, moves: Moves) -> Subprogram:
 
 def _plain_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
     pick = Assign("Fired", whole(shape, shape.lanes[0]))
-    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
-    some = OperatorChain("/=", (Ref("Fired"), Ref("None")))
+    begun = equal(ref("Now"), ref("Start_Of_Region"))
+    some = OperatorChain("/=", (ref("Fired"), ref("None")))
     return (
-        IfStatement(((begun, (Assign("Fired", Ref(START)),)),), (pick,)),
+        IfStatement(((begun, (Assign("Fired", ref(START)),)),), (pick,)),
         IfStatement(((some, (fire(moves, "Fired"),)),)),
     )

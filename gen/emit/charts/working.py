@@ -10,27 +10,18 @@ the state has been left, completes nothing, be the state entered again or not.
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import (
-    FALSE,
-    TRUE,
+from ravenchart.gen.emit.ada.declarations import (
     Aspect,
-    Assign,
-    Comment,
     Decl,
-    Expr,
-    IfStatement,
     Param,
-    Prefix,
     RecordComponent,
     RecordDeclaration,
-    Ref,
-    Stmt,
     Subprogram,
-    both,
-    equal,
-    number,
 )
+from ravenchart.gen.emit.ada.expressions import FALSE, TRUE, Expr, Prefix, both, equal, number
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Stmt
 from ravenchart.gen.emit.language.places import flat
 
 from .shape import RegionShape
@@ -74,21 +65,21 @@ def notice_bodies(shape: RegionShape) -> list[Decl]:
     """What they do: the state completes, when its regions have ended too."""
     items: list[Decl] = []
     for state in shape.working:
-        done = f"Self.{shape.done(state)}"
-        held = f"Self.{shape.place}"
+        done = ref("Self", shape.done(state))
+        held = shape.held
         news = both(
             *flat(
                 [
-                    Ref("Self.Started"),
-                    equal(Ref("Visit"), Ref(f"Self.{shape.visits(state)}")),
+                    ref("Self.Started"),
+                    equal(ref("Visit"), ref("Self", shape.visits(state))),
                     shape.in_state(held, state),
-                    Prefix("not", Ref(done)),
+                    Prefix("not", ref(done)),
                 ]
             )
         )
         completes: tuple[Stmt, ...] = ()
         if state in shape.completing:
-            completes = (Assign(f"Self.{shape.completed(state)}", TRUE),)
+            completes = (Assign(ref("Self", shape.completed(state)), TRUE),)
             if ends := shape.finals(state, held):
                 completes = (IfStatement(((both(*flat(ends)), completes),)),)
         body = IfStatement(((news, (Assign(done, TRUE), *completes)),))

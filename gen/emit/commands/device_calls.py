@@ -15,6 +15,31 @@ from ravenchart.gen.derive.calls import (
     repliers,
     replies_read,
 )
+from ravenchart.gen.emit.ada.declarations import (
+    Decl,
+    EnumType,
+    GenericInstance,
+    Object,
+    Package,
+    Param,
+    RecordComponent,
+    RecordDeclaration,
+    Subprogram,
+    UseType,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    BOX,
+    OTHERS,
+    Aggregate,
+    Arg,
+    Expr,
+    OperatorChain,
+    all_else,
+    arguments,
+    equal,
+    number,
+)
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import (
     ada_case,
     component_name,
@@ -22,31 +47,15 @@ from ravenchart.gen.emit.ada.naming import (
     priority,
     type_name,
 )
-from ravenchart.gen.emit.ada.syntax import (
-    Aggregate,
-    Arg,
+from ravenchart.gen.emit.ada.statements import (
     Comment,
-    Decl,
     Do,
-    EnumType,
-    Expr,
+    ExitStatement,
     IfStatement,
-    Object,
-    Package,
-    Param,
     Pragma,
-    RecordDeclaration,
-    Ref,
-    Say,
     Stmt,
-    Subprogram,
-    UseType,
-    arguments,
-    number,
+    do,
 )
-from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
-from ravenchart.gen.emit.ada.syntax import OperatorChain as Operation
-from ravenchart.gen.emit.ada.syntax import RecordComponent as Field
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.language.terms import Type, named
 from ravenchart.gen.model.commands import Binding, Device, Need, Provided, Remote, Server
@@ -66,7 +75,7 @@ from .remote_calls import (
 )
 from .remote_reads import kept
 
-STATUS = "Ravenchart.Queueing.Put_Status"
+STATUS = ref("Ravenchart.Queueing.Put_Status")
 
 
 # --- Who is called -----------------------------------------------------------------
@@ -110,7 +119,7 @@ def call_body(system: System, instance: Instance, port: Port, lost: tuple[Stmt, 
         full: tuple[Stmt, ...] = lost
         if binding.need.on_full is not None:
             event = event_value(instance.component, binding.need.on_full)
-            full = (*lost, Do("Offer", arguments(event)))
+            full = (*lost, do("Offer", event))
         declarations, body = sent_call(system, binding.provider, full)
     else:
         assert isinstance(binding.provider, Device)
@@ -123,14 +132,14 @@ def _direct(
     system: System, instance: Instance, binding: Binding, device: Device
 ) -> tuple[list[Decl], list[Stmt]]:
     need = binding.need
-    given = list(arguments(Ref("Item")) if need.argument is not None else ())
+    given = list(arguments(ref("Item")) if need.argument is not None else ())
     if need.reply is None:
-        return [], [Do(f"{ada_case(device.name)}.{ada_case(need.name)}", tuple(given))]
+        return [], [Do(ref(ada_case(device.name), ada_case(need.name)), tuple(given))]
     taken = delivers(system, binding)
     reply = "Reply" if taken else "Unused_Reply"
-    given.append(Arg(None, Ref(reply)))
-    call = Do(f"{ada_case(device.name)}.{ada_case(need.name)}", tuple(given))
-    after = (Do(f"Take_{ada_case(need.name)}", arguments(Ref(reply))),) if taken else ()
+    given.append(Arg(None, ref(reply)))
+    call = Do(ref(ada_case(device.name), ada_case(need.name)), tuple(given))
+    after = (do(ref(f"Take_{ada_case(need.name)}"), ref(reply)),) if taken else ()
     return [Object(reply, type_name(system, need.reply))], [call, *after]
 
 
@@ -140,33 +149,35 @@ def _queued(
     need = binding.need
     asking = callers_of(system, server.instance, server.interface)
     caller = number(asking.index(binding))
-    request = _request(system, server, need, caller, Ref("Item"))
+    request = _request(system, server, need, caller, ref("Item"))
     status = "Status" if need.on_full is not None else "Unused_Status"
-    put = f"Put_{ada_case(server.interface.name)}"
+    put = ref(f"Put_{ada_case(server.interface.name)}")
     if server.instance != instance.name:
-        put = f"{ada_case(server.instance)}.{put}"
-    body: list[Stmt] = [Do(put, arguments(request, Ref(status)))]
+        put = ref(ada_case(server.instance), put)
+    body: list[Stmt] = [do(put, request, ref(status))]
     declarations: list[Decl] = [Object(status, STATUS)]
     if need.on_full is not None:
         declarations.append(UseType(STATUS))
-        full = Operation("/=", (Ref(status), Ref("Ravenchart.Queueing.Queued")))
+        full = OperatorChain("/=", (ref(status), ref("Ravenchart.Queueing.Queued")))
         event = event_value(instance.component, need.on_full)
-        body.append(IfStatement(((full, (Do("Offer", arguments(event)),)),)))
+        body.append(IfStatement(((full, (do("Offer", event),)),)))
     return declarations, body
 
 
-def _request(system: System, server: Server, need: Need, caller: Expr, item: Expr) -> Aggregate:
+def _request(
+    system: System, server: Server, need: Need, caller: Expr, item: Expr | None
+) -> Aggregate:
     """What waits in the queue of an interface: the command, who asks, and the argument."""
     owner = ada_case(system.instance(server.instance).component.name)
-    package = f"{owner}.{requests_package(server.interface)}"
-    rows = [Arg("Name", Ref(f"{package}.{ada_case(need.name)}_Asked"))]
+    package = ref(owner, requests_package(server.interface))
+    rows = [Arg("Name", ref(package, f"{ada_case(need.name)}_Asked"))]
     if numbered(server.interface):
         rows.append(Arg("Caller", caller))
-    if need.argument is not None:
+    if need.argument is not None and item is not None:
         rows.append(Arg(ada_case(need.name), item))
     if len(rows) < len(_fields(system, server.interface)):
-        rows.append(Arg("others", Ref("<>")))
-    return Aggregate(tuple(rows), f"{package}.Request")
+        rows.append(Arg(OTHERS, BOX))
+    return Aggregate(tuple(rows), ref(package, "Request"))
 
 
 def from_afar(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subprogram]]:
@@ -177,7 +188,7 @@ def from_afar(system: System, instance: Instance) -> Iterator[tuple[Subprogram, 
         local = len(callers_of(system, instance.name, provided))
         place = calls_from_afar(system, instance.name, provided).index(message)
         caller = caller_number(local, place, message)
-        item = Ref("") if need.argument is None else value_of(system, message, need.argument)
+        item = None if need.argument is None else value_of(system, message, need.argument)
         request = _request(system, message.call.server, need, caller, item)
         put = f"Put_{ada_case(provided.name)}"
         yield asked_from_afar(system, message, request, put)
@@ -211,12 +222,12 @@ def take_body(system: System, instance: Instance, need: Need) -> Subprogram:
     is_looked_at = False
     if need.reply_item in replies_read(instance.component):
         is_looked_at = True
-        body.append(Do(f"{ada_case(str(need.reply_item))}_Board.Write", arguments(Ref("Reply"))))
+        body.append(do(ref(f"{ada_case(str(need.reply_item))}_Board", "Write"), ref("Reply")))
     if need.on_reply is not None:
         is_looked_at |= named(instance.component.events, need.on_reply).type is not None
-        event = event_value(instance.component, need.on_reply, Ref("Reply"))
-        body.append(Do("Offer", arguments(event)))
-    unused = () if is_looked_at else (Pragma("Unreferenced", (Ref("Reply"),)),)
+        event = event_value(instance.component, need.on_reply, ref("Reply"))
+        body.append(do("Offer", event))
+    unused = () if is_looked_at else (Pragma("Unreferenced", (ref("Reply"),)),)
     return Subprogram(spec.name, spec.params, declarations=unused, body=tuple(body))
 
 
@@ -227,12 +238,12 @@ def reply_boards(system: System, instance: Instance) -> Iterator[Decl]:
         if need.reply_item in read and need.reply is not None:
             ceiling = priority(system.object(f"{instance.name}.{need.reply_item}").ceiling)
             args = arguments(
-                Element_Type=Ref(type_name(system, need.reply)),
+                Element_Type=type_name(system, need.reply),
                 Initial=default_value(system, need.reply),
                 Ceiling=ceiling,
             )
             board = f"{ada_case(need.reply_item)}_Board"
-            yield Instantiation(board, "Ravenchart.Blackboards", args)
+            yield GenericInstance(board, "Ravenchart.Blackboards", args)
 
 
 # --- Requests ----------------------------------------------------------------------
@@ -258,15 +269,18 @@ def numbered(provided: Provided) -> bool:
     return any(one.reply is not None for one in provided.requests)
 
 
-def _fields(system: System, provided: Provided) -> tuple[Field, ...]:
-    first = Ref(f"{ada_case(provided.requests[0].name)}_Asked")
-    fields = [Field("Name", "Command", first)]
+def _fields(system: System, provided: Provided) -> tuple[RecordComponent, ...]:
+    first = ref(f"{ada_case(provided.requests[0].name)}_Asked")
+    fields = [RecordComponent("Name", "Command", first)]
     if numbered(provided):
-        fields.append(Field("Caller", "Natural", number(0)))
+        fields.append(RecordComponent("Caller", "Natural", number(0)))
     given: list[tuple[str, Type]] = [
         (one.name, one.argument) for one in provided.requests if one.argument is not None
     ]
-    fields += [Field(ada_case(n), type_name(system, t), default_value(system, t)) for n, t in given]
+    fields += [
+        RecordComponent(ada_case(n), type_name(system, t), default_value(system, t))
+        for n, t in given
+    ]
     return tuple(fields)
 
 
@@ -278,9 +292,7 @@ def request_types(system: System, component: Component) -> Iterator[Decl]:
             items: tuple[Decl, ...] = (
                 EnumType("Command", tuple(f"{ada_case(r.name)}_Asked" for r in provided.requests)),
                 RecordDeclaration("Request", _fields(system, provided)),
-                Object(
-                    "No_Request", "Request", Aggregate((Arg("others", Ref("<>")),)), constant=True
-                ),
+                Object("No_Request", "Request", all_else(BOX), constant=True),
             )
             yield Package(requests_package(provided), items)
 
@@ -289,8 +301,8 @@ def serving_params(system: System, component: Component, activity: str) -> Itera
     """What the activity that serves an interface gets besides: a request, and room for replies."""
     provided = component.served_by(activity)
     if provided is not None:
-        package = f"{component_name(component)}.{requests_package(provided)}"
-        yield Param(request_param(provided), "in", f"{package}.Request")
+        package = ref(component_name(component), requests_package(provided))
+        yield Param(request_param(provided), "in", ref(package, "Request"))
         for one in provided.requests:
             if one.reply is not None:
                 yield Param(reply_param(one.name), "out", type_name(system, one.reply))
@@ -298,8 +310,8 @@ def serving_params(system: System, component: Component, activity: str) -> Itera
 
 def put_spec(instance: Instance, provided: Provided) -> Subprogram:
     """Queues a request."""
-    package = f"{component_name(instance.component)}.{requests_package(provided)}"
-    params = (Param("Item", "in", f"{package}.Request"), Param("Status", "out", STATUS))
+    package = ref(component_name(instance.component), requests_package(provided))
+    params = (Param("Item", "in", ref(package, "Request")), Param("Status", "out", STATUS))
     return Subprogram(f"Put_{ada_case(provided.name)}", params)
 
 
@@ -307,16 +319,19 @@ def put_body(instance: Instance, provided: Provided, lost: tuple[Stmt, ...]) -> 
     """Queues a request; a full queue rejects it, which ``lost`` counts."""
     spec = put_spec(instance, provided)
     queue = f"{ada_case(provided.name)}_Queue"
-    full = Operation("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
-    body = (Do(f"{queue}.Put", arguments(Ref("Item"), Ref("Status"))), IfStatement(((full, lost),)))
+    full = OperatorChain("/=", (ref("Status"), ref("Ravenchart.Queueing.Queued")))
+    body = (
+        do(ref(queue, "Put"), ref("Item"), ref("Status")),
+        IfStatement(((full, lost),)),
+    )
     return Subprogram(spec.name, spec.params, declarations=(UseType(STATUS),), body=body)
 
 
 def asked(system: System, instance: Instance, provided: Provided) -> list[Decl]:
     """What the row that serves an interface declares: a request, and room for replies."""
-    package = f"{component_name(instance.component)}.{requests_package(provided)}"
+    package = ref(component_name(instance.component), requests_package(provided))
     found: list[Decl] = [
-        Object("Asked", f"{package}.Request"),
+        Object("Asked", ref(package, "Request")),
         Object("Taken", "Ravenchart.Queueing.Take_Status"),
         UseType("Ravenchart.Queueing.Take_Status"),
     ]
@@ -328,8 +343,8 @@ def asked(system: System, instance: Instance, provided: Provided) -> list[Decl]:
 def asked_args(system: System, instance: Instance, provided: Provided) -> list[Arg]:
     """What the activity that serves an interface is given besides; see `serving_params`."""
     rooms = _rooms(system, instance, provided)
-    given = (Arg(parameter, Ref(room)) for parameter, room, _ in rooms)
-    return [Arg(request_param(provided), Ref("Asked")), *given]
+    given = (Arg(parameter, ref(room)) for parameter, room, _ in rooms)
+    return [Arg(request_param(provided), ref("Asked")), *given]
 
 
 def _rooms(
@@ -356,32 +371,32 @@ def served(
     for index, binding in enumerate(asking):
         if delivers(system, binding):
             is_own = binding.instance == instance.name
-            take = f"Take_{ada_case(binding.need.name)}"
-            take = take if is_own else f"{ada_case(binding.instance)}.{take}"
-            asks = Operation("=", (Ref("Asked.Caller"), number(index)))
-            reply = Ref(reply_param(binding.need.name))
-            replied.append(IfStatement(((asks, (Do(take, arguments(reply)),)),)))
+            take = ref(f"Take_{ada_case(binding.need.name)}")
+            take = take if is_own else ref(ada_case(binding.instance), take)
+            asks = OperatorChain("=", (ref("Asked.Caller"), number(index)))
+            reply = ref(reply_param(binding.need.name))
+            replied.append(IfStatement(((asks, (do(take, reply),)),)))
     replied += replies(system, instance, provided, len(asking), reply_param)
     return (
-        Do(f"{ada_case(provided.name)}_Queue.Take", arguments(Ref("Asked"), Ref("Taken"))),
-        Say("exit when Taken = Ravenchart.Queueing.Empty"),
+        do(ref(f"{ada_case(provided.name)}_Queue", "Take"), ref("Asked"), ref("Taken")),
+        ExitStatement(equal(ref("Taken"), ref("Ravenchart.Queueing.Empty"))),
         *work,
         *replied,
     )
 
 
-def request_queue(system: System, instance: Instance, provided: Provided) -> Instantiation:
+def request_queue(system: System, instance: Instance, provided: Provided) -> GenericInstance:
     """The queue of an interface that is served."""
-    package = f"{component_name(instance.component)}.{requests_package(provided)}"
+    package = ref(component_name(instance.component), requests_package(provided))
     element = f"{instance.name}.{provided.name}.queue"
     args = arguments(
-        Element_Type=Ref(f"{package}.Request"),
-        Null_Element=Ref(f"{package}.No_Request"),
+        Element_Type=ref(package, "Request"),
+        Null_Element=ref(package, "No_Request"),
         Capacity=number(provided.depth),
         Ceiling=priority(system.object(element).ceiling),
-        Policy=Ref("Ravenchart.Queueing.Reject_Newest"),
+        Policy=ref("Ravenchart.Queueing.Reject_Newest"),
     )
-    return Instantiation(f"{ada_case(provided.name)}_Queue", "Ravenchart.Queues", args)
+    return GenericInstance(f"{ada_case(provided.name)}_Queue", "Ravenchart.Queues", args)
 
 
 def published(system: System, instance: Instance) -> Iterator[tuple[Subprogram, str]]:

@@ -8,6 +8,35 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.derive.calls import called, callers, device_types
+from ravenchart.gen.emit.ada.declarations import (
+    SPARK,
+    Aspect,
+    Decl,
+    ModularDefinition,
+    Object,
+    Package,
+    Param,
+    Protected,
+    RecordComponent,
+    RecordDeclaration,
+    Subprogram,
+    TypeDeclaration,
+    Unit,
+    UseType,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    FALSE,
+    NOTHING,
+    TRUE,
+    Aggregate,
+    Arg,
+    Expr,
+    OperatorChain,
+    arguments,
+    number,
+    record,
+)
+from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import (
     ada_case,
     default_value,
@@ -15,35 +44,7 @@ from ravenchart.gen.emit.ada.naming import (
     root_package,
     type_name,
 )
-from ravenchart.gen.emit.ada.syntax import (
-    FALSE,
-    SPARK,
-    TRUE,
-    Aggregate,
-    Arg,
-    Aspect,
-    Assign,
-    Comment,
-    Decl,
-    Do,
-    Expr,
-    IfStatement,
-    Object,
-    Package,
-    Param,
-    PlainType,
-    Pragma,
-    Protected,
-    RecordComponent,
-    Ref,
-    Stmt,
-    Subprogram,
-    Unit,
-    UseType,
-    arguments,
-    number,
-)
-from ravenchart.gen.emit.ada.syntax import RecordDeclaration as AdaRecord
+from ravenchart.gen.emit.ada.statements import Assign, Comment, Do, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.language.terms import RecordType, Type
 from ravenchart.gen.model.commands import CommandKind, Device, DeviceType, DriverCommand
 from ravenchart.gen.model.system import System
@@ -77,13 +78,13 @@ def emit_devices(system: System, header: str) -> tuple[Unit, ...]:
     return tuple(units)
 
 
-def states_package(system: System, kind: DeviceType) -> str:
+def states_package(system: System, kind: DeviceType) -> DottedName:
     """The package of what a device of a type remembers, which the driver's author writes."""
-    return f"{root_package(system)}.{ada_case(kind.name)}_States"
+    return ref(root_package(system), f"{ada_case(kind.name)}_States")
 
 
-def _state(kind: DeviceType) -> str:
-    return f"{ada_case(kind.name)}_States.State"
+def _state(kind: DeviceType) -> DottedName:
+    return ref(f"{ada_case(kind.name)}_States", "State")
 
 
 def _params(system: System, command: DriverCommand) -> tuple[Param, ...]:
@@ -101,9 +102,9 @@ def _params(system: System, command: DriverCommand) -> tuple[Param, ...]:
 
 def _passed(command: DriverCommand) -> tuple[Arg, ...]:
     if command.is_event:
-        return arguments(Ref("Is_Raised"), Ref("Argument"))
-    argument = arguments(Ref("Argument")) if command.argument is not None else ()
-    return (*argument, *(arguments(Ref("Reply")) if command.reply is not None else ()))
+        return arguments(ref("Is_Raised"), ref("Argument"))
+    argument = arguments(ref("Argument")) if command.argument is not None else ()
+    return (*argument, *(arguments(ref("Reply")) if command.reply is not None else ()))
 
 
 # --- Drivers -----------------------------------------------------------------------
@@ -112,16 +113,16 @@ def _passed(command: DriverCommand) -> tuple[Arg, ...]:
 def _driver(system: System, kind: DeviceType, header: str) -> Unit:
     """The spec of a driver; its body is the user's, or a simulated one."""
     items: list[Decl] = []
-    used = Ref(f"(In_Out => {registers_state(kind)})") if kind.registers else Ref("null")
+    used = record({"In_Out": registers_state(kind)}) if kind.registers else NOTHING
     uses = (Aspect("Global", used),)
     for operation, what, wcet in _operations(system, kind):
         items.append(Subprogram(operation.name, operation.params, aspects=uses))
-        items.append(Comment(f"[{kind.name}{what}] budget {wcet:_} ns"))
+        items.append(Comment(f"[{kind.name}{what}] WCET {wcet:_} ns"))
     root = root_package(system)
     withs = {states_package(system, kind)}
-    withs |= {f"{root}.{units_package(kind)}"} if kind.tells_apart else set()
-    withs |= {f"{root}.{registers_package(kind)}"} if kind.registers else set()
-    name = f"{root}.{ada_case(kind.name)}"
+    withs |= {ref(root, units_package(kind))} if kind.tells_apart else set()
+    withs |= {ref(root, registers_package(kind))} if kind.registers else set()
+    name = ref(root, ada_case(kind.name))
     return Unit(header, tuple(sorted(withs)), Package(name, tuple(items), (SPARK,)))
 
 
@@ -142,12 +143,14 @@ def _operations(system: System, kind: DeviceType) -> Iterator[tuple[Subprogram, 
 
 def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Unit, Unit]:
     """What a simulated device remembers, and a body that gives it back: a starting point."""
-    kept = [RecordComponent("Calls", "Call_Count", Ref("0"))]
+    kept = [RecordComponent("Calls", "Call_Count", number(0))]
     bodies: list[Decl] = []
     given = {ada_case(one.name): one for one in kind.provides}
     for operation, what, _ in _operations(system, kind):
         name = operation.name
-        steps: list[Stmt] = [Assign("Device.Calls", Ref("Device.Calls + 1"))]
+        steps: list[Stmt] = [
+            Assign("Device.Calls", OperatorChain("+", (ref("Device.Calls"), number(1))))
+        ]
         if not what:
             steps += [Assign("Passed", TRUE)] if name != "Make_Safe" else []
         else:
@@ -159,11 +162,11 @@ def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Uni
             if command.is_event:
                 assert command.argument is not None
                 steps.append(Assign("Is_Raised", FALSE))
-                steps.append(Assign("Argument", Ref(f"Device.{name}")))
+                steps.append(Assign("Argument", ref("Device", name)))
             elif command.argument is not None:
-                steps.append(Assign(f"Device.{name}", Ref("Argument")))
+                steps.append(Assign(ref("Device", name), ref("Argument")))
             if command.reply is not None:
-                steps.append(Assign("Reply", Ref(f"Device.{name}_Reply")))
+                steps.append(Assign("Reply", ref("Device", f"{name}_Reply")))
         declarations, touched = _first_access(kind)
         bodies.append(
             Subprogram(
@@ -173,32 +176,31 @@ def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Uni
                 body=(*touched, *steps),
             )
         )
+    modulus = OperatorChain("**", (number(2), number(32)))
     items: tuple[Decl, ...] = (
-        PlainType("Call_Count", "mod 2 ** 32"),
+        TypeDeclaration("Call_Count", ModularDefinition(modulus)),
         Comment("Arguments as they were given last, and replies as they will be given."),
-        AdaRecord("State", tuple(kept)),
+        RecordDeclaration("State", tuple(kept)),
     )
     spec = Package(states_package(system, kind), items, (SPARK,))
-    name = f"{root_package(system)}.{ada_case(kind.name)}"
-    uses = UseType(f"{ada_case(kind.name)}_States.Call_Count")
-    body = Package(name, (uses, *bodies), (SPARK,), is_body=True)
-    withs = ("Interfaces",) if any(r.access.reads for r in kind.registers) else ()
+    driver = ref(root_package(system), ada_case(kind.name))
+    uses = UseType(ref(f"{ada_case(kind.name)}_States", "Call_Count"))
+    body = Package(driver, (uses, *bodies), (SPARK,), is_body=True)
+    withs = (ref("Interfaces"),) if any(r.access.reads for r in kind.registers) else ()
     return Unit(header, (), spec), Unit(header, withs, body)
 
 
 def _first_access(kind: DeviceType) -> tuple[tuple[Decl, ...], tuple[Stmt, ...]]:
     """One access to a register, by which a first version keeps its contract."""
     if not kind.registers:
-        return ((Pragma("Unreferenced", (Ref("Unit"),)),) if kind.tells_apart else ()), ()
+        return ((Pragma("Unreferenced", (ref("Unit"),)),) if kind.tells_apart else ()), ()
     one = next((r for r in kind.registers if r.access.reads), kind.registers[0])
     name = ada_case(one.name)
     if not one.access.reads:
-        write = f"{registers_package(kind)}.Write_{name}"
-        return (), (Do(write, arguments(Ref("Unit"), number(0))),)
-    seen = Object("Unused_Word", f"Interfaces.Unsigned_{one.width}")
-    return (seen,), (
-        Do(f"{registers_package(kind)}.Read_{name}", arguments(Ref("Unit"), Ref(seen.name))),
-    )
+        write = ref(registers_package(kind), f"Write_{name}")
+        return (), (do(write, ref("Unit"), number(0)),)
+    seen = Object("Unused_Word", ref("Interfaces", f"Unsigned_{one.width}"))
+    return (seen,), (do(ref(registers_package(kind), f"Read_{name}"), ref("Unit"), ref(seen.name)),)
 
 
 # --- Pieces of equipment -----------------------------------------------------------
@@ -206,19 +208,19 @@ def _first_access(kind: DeviceType) -> tuple[tuple[Decl, ...], tuple[Stmt, ...]]
 
 def _piece(system: System, device: Device, kind: DeviceType, header: str) -> list[Unit]:
     """A device with what it remembers; in a protected object where several tasks call it."""
-    name = f"{root_package(system)}.{ada_case(device.name)}"
+    name = ref(root_package(system), ada_case(device.name))
     driver = ada_case(kind.name)
-    to_driver = (*chosen(kind, device), Arg(None, Ref("Own")))
+    to_driver = (*chosen(kind, device), Arg(None, ref("Own")))
     works = [
         *lifecycle_bodies(device, driver, to_driver),
         *(_work(system, kind, one, to_driver) for one in called(system, device)),
     ]
     items: list[Decl] = [Comment(f"[{device.name}] called by {', '.join(callers(system, device))}")]
-    withs = [f"{root_package(system)}.{driver}", states_package(system, kind)]
+    withs = [ref(root_package(system), driver), states_package(system, kind)]
     if kind.tells_apart:
-        withs.append(f"{root_package(system)}.{units_package(kind)}")
+        withs.append(ref(root_package(system), units_package(kind)))
     if system.has_object(device.name):
-        withs.append("System")
+        withs.append(ref("System"))
         ceiling = Aspect("Priority", priority(system.object(device.name).ceiling))
         specs = tuple(Subprogram(w.name, w.params) for w in works)
         kept: tuple[Object, ...] = (Object("Own", _state(kind)),)
@@ -230,7 +232,9 @@ def _piece(system: System, device: Device, kind: DeviceType, header: str) -> lis
             Subprogram(
                 one.name,
                 one.params,
-                body=(Do(f"Guard.{one.name}", tuple(Arg(None, Ref(p.name)) for p in one.params)),),
+                body=(
+                    Do(ref("Guard", one.name), tuple(Arg(None, ref(p.name)) for p in one.params)),
+                ),
             )
             for one in works
         ]
@@ -245,10 +249,10 @@ def _work(
     system: System, kind: DeviceType, command: DriverCommand, own: tuple[Arg, ...]
 ) -> Subprogram:
     """A command of a device: of one that is not ready, only what reads is executed."""
-    does = Do(f"{ada_case(kind.name)}.{ada_case(command.name)}", (*own, *_passed(command)))
+    does = Do(ref(ada_case(kind.name), ada_case(command.name)), (*own, *_passed(command)))
     steps: tuple[Stmt, ...] = (does,)
     if kind.lifecycle.given and command.command.kind is not CommandKind.READ:
-        steps = (IfStatement(((Ref("Is_Ready"), steps),)),)
+        steps = (IfStatement(((ref("Is_Ready"), steps),)),)
         if command.reply is not None:
             steps = (Assign("Reply", default_value(system, command.reply)), *steps)
         if command.is_event:
@@ -258,11 +262,11 @@ def _work(
     return Subprogram(ada_case(command.name), _params(system, command), body=steps)
 
 
-def _spec(system: System, device: Device, name: str, header: str) -> Unit:
+def _spec(system: System, device: Device, name: DottedName, header: str) -> Unit:
     items: list[Decl] = [*lifecycle_specs(device)]
     for one in called(system, device):
         items.append(Subprogram(ada_case(one.name), _params(system, one), aspects=(INLINE,)))
-        items.append(Comment(f"[{device.name}.{one.name}] budget {one.wcet:_} ns"))
+        items.append(Comment(f"[{device.name}.{one.name}] WCET {one.wcet:_} ns"))
     return Unit(header, (), Package(name, tuple(items), (SPARK,)))
 
 
@@ -272,9 +276,9 @@ def _spec(system: System, device: Device, name: str, header: str) -> Unit:
 def _array(system: System, device: Device, header: str) -> list[Unit]:
     """Each command to all members in order; arguments cut up, replies put together."""
     root = root_package(system)
-    name = f"{root}.{ada_case(device.name)}"
+    name = ref(root, ada_case(device.name))
     works = tuple(_to_all(system, device, one) for one in called(system, device))
-    withs = tuple(sorted(f"{root}.{ada_case(member.name)}" for member in device.members))
+    withs = tuple(sorted(ref(root, ada_case(member.name)) for member in device.members))
     body = Package(name, works, (SPARK,), is_body=True)
     return [_spec(system, device, name, header), Unit(header, withs, body)]
 
@@ -292,9 +296,9 @@ def _to_all(system: System, device: Device, command: DriverCommand) -> Subprogra
         if one.reply is not None:
             part = f"Part_{place}"
             declarations.append(Object(part, type_name(system, one.reply)))
-            args.append(Arg(None, Ref(part)))
+            args.append(Arg(None, ref(part)))
             gathered += _fields(part, one.reply, first, member.axes)
-        calls.append(Do(f"{ada_case(member.name)}.{ada_case(command.name)}", tuple(args)))
+        calls.append(Do(ref(ada_case(member.name), ada_case(command.name)), tuple(args)))
         first += member.axes
     if gathered:
         calls.append(Assign("Reply", Aggregate(tuple(gathered))))
@@ -310,16 +314,16 @@ def _cut(command: DriverCommand, first: int, axes: int) -> Expr:
     """The part of an argument that is for a member, whose first axis has that number."""
     assert command.argument is not None
     if not command.command.per_axis:
-        return Ref("Argument")
+        return ref("Argument")
     if axes == 1:
-        return Ref(f"Argument.Axis_{first}")
+        return ref("Argument", f"Axis_{first}")
     own = range(1, axes + 1)
-    rows = tuple(Arg(f"Axis_{n}", Ref(f"Argument.Axis_{first + n - 1}")) for n in own)
+    rows = tuple(Arg(f"Axis_{n}", ref("Argument", f"Axis_{first + n - 1}")) for n in own)
     return Aggregate(rows)
 
 
 def _fields(part: str, of_type: Type, first: int, axes: int) -> list[Arg]:
     """What a member's reply is in the whole."""
     if not isinstance(of_type, RecordType):
-        return [Arg(f"Axis_{first}", Ref(part))]
-    return [Arg(f"Axis_{first + n - 1}", Ref(f"{part}.Axis_{n}")) for n in range(1, axes + 1)]
+        return [Arg(f"Axis_{first}", ref(part))]
+    return [Arg(f"Axis_{first + n - 1}", ref(part, f"Axis_{n}")) for n in range(1, axes + 1)]

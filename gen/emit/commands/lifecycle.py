@@ -10,31 +10,29 @@ safe where the main program cannot.
 from __future__ import annotations
 
 from ravenchart.gen.derive.calls import devices_with_ends
-from ravenchart.gen.emit.ada.naming import ada_case, root_package
-from ravenchart.gen.emit.ada.syntax import (
-    FALSE,
+from ravenchart.gen.emit.ada.declarations import (
     SPARK,
-    TRUE,
-    Arg,
     Aspect,
-    Assign,
-    Comment,
     Decl,
-    Do,
-    IfStatement,
     Object,
-    OperatorChain,
     Package,
     Param,
-    Prefix,
-    Ref,
-    Stmt,
     Subprogram,
     Unit,
     UseType,
-    arguments,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    FALSE,
+    TRUE,
+    Arg,
+    OperatorChain,
+    Prefix,
+    StringLiteral,
     number,
 )
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.naming import ada_case, root_package
+from ravenchart.gen.emit.ada.statements import Assign, Comment, Do, IfStatement, Stmt, do
 from ravenchart.gen.model.commands import Device
 from ravenchart.gen.model.system import System
 
@@ -43,12 +41,12 @@ UNIT = "Device_Lifecycle"
 
 LAST_CHANCE = (
     Aspect("Export"),
-    Aspect("Convention", Ref("C")),
-    Aspect("External_Name", Ref('"ravenchart_make_safe"')),
+    Aspect("Convention", ref("C")),
+    Aspect("External_Name", StringLiteral("ravenchart_make_safe")),
 )
 """By this name the runtime finds it when the main program ends by an exception."""
 
-FAILURES = "Ravenchart.Device_Failures"
+FAILURES = ref("Ravenchart.Device_Failures")
 RUNTIME_FOLDER = "spark_runtime/devices"
 """Where `FAILURES` is; only programs that start devices have it among their sources."""
 
@@ -86,20 +84,20 @@ def emit_lifecycle(system: System, header: str) -> list[Unit]:
     steps: list[Stmt] = [Assign("Passed", TRUE)]
     for device in devices:
         failed = (
-            Do(f"{FAILURES}.Note", arguments(Ref(f'"{device.name}"'))),
+            do(ref(FAILURES, "Note"), StringLiteral(device.name)),
             Assign("Passed", FALSE),
         )
-        steps.append(Do(f"{ada_case(device.name)}.Start", arguments(Ref("Started"))))
-        steps.append(IfStatement(((Prefix("not", Ref("Started")), failed),)))
-    late = (Do(f"{FAILURES}.Note_Late"), Assign("Passed", FALSE))
-    steps.append(Do("Ravenchart.Epochs.Since_Start", arguments(Ref("Elapsed"))))
-    steps.append(IfStatement(((OperatorChain(">", (Ref("Elapsed"), number(0))), late),)))
+        steps.append(do(ref(ada_case(device.name), "Start"), ref("Started")))
+        steps.append(IfStatement(((Prefix("not", ref("Started")), failed),)))
+    late = (do(ref(FAILURES, "Note_Late")), Assign("Passed", FALSE))
+    steps.append(do("Ravenchart.Epochs.Since_Start", ref("Elapsed")))
+    steps.append(IfStatement(((OperatorChain(">", (ref("Elapsed"), number(0))), late),)))
     if ended:
         spec += [
             Subprogram("Make_All_Safe", aspects=LAST_CHANCE),
             Comment("Make each device safe."),
         ]
-        steps.append(IfStatement(((Prefix("not", Ref("Passed")), (Do("Make_All_Safe"),)),)))
+        steps.append(IfStatement(((Prefix("not", ref("Passed")), (do("Make_All_Safe"),)),)))
     bodies: list[Decl] = [
         Subprogram(
             "Start_All",
@@ -113,11 +111,11 @@ def emit_lifecycle(system: System, header: str) -> list[Unit]:
         )
     ]
     if ended:
-        safe = tuple(Do(f"{ada_case(device.name)}.Make_Safe") for device in ended)
+        safe = tuple(do(ref(ada_case(device.name), "Make_Safe")) for device in ended)
         bodies.append(Subprogram("Make_All_Safe", body=safe))
-    withs = {f"{root}.{ada_case(device.name)}" for device in devices}
-    withs |= {"Ravenchart.Epochs", FAILURES}
-    name = f"{root}.{UNIT}"
+    withs = {ref(root, ada_case(device.name)) for device in devices}
+    withs |= {ref("Ravenchart.Epochs"), FAILURES}
+    name = ref(root, UNIT)
     return [
         Unit(header, (), Package(name, tuple(spec), (SPARK,))),
         Unit(header, tuple(sorted(withs)), Package(name, tuple(bodies), (SPARK,), is_body=True)),
@@ -134,11 +132,11 @@ def lifecycle_specs(device: Device) -> tuple[Decl, ...]:
     life = device.type.lifecycle
     items: list[Decl] = [
         Subprogram("Start", (Param("Passed", "out", "Boolean"),)),
-        Comment(f"[{device.name}] before the first release; budget {life.start:_} ns"),
+        Comment(f"[{device.name}] before the first release; WCET {life.start:_} ns"),
     ]
     if life.make_safe is not None:
         items.append(Subprogram("Make_Safe"))
-        items.append(Comment(f"[{device.name}] at the end; budget {life.make_safe:_} ns"))
+        items.append(Comment(f"[{device.name}] at the end; WCET {life.make_safe:_} ns"))
     return tuple(items)
 
 
@@ -148,18 +146,18 @@ def lifecycle_bodies(device: Device, driver: str, own: tuple[Arg, ...]) -> list[
     life = device.type.lifecycle
     if not life.given:
         return []
-    passed = Arg(None, Ref("Passed"))
+    passed = Arg(None, ref("Passed"))
     steps: list[Stmt] = []
-    tested = Do(f"{driver}.Self_Test", (*own, passed))
+    tested = Do(ref(driver, "Self_Test"), (*own, passed))
     if life.initialise is not None:
-        steps.append(Do(f"{driver}.Initialise", (*own, passed)))
+        steps.append(Do(ref(driver, "Initialise"), (*own, passed)))
         if life.self_test is not None:
-            steps.append(IfStatement(((Ref("Passed"), (tested,)),)))
+            steps.append(IfStatement(((ref("Passed"), (tested,)),)))
     else:
         steps.append(tested if life.self_test is not None else Assign("Passed", TRUE))
-    steps.append(Assign("Is_Ready", Ref("Passed")))
+    steps.append(Assign("Is_Ready", ref("Passed")))
     made = [Subprogram("Start", (Param("Passed", "out", "Boolean"),), body=tuple(steps))]
     if life.make_safe is not None:
-        safe = (Do(f"{driver}.Make_Safe", own), Assign("Is_Ready", FALSE))
+        safe = (Do(ref(driver, "Make_Safe"), own), Assign("Is_Ready", FALSE))
         made.append(Subprogram("Make_Safe", body=safe))
     return made

@@ -13,30 +13,35 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.derive.calls import called_devices, device_types
-from ravenchart.gen.emit.ada.naming import ada_case, root_package, scalar, type_name
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import (
     SPARK,
-    Aggregate,
-    Arg,
+    AbstractState,
+    ArrayDefinition,
     Aspect,
-    Assign,
-    Case,
-    Comment,
     Decl,
     EnumType,
     Object,
     Package,
     Param,
-    PlainType,
-    Pragma,
-    Ref,
-    Stmt,
     Subprogram,
+    TypeDeclaration,
     Unit,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    Aggregate,
+    Arg,
+    Indexed,
+    IntegerLiteral,
+    StringLiteral,
+    all_else,
     arguments,
     call,
     number,
+    record,
 )
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case, root_package, scalar, type_name
+from ravenchart.gen.emit.ada.statements import Assign, Case, Comment, Pragma, Stmt
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.commands import Device, DeviceType, Register
 from ravenchart.gen.model.system import System
@@ -62,9 +67,9 @@ def registers_package(kind: DeviceType) -> str:
     return f"{ada_case(kind.name)}_Registers"
 
 
-def registers_state(kind: DeviceType) -> str:
+def registers_state(kind: DeviceType) -> DottedName:
     """The abstract state of the registers of a type, as its driver names it."""
-    return f"{registers_package(kind)}.{STATE}"
+    return ref(registers_package(kind), STATE)
 
 
 def unit_of(device: Device) -> str:
@@ -74,13 +79,13 @@ def unit_of(device: Device) -> str:
 
 def told_apart(kind: DeviceType) -> tuple[Param, ...]:
     """The parameter by which a driver knows for which device it works."""
-    unit = Param("Unit", "in", f"{units_package(kind)}.Unit")
+    unit = Param("Unit", "in", ref(units_package(kind), "Unit"))
     return (unit,) if kind.tells_apart else ()
 
 
 def chosen(kind: DeviceType, device: Device) -> tuple[Arg, ...]:
     """That parameter, for a device."""
-    unit = Ref(f"{units_package(kind)}.{unit_of(device)}")
+    unit = ref(units_package(kind), unit_of(device))
     return arguments(unit) if kind.tells_apart else ()
 
 
@@ -103,13 +108,13 @@ def _units(system: System, kind: DeviceType, header: str) -> Unit:
     ]
     for one in kind.parameters:
         rows = tuple(
-            Arg(unit_of(device), scalar(system, one.type, named_value(device, one.name)))
+            Arg(ref(unit_of(device)), scalar(system, one.type, named_value(device, one.name)))
             for device in devices
         )
         items.append(Comment(f"[{kind.name}.{one.name}]"))
-        array = f"array (Unit) of {type_name(system, one.type)}"
+        array = ArrayDefinition("Unit", type_name(system, one.type))
         items.append(Object(ada_case(one.name), array, Aggregate(rows), constant=True))
-    name = f"{root_package(system)}.{units_package(kind)}"
+    name = ref(root_package(system), units_package(kind))
     return Unit(header, (), Package(name, tuple(items), (SPARK,)))
 
 
@@ -118,8 +123,8 @@ def named_value(device: Device, parameter: str) -> int | bool | str:
     return {one.name: value for one, value in device.values}[parameter]
 
 
-def _word(register: Register) -> str:
-    return f"Interfaces.Unsigned_{register.width}"
+def _word(register: Register) -> DottedName:
+    return ref("Interfaces", f"Unsigned_{register.width}")
 
 
 def _reading(kind: DeviceType, one: Register) -> Subprogram:
@@ -135,7 +140,7 @@ def _writing(kind: DeviceType, one: Register) -> Subprogram:
 def _access(system: System, kind: DeviceType, header: str) -> Unit:
     root = root_package(system)
     items: list[Decl] = []
-    changes = (Aspect("Global", Ref(f"(In_Out => {STATE})")),)
+    changes = (Aspect("Global", record({"In_Out": ref(STATE)})),)
     for one in kind.registers:
         for made in _procedures(kind, one):
             items.append(Subprogram(made.name, made.params, aspects=changes))
@@ -143,11 +148,11 @@ def _access(system: System, kind: DeviceType, header: str) -> Unit:
     aspects = (
         SPARK,
         Aspect("Elaborate_Body"),
-        Aspect("Abstract_State", Ref(f"({STATE} with Synchronous, External)")),
-        Aspect("Initializes", Ref(STATE)),
+        Aspect("Abstract_State", AbstractState(STATE, ("Synchronous", "External"))),
+        Aspect("Initializes", ref(STATE)),
     )
-    withs = ("Interfaces", f"{root}.{units_package(kind)}")
-    name = f"{root}.{registers_package(kind)}"
+    withs = (ref("Interfaces"), ref(root, units_package(kind)))
+    name = ref(root, registers_package(kind))
     return Unit(header, withs, Package(name, tuple(items), aspects))
 
 
@@ -174,7 +179,7 @@ def _object(device: Device, one: Register) -> str:
 def _at_addresses(system: System, kind: DeviceType, header: str) -> Unit:
     root = root_package(system)
     devices = called_devices(system, kind)
-    every = [Ref(_object(device, one)) for device in devices for one in kind.registers]
+    every = [ref(_object(device, one)) for device in devices for one in kind.registers]
     constituents = every[0] if len(every) == 1 else Aggregate(arguments(*every))
     items: list[Decl] = []
     placed = any(device.address is not None for device in devices)
@@ -183,44 +188,44 @@ def _at_addresses(system: System, kind: DeviceType, header: str) -> Unit:
             Pragma(
                 "Warnings",
                 (
-                    Ref("GNATprove"),
-                    Ref("Off"),
-                    Ref('"writing to * is assumed to have no effects on other*"'),
-                    Ref('Reason => "ASM-018, registers are where the model says"'),
+                    ref("GNATprove"),
+                    ref("Off"),
+                    StringLiteral("writing to * is assumed to have no effects on other*"),
+                    Arg("Reason", StringLiteral("ASM-018, registers are where the model says")),
                 ),
             )
         )
     given = not all(one.access.writes for one in kind.registers)
     if given and any(device.address is None for device in devices):
-        pattern = Ref('"* is not modified, consider pragma Export *"')
-        items.append(Pragma("Warnings", (Ref("Off"), pattern)))
+        pattern = StringLiteral("* is not modified, consider pragma Export *")
+        items.append(Pragma("Warnings", (ref("Off"), pattern)))
     for device in devices:
         items.append(Comment(f"[{device.name}]"))
         items += [_placed(device, one) for one in kind.registers]
     for one in kind.registers:
         for made in _procedures(kind, one):
             rows = tuple(
-                (f"{units_package(kind)}.{unit_of(d)}", (_moved(made, _object(d, one)),))
+                (ref(units_package(kind), unit_of(d)), (_moved(made, ref(_object(d, one))),))
                 for d in devices
             )
-            items.append(Subprogram(made.name, made.params, body=(Case(Ref("Unit"), rows),)))
-    withs = ("System.Storage_Elements",) if placed else ()
+            items.append(Subprogram(made.name, made.params, body=(Case(ref("Unit"), rows),)))
+    withs = (ref("System.Storage_Elements"),) if placed else ()
     refined = Aspect("Refined_State", Aggregate((Arg(STATE, constituents),)))
-    name = f"{root}.{registers_package(kind)}"
+    name = ref(root, registers_package(kind))
     return Unit(header, withs, Package(name, tuple(items), (SPARK, refined), is_body=True))
 
 
-def _moved(made: Subprogram, place: str) -> Stmt:
+def _moved(made: Subprogram, place: DottedName | Indexed) -> Stmt:
     """The value out of a register, or into it."""
     if named(made.params, "Value").mode == "out":
-        return Assign("Value", Ref(place))
-    return Assign(place, Ref("Value"))
+        return Assign("Value", place)
+    return Assign(place, ref("Value"))
 
 
 def _placed(device: Device, one: Register) -> Object:
     if device.address is None:
         return Object(_object(device, one), _word(one), number(0), aspects=(Aspect("Atomic"),))
-    at = Ref(f"16#{device.address + one.offset:_X}#")
+    at = IntegerLiteral(device.address + one.offset, base=16)
     aspects = (
         Aspect("Atomic"),
         Aspect("Import"),
@@ -239,18 +244,19 @@ def simulated_registers(system: System, kind: DeviceType, header: str) -> Unit:
         if not one.access.writes:
             continue
         words = f"{ada_case(one.name)}_Words"
-        items.append(PlainType(words, f"array ({units_package(kind)}.Unit) of {_word(one)}"))
-        start = Aggregate((Arg("others", number(0)),))
+        array = ArrayDefinition(ref(units_package(kind), "Unit"), _word(one))
+        items.append(TypeDeclaration(words, array))
+        start = all_else(number(0))
         kept = (Aspect("Volatile"),)
         items.append(Object(f"{ada_case(one.name)}_Kept", words, start, aspects=kept))
     for one in kind.registers:
         for made in _procedures(kind, one):
             unused: tuple[Decl, ...] = ()
-            moved = _moved(made, f"{ada_case(one.name)}_Kept (Unit)")
+            moved = _moved(made, Indexed(f"{ada_case(one.name)}_Kept", ref("Unit")))
             if not one.access.writes:
-                unused = (Pragma("Unreferenced", (Ref("Unit"),)),)
+                unused = (Pragma("Unreferenced", (ref("Unit"),)),)
                 moved = Assign("Value", number(0))
             items.append(Subprogram(made.name, made.params, declarations=unused, body=(moved,)))
-    name = f"{root_package(system)}.{registers_package(kind)}"
-    off = Aspect("SPARK_Mode", Ref("Off"))
+    name = ref(root_package(system), registers_package(kind))
+    off = Aspect("SPARK_Mode", ref("Off"))
     return Unit(header, (), Package(name, tuple(items), (off,), is_body=True))

@@ -13,30 +13,31 @@ from collections.abc import Callable, Iterator
 
 from ravenchart.gen.derive.calls import calls_from_afar, delivered
 from ravenchart.gen.derive.remote import NUMBER
-from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name
-from ravenchart.gen.emit.ada.syntax import (
-    Aggregate,
-    Arg,
-    Assign,
-    Call,
-    Comment,
+from ravenchart.gen.emit.ada.declarations import (
     Decl,
-    Do,
-    Expr,
-    IfStatement,
+    GenericInstance,
     Object,
     Param,
-    Ref,
-    Stmt,
     Subprogram,
     UseType,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    Aggregate,
+    Arg,
+    Attribute,
+    Expr,
+    OperatorChain,
     arguments,
+    between,
+    call,
     equal,
     member,
     number,
 )
-from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
-from ravenchart.gen.emit.ada.syntax import OperatorChain as Operation
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name
+from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Stmt, do
+from ravenchart.gen.emit.tables.trace_calls import fault_units
 from ravenchart.gen.language.terms import RecordType, Type
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, Provided, Remote, RemoteRead
@@ -45,8 +46,8 @@ from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 
-CALLS = "Ravenchart.Calls"
-STATUS = "Ravenchart.Queueing.Put_Status"
+CALLS = ref("Ravenchart.Calls")
+STATUS = ref("Ravenchart.Queueing.Put_Status")
 
 
 def remotes(system: System, instance: Instance) -> tuple[Remote, ...]:
@@ -72,7 +73,7 @@ def received_as(message: Message) -> str:
     return f"Ask_{ada_case(message.name)}"
 
 
-def units_of(system: System, instance: Instance) -> Iterator[str]:
+def units_of(system: System, instance: Instance) -> Iterator[DottedName]:
     """The units that the body of an instance needs for all of this."""
     root = ada_case(system.name)
     asked = remotes(system, instance)
@@ -80,9 +81,9 @@ def units_of(system: System, instance: Instance) -> Iterator[str]:
     if asked or heard(system, instance):
         yield CALLS
     if any(one.reply for one in asked):
-        yield from ("Ravenchart.Remote_Calls", "Ravenchart.Queueing", "Ravenchart.Health")
-        yield f"{root}.Health_Counts"
-    yield from (f"{root}.{ada_case(message.bus)}" for message in answered)
+        yield from (ref("Ravenchart.Remote_Calls"), ref("Ravenchart.Queueing"))
+        yield from fault_units(root)
+    yield from (ref(root, ada_case(message.bus)) for message in answered)
 
 
 # --- The caller --------------------------------------------------------------------
@@ -94,12 +95,12 @@ def call_objects(system: System, instance: Instance) -> Iterator[Decl]:
         name = ada_case(remote.need.name)
         yield Comment(f"[{instance.name}.{remote.need.name}] on another node")
         if remote.reply is None:
-            last = Ref(f"{CALLS}.Call_Number'Last")
-            yield Object(f"{name}_Number", f"{CALLS}.Call_Number", last)
+            last = Attribute(ref(CALLS, "Call_Number"), "Last")
+            yield Object(f"{name}_Number", ref(CALLS, "Call_Number"), last)
         else:
             ceiling = priority(system.object(f"{instance.name}.{remote.need.name}.call").ceiling)
             args = arguments(Limit=number(remote.executions), Ceiling=ceiling)
-            yield Instantiation(f"{name}_Call", "Ravenchart.Remote_Calls", args)
+            yield GenericInstance(f"{name}_Call", "Ravenchart.Remote_Calls", args)
 
 
 def sent_call(
@@ -108,22 +109,22 @@ def sent_call(
     """A call: sent with its number, or ``full`` where one waits already."""
     message = next(m for m in system.messages if m.name == remote.request)
     name, need = ada_case(remote.need.name), remote.need
-    send = f"{ada_case(message.bus)}.Send_{ada_case(message.name)}"
+    send = ref(ada_case(message.bus), f"Send_{ada_case(message.name)}")
     if remote.reply is None:
-        kept = Ref(f"{name}_Number")
-        following = Do(send, arguments(_framed(message, kept, Ref("Item"), need.argument)))
-        count = Assign(kept.text, Call(f"{CALLS}.Following", arguments(kept)))
+        kept = ref(f"{name}_Number")
+        following = do(send, _framed(message, kept, ref("Item"), need.argument))
+        count = Assign(kept, call(ref(CALLS, "Following"), kept))
         return [], [count, following]
     declarations: list[Decl] = [
-        Object("Number", f"{CALLS}.Call_Number"),
+        Object("Number", ref(CALLS, "Call_Number")),
         Object("Status", STATUS),
         UseType(STATUS),
     ]
-    frame = _framed(message, Ref("Number"), Ref("Item"), need.argument)
-    queued = equal(Ref("Status"), Ref("Ravenchart.Queueing.Queued"))
+    frame = _framed(message, ref("Number"), ref("Item"), need.argument)
+    queued = equal(ref("Status"), ref("Ravenchart.Queueing.Queued"))
     body: list[Stmt] = [
-        Do(f"{name}_Call.Start", arguments(Ref("Number"), Ref("Status"))),
-        IfStatement(((queued, (Do(send, arguments(frame)),)),), full),
+        do(ref(f"{name}_Call", "Start"), ref("Number"), ref("Status")),
+        IfStatement(((queued, (do(send, frame),)),), full),
     ]
     return declarations, body
 
@@ -135,13 +136,13 @@ def watch_name(need: str) -> str:
 
 def watch_body(need: Need, kept: str, passed: tuple[Stmt, ...]) -> Subprogram:
     """One more execution for ``kept``; ``passed`` when that was the last of the limit."""
-    status = f"{CALLS}.Wait_Status"
-    late = equal(Ref("Status"), Ref(f"{CALLS}.Timed_Out"))
+    status = ref(CALLS, "Wait_Status")
+    late = equal(ref("Status"), ref(CALLS, "Timed_Out"))
     return Subprogram(
         watch_name(need.name),
         declarations=(Object("Status", status), UseType(status)),
         body=(
-            Do(f"{kept}.Tick", arguments(Ref("Status"))),
+            do(ref(kept, "Tick"), ref("Status")),
             IfStatement(((late, passed),)),
         ),
     )
@@ -154,7 +155,7 @@ def watched(system: System, instance: Instance, row: Region | Activity) -> Itera
         calls = isinstance(made, Remote) and made.reply is not None and name in row.sends
         looks = isinstance(made, RemoteRead) and made.watcher == row.name
         if binding.instance == instance.name and (calls or looks):
-            yield Do(watch_name(name))
+            yield do(watch_name(name))
 
 
 def answers(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subprogram]]:
@@ -167,14 +168,14 @@ def answers(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Su
         name = ada_case(remote.need.name)
         taken = delivered(instance.component, remote.need)
         status = "Status" if taken else "Unused_Status"
-        of_type = f"{CALLS}.Reply_Status"
+        of_type = ref(CALLS, "Reply_Status")
         declarations: list[Decl] = [Object(status, of_type)]
-        body: list[Stmt] = [Do(f"{name}_Call.Finish", arguments(_number(message), Ref(status)))]
+        body: list[Stmt] = [do(ref(f"{name}_Call", "Finish"), _number(message), ref(status))]
         if taken:
             declarations.append(UseType(of_type))
-            awaited = equal(Ref(status), Ref(f"{CALLS}.Awaited"))
+            awaited = equal(ref(status), ref(CALLS, "Awaited"))
             reply = value_of(system, message, remote.need.reply)
-            body.append(IfStatement(((awaited, (Do(f"Take_{name}", arguments(reply)),)),)))
+            body.append(IfStatement(((awaited, (do(f"Take_{name}", reply),)),)))
         yield (
             spec,
             Subprogram(spec.name, spec.params, declarations=tuple(declarations), body=tuple(body)),
@@ -187,7 +188,7 @@ def answers(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Su
 def heard_objects(system: System, instance: Instance) -> Iterator[Decl]:
     """The last calls that came from other nodes."""
     for _, message in heard(system, instance):
-        yield Object(f"{ada_case(message.name)}_Heard", f"{CALLS}.Heard")
+        yield Object(f"{ada_case(message.name)}_Heard", ref(CALLS, "Heard"))
 
 
 def asked_from_afar(
@@ -195,15 +196,15 @@ def asked_from_afar(
 ) -> tuple[Subprogram, Subprogram]:
     """Spec and body of what hears a call: it puts the ``request`` into the queue, once."""
     spec = _receiving(system, message)
-    kept = Ref(f"{ada_case(message.name)}_Heard")
-    first = equal(Ref("Hearing"), Ref(f"{CALLS}.Heard_First"))
+    kept = ref(f"{ada_case(message.name)}_Heard")
+    first = equal(ref("Hearing"), ref(CALLS, "Heard_First"))
     body = (
-        Do(f"{CALLS}.Hear", arguments(kept, _number(message), Ref("Hearing"))),
-        IfStatement(((first, (Do(put, arguments(request, Ref("Unused_Status"))),)),)),
+        do(ref(CALLS, "Hear"), kept, _number(message), ref("Hearing")),
+        IfStatement(((first, (do(put, request, ref("Unused_Status")),)),)),
     )
     declarations = (
-        Object("Hearing", f"{CALLS}.Hearing"),
-        UseType(f"{CALLS}.Hearing"),
+        Object("Hearing", ref(CALLS, "Hearing")),
+        UseType(ref(CALLS, "Hearing")),
         Object("Unused_Status", STATUS),
     )
     return spec, Subprogram(spec.name, spec.params, declarations=declarations, body=body)
@@ -211,9 +212,9 @@ def asked_from_afar(
 
 def caller_number(local: int, place: int, message: Message) -> Expr:
     """Who asks, in a request: the numbers of the calls heard, behind the ``local`` callers."""
-    called = Call("Natural", arguments(_number(message)))
+    called = call("Natural", _number(message))
     first = _first(local, place)
-    return called if first == 0 else Operation("+", (number(first), called))
+    return called if first == 0 else OperatorChain("+", (number(first), called))
 
 
 def replies(
@@ -225,15 +226,15 @@ def replies(
         if back is None or back.call is None:
             continue
         need, first = back.call.need, _first(local, place)
-        caller: Expr = Ref("Asked.Caller")
-        asks: Expr = Operation("<=", (caller, number(NUMBER.last)))
+        caller: Expr = ref("Asked.Caller")
+        asks: Expr = OperatorChain("<=", (caller, number(NUMBER.last)))
         if first > 0:
-            asks = member(caller, f"{first:_} .. {first + NUMBER.last:_}")
-            caller = Operation("-", (caller, number(first)))
-        called = Call("Ravenchart.Number", arguments(caller))
-        frame = _framed(back, called, Ref(reply(need.name)), need.reply)
-        send = f"{ada_case(back.bus)}.Send_{ada_case(back.name)}"
-        yield IfStatement(((asks, (Do(send, arguments(frame)),)),))
+            asks = member(caller, between(first, first + NUMBER.last))
+            caller = OperatorChain("-", (caller, number(first)))
+        called = call("Ravenchart.Number", caller)
+        frame = _framed(back, called, ref(reply(need.name)), need.reply)
+        send = ref(ada_case(back.bus), f"Send_{ada_case(back.name)}")
+        yield IfStatement(((asks, (do(send, frame),)),))
 
 
 def reply_to(system: System, message: Message) -> Message | None:
@@ -253,10 +254,10 @@ def _receiving(system: System, message: Message) -> Subprogram:
     return Subprogram(received_as(message), params)
 
 
-def _number(message: Message) -> Ref:
+def _number(message: Message) -> DottedName:
     """The number of a call in what is received."""
     assert isinstance(message.type, RecordType)
-    return Ref(f"Item.{ada_case(message.type.fields[0].name)}")
+    return ref("Item", ada_case(message.type.fields[0].name))
 
 
 def value_of(system: System, message: Message, carried: Type) -> Expr:
@@ -264,15 +265,15 @@ def value_of(system: System, message: Message, carried: Type) -> Expr:
     assert isinstance(message.type, RecordType)
     names = [ada_case(field.name) for field in message.type.fields[1:]]
     if not isinstance(carried, RecordType):
-        return Ref(f"Item.{names[0]}")
-    rows = tuple(Arg(name, Ref(f"Item.{name}")) for name in names)
+        return ref("Item", names[0])
+    rows = tuple(Arg(name, ref("Item", name)) for name in names)
     return Aggregate(rows, type_name(system, carried))
 
 
-def _framed(message: Message, called: Expr, item: Ref, carried: Type | None) -> Expr:
+def _framed(message: Message, called: Expr, item: DottedName, carried: Type | None) -> Expr:
     """The number of a call, and what is carried with it."""
     assert isinstance(message.type, RecordType)
     first, *others = (ada_case(field.name) for field in message.type.fields)
     of_record = isinstance(carried, RecordType)
-    rows = [Arg(name, Ref(f"{item.text}.{name}") if of_record else item) for name in others]
+    rows = [Arg(name, ref(item, name) if of_record else item) for name in others]
     return Aggregate((Arg(first, called), *rows))

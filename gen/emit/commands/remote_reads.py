@@ -8,21 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.derive.calls import publications
+from ravenchart.gen.emit.ada.declarations import Decl, GenericInstance, Object, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import arguments, number
+from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name, value
-from ravenchart.gen.emit.ada.syntax import (
-    Comment,
-    Decl,
-    Do,
-    IfStatement,
-    Object,
-    Param,
-    Ref,
-    Stmt,
-    Subprogram,
-    arguments,
-    number,
-)
-from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
+from ravenchart.gen.emit.ada.statements import Comment, Do, IfStatement, Stmt, do
+from ravenchart.gen.emit.tables.trace_calls import fault_units
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import Need, RemoteRead
 from ravenchart.gen.model.component import Activity
@@ -45,16 +36,16 @@ def published_afar(system: System, instance: Instance) -> tuple[Message, ...]:
     return tuple(m for row in rows for m in publications(system, instance.name, row))
 
 
-def read_units(system: System, instance: Instance) -> Iterator[str]:
+def read_units(system: System, instance: Instance) -> Iterator[DottedName]:
     """The units that the body of an instance needs for all of this."""
     root = ada_case(system.name)
     if copies(system, instance):
-        yield from (CALLS, "Ravenchart.Remote_Reads", "Ravenchart.Health")
-        yield f"{root}.Health_Counts"
+        yield from (CALLS, ref("Ravenchart.Remote_Reads"))
+        yield from fault_units(root)
     for message in published_afar(system, instance):
-        yield f"{root}.{ada_case(message.bus)}"
+        yield ref(root, ada_case(message.bus))
         if message.every > 1:
-            yield from ("Ravenchart", CALLS)
+            yield from (ref("Ravenchart"), CALLS)
 
 
 def copy_name(need: Need) -> str:
@@ -69,12 +60,12 @@ def copy_objects(system: System, instance: Instance) -> Iterator[Decl]:
         element = f"{instance.name}.{read.need.name}"
         yield Comment(f"[{element}] of another node")
         args = arguments(
-            Element_Type=Ref(type_name(system, read.need.reply)),
+            Element_Type=type_name(system, read.need.reply),
             Initial=value(system, read.need.reply, read.initial),
             Limit=number(read.executions),
             Ceiling=priority(system.object(f"{element}.read").ceiling),
         )
-        yield Instantiation(copy_name(read.need), "Ravenchart.Remote_Reads", args)
+        yield GenericInstance(copy_name(read.need), "Ravenchart.Remote_Reads", args)
     for message in published_afar(system, instance):
         if message.every > 1:
             yield Comment(f"[{message.name}] executions before it is sent")
@@ -91,7 +82,7 @@ def kept(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subpr
         assert read.need.reply is not None
         params = (Param("Item", "in", type_name(system, read.need.reply)),)
         name = f"Put_{ada_case(read.need.name)}"
-        put = Do(f"{copy_name(read.need)}.Put", arguments(Ref("Item")))
+        put = do(ref(copy_name(read.need), "Put"), ref("Item"))
         yield Subprogram(name, params), Subprogram(name, params, body=(put,))
 
 
@@ -102,15 +93,15 @@ def publishes(
     for message in publications(system, instance.name, row):
         assert message.source is not None
         item = ada_case(message.source.port)
-        held = f"{item}_Own"
+        held = ref(f"{item}_Own")
         if isinstance(row, Region):
-            held = f"{ada_case(row.name)}_Region.Data.{item}"
-        sent = Do(f"{ada_case(message.bus)}.Send_{ada_case(message.name)}", arguments(Ref(held)))
+            held = ref(f"{ada_case(row.name)}_Region", "Data", item)
+        sent = do(ref(ada_case(message.bus), f"Send_{ada_case(message.name)}"), held)
         if message.every == 1:
             yield sent
             continue
         due = f"{ada_case(message.name)}_Due"
         declarations.append(Object(due, "Boolean"))
-        turn = arguments(Ref(_left(message)), Every=number(message.every), Is_Due=Ref(due))
-        yield Do(f"{CALLS}.Take_Turn", turn)
-        yield IfStatement(((Ref(due), (sent,)),))
+        turn = arguments(ref(_left(message)), Every=number(message.every), Is_Due=ref(due))
+        yield Do(ref(CALLS, "Take_Turn"), turn)
+        yield IfStatement(((ref(due), (sent,)),))

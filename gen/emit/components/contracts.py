@@ -9,22 +9,19 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from ravenchart.gen.derive.kept import kept_of
-from ravenchart.gen.emit.ada.naming import ada_case, component_name, type_name
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import (
     Aspect,
-    Comment,
     Decl,
-    Expr,
-    IfExpr,
     Package,
     Param,
-    PlainType,
-    Ref,
     Subprogram,
+    SubtypeDeclaration,
     UseType,
-    both,
-    call,
 )
+from ravenchart.gen.emit.ada.expressions import Expr, IfExpr, both, call
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case, component_name, type_name
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.language.terms import (
     Scope,
     compared_states,
@@ -45,7 +42,9 @@ def contract(
     system: System, component: Component, activity: Activity, flag: SentFlag
 ) -> Iterator[Aspect]:
     """`Pre` and `Post` of an activity."""
-    scope = replace(_scope(system, component, ada_case), sent=lambda port: (port, flag(port) or ""))
+    scope = replace(
+        _scope(system, component, ada_case), sent=lambda port: (port, flag(port) or port)
+    )
     required = [emit_expression(scope, clause.condition) for clause in activity.requires]
     ensured = [_ensured(scope, clause.condition, flag) for clause in activity.ensures]
     if required:
@@ -66,17 +65,17 @@ def needed_before(activity: Activity) -> set[str]:
     }
 
 
-def used_types(component: Component, activities: Iterable[Activity]) -> tuple[str, ...]:
+def used_types(component: Component, activities: Iterable[Activity]) -> tuple[DottedName, ...]:
     """The types whose operators the contracts of activities use."""
     said = [c.condition for a in activities for c in (*a.requires, *a.ensures)]
     found = {name for expression in said for name in operators_in(expression)}
     return tuple(sorted(found | compared_states(component, said)))
 
 
-def stored_type(system: System, component: Component, data: Data) -> str:
+def stored_type(system: System, component: Component, data: Data) -> DottedName:
     """The type in which an instance keeps a data item."""
     if kept_of(system, component, data):
-        return f"{component_name(component)}.{KEPT}.{ada_case(data.name)}"
+        return ref(component_name(component), KEPT, ada_case(data.name))
     return type_name(system, data.type)
 
 
@@ -94,10 +93,10 @@ def kept_types(system: System, component: Component) -> Iterator[Decl]:
             name, of_type = ada_case(data.name), type_name(system, data.type)
             known = both(*(emit_expression(scope, one) for one in conditions))
             params = (Param("Item", "in", of_type),)
-            predicate = Aspect("Predicate", call(f"{name}_Is_Kept", Ref(name)))
+            predicate = Aspect("Predicate", call(f"{name}_Is_Kept", ref(name)))
             items.append(Comment(f"[{component.name}.{data.name}]"))
             items.append(Subprogram(f"{name}_Is_Kept", params, "Boolean", expression=known))
-            items.append(PlainType(name, of_type, subtype=True, aspects=(predicate,)))
+            items.append(SubtypeDeclaration(name, of_type, aspects=(predicate,)))
     yield Comment("What is true of data whenever they are read; each writer proves it.")
     yield Package(KEPT, tuple(items))
 
@@ -113,7 +112,7 @@ def _ensured(scope: Scope, condition: Expression, flag: SentFlag) -> Expr:
     flags = [name for port in dict.fromkeys(ports) if (name := flag(port)) is not None]
     if not flags:
         return said
-    return IfExpr(((both(*map(Ref, flags)), said),), None)
+    return IfExpr(((both(*map(ref, flags)), said),), None)
 
 
 def _scope(system: System, component: Component, variable: Callable[[str], str]) -> Scope:

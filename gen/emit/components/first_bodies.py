@@ -7,19 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.emit.ada.declarations import SPARK, Package, Subprogram, Unit
+from ravenchart.gen.emit.ada.expressions import FALSE, Expr
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case, component_package, default_value
-from ravenchart.gen.emit.ada.syntax import (
-    FALSE,
-    SPARK,
-    Assign,
-    Expr,
-    Package,
-    Pragma,
-    Ref,
-    Stmt,
-    Subprogram,
-    Unit,
-)
+from ravenchart.gen.emit.ada.statements import Assign, Pragma, Stmt
 from ravenchart.gen.emit.commands.device_calls import reply_param
 from ravenchart.gen.language.terms import Type, named
 from ravenchart.gen.model.component import Activity, Component
@@ -35,14 +27,14 @@ def first_bodies(system: System, component: Component, header: str) -> Iterator[
     for home in dict.fromkeys(activity_package(component, a) for a in users):
         inside = tuple(a for a in users if activity_package(component, a) == home)
         bodies = tuple(_body(system, component, activity) for activity in inside)
-        yield Unit(header, (), Package(f"{package}.{home}", bodies, (SPARK,), is_body=True))
+        yield Unit(header, (), Package(ref(package, home), bodies, (SPARK,), is_body=True))
 
 
 def _body(system: System, component: Component, activity: Activity) -> Subprogram:
     """What it writes keeps its value or gets its first one, and nothing is raised."""
     params = activity_params(system, component, activity)
     starts = _starts(system, component, activity)
-    idle = tuple(Ref(p.name) for p in params if p.mode != "out")
+    idle = tuple(ref(p.name) for p in params if p.mode != "out")
     steps: tuple[Stmt, ...] = tuple(
         Assign(p.name, starts.get(p.name, FALSE)) for p in params if p.mode == "out"
     )

@@ -7,6 +7,20 @@ from __future__ import annotations
 
 from functools import partial
 
+from ravenchart.gen.emit.ada.declarations import (
+    SPARK,
+    Aspect,
+    Decl,
+    GenericInstance,
+    Package,
+    Param,
+    Subprogram,
+    SubtypeDeclaration,
+    Unit,
+    UseType,
+)
+from ravenchart.gen.emit.ada.expressions import FALSE, NOTHING, TRUE, Expr, arguments, number
+from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import (
     ada_case,
     component_name,
@@ -14,27 +28,7 @@ from ravenchart.gen.emit.ada.naming import (
     default_value,
     type_name,
 )
-from ravenchart.gen.emit.ada.syntax import (
-    FALSE,
-    SPARK,
-    TRUE,
-    Aspect,
-    Assign,
-    Comment,
-    Decl,
-    Expr,
-    GenericInstance,
-    Package,
-    Param,
-    PlainType,
-    Ref,
-    Stmt,
-    Subprogram,
-    Unit,
-    UseType,
-    arguments,
-    number,
-)
+from ravenchart.gen.emit.ada.statements import Assign, Comment, Stmt
 from ravenchart.gen.emit.commands.device_calls import request_types, serving_params
 from ravenchart.gen.emit.language.events import event_types, null_event
 from ravenchart.gen.emit.language.places import Places
@@ -55,23 +49,23 @@ from ravenchart.gen.model.system import System
 from .contracts import contract, kept_types, needed_before, used_types
 
 
-def leaf_type(component: Component, region: Region) -> str:
+def leaf_type(component: Component, region: Region) -> DottedName:
     """The type of a region's published state, seen from a sibling package."""
-    return f"{component_name(component)}.{Places(region).place_type}"
+    return ref(component_name(component), Places(region).place_type)
 
 
-def view_type(component: Component, port: str) -> str:
+def view_type(component: Component, port: str) -> DottedName:
     """The type of an input port's view."""
-    return f"{component_name(component)}.{ada_case(port)}_View"
+    return ref(component_name(component), f"{ada_case(port)}_View")
 
 
-def reading_type(system: System, component: Component, name: str) -> str:
+def reading_type(system: System, component: Component, name: str) -> DottedName:
     """The type in which a region or activity sees what it reads."""
     return _readings(system, component)[name.lower()]
 
 
-def _readings(system: System, component: Component) -> dict[str, str]:
-    types: dict[str, str] = {}
+def _readings(system: System, component: Component) -> dict[str, DottedName]:
+    types: dict[str, DottedName] = {}
     for port in component.inputs():
         types[port.name.lower()] = view_type(component, port.name)
     for region in component.regions:
@@ -93,7 +87,7 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
                 "Event_Lists",
                 "Ravenchart.Event_Lists",
                 arguments(
-                    Event=Ref(f"{component_name(component)}.Event"),
+                    Event=ref(component_name(component), "Event"),
                     Null_Event=null_event(component),
                     Capacity=number(RAISED_PER_STEP),
                 ),
@@ -111,15 +105,17 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
                 f"{name}_Port",
                 "Ravenchart.Port_Regions",
                 arguments(
-                    Value_Type=Ref(type_name(system, port.type)),
+                    Value_Type=type_name(system, port.type),
                     Default=default_value(system, port.type),
                 ),
+                behind_package=True,
             )
         )
-        items.append(PlainType(f"{name}_View", f"{name}_Port.Port", subtype=True))
+        view = ref(f"{name}_Port", "Port")
+        items.append(SubtypeDeclaration(f"{name}_View", view, behind_package=True))
     items += kept_types(system, component)
-    withs = ["Ravenchart.Event_Lists"] if component.events else []
-    withs += ["Ravenchart.Port_Regions"] if component.inputs() else []
+    withs = [ref("Ravenchart.Event_Lists")] if component.events else []
+    withs += [ref("Ravenchart.Port_Regions")] if component.inputs() else []
     package = component_package(system, component)
     return Unit(header, tuple(withs), Package(package, tuple(items), (SPARK,)))
 
@@ -197,16 +193,22 @@ def stand_ins(component: Component) -> set[str]:
     return {need.stand_in.activity for need in component.needs if need.stand_in is not None}
 
 
+FLOWS = "Flows"
+"""The package of the activities that the model gives as flows."""
+ACTIVITIES = "Activities"
+"""That of those that the user writes."""
+
+
 def activity_package(component: Component, activity: Activity) -> str:
     """The child of the component's package that holds an activity.
 
     A stand-in by the user has one of its own, for its body is left out where nobody needs it.
     """
     if activity.flow is not None:
-        return "Flows"
+        return FLOWS
     if activity.name in stand_ins(component):
         return f"{ada_case(activity.name)}_Stand_In"
-    return "Activities"
+    return ACTIVITIES
 
 
 def emit_activities(system: System, component: Component, header: str) -> tuple[Unit, ...]:
@@ -218,10 +220,13 @@ def emit_activities(system: System, component: Component, header: str) -> tuple[
     for home in dict.fromkeys(activity_package(component, a) for a in users):
         inside = tuple(a for a in users if activity_package(component, a) == home)
         items = _specs(system, component, inside)
-        units.append(Unit(header, (), Package(f"{package}.{home}", items, (SPARK,))))
+        apart = home == ACTIVITIES
+        spec = Package(ref(package, home), items, (SPARK,), independent=apart)
+        units.append(Unit(header, (), spec))
     if flows:
         items = _specs(system, component, flows)
-        units.append(Unit(header, (), Package(f"{package}.Flows", items, (SPARK,))))
+        name = ref(package, FLOWS)
+        units.append(Unit(header, (), Package(name, items, (SPARK,), independent=True)))
         operators = {name for a in flows for name in flow_operators(a.flow or ())}
         operators |= compared_states(
             component, [e for a in flows for e in expressions_in(a.flow or ())]
@@ -231,7 +236,8 @@ def emit_activities(system: System, component: Component, header: str) -> tuple[
             *(UseType(name) for name in sorted(operators)),
             *(_flow_body(system, component, a) for a in flows),
         )
-        units.append(Unit(header, (), Package(f"{package}.Flows", bodies, (SPARK,), is_body=True)))
+        body = Package(name, bodies, (SPARK,), is_body=True, independent=True)
+        units.append(Unit(header, (), body))
     return tuple(units)
 
 
@@ -255,14 +261,14 @@ def _specs(
     for activity in activities:
         params = activity_params(system, component, activity)
         aspects = (
-            Aspect("Global", Ref("null")),
+            Aspect("Global", NOTHING),
             *contract(system, component, activity, partial(_sent_flag, component, activity)),
         )
         items.append(Subprogram(ada_case(activity.name), params, aspects=aspects))
         timing = activity.timing
         items.append(
             Comment(
-                f"[{component.name}.{activity.name}] budget {timing.wcet:_} ns, "
+                f"[{component.name}.{activity.name}] WCET {timing.wcet:_} ns, "
                 f"every {timing.period:_} ns"
                 + (f", while in {activity.while_in.state}" if activity.while_in else "")
             )

@@ -11,36 +11,36 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.emit.ada.declarations import (
+    SPARK,
+    Decl,
+    GenericInstance,
+    Object,
+    Package,
+    Param,
+    Subprogram,
+    Unit,
+    UseType,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    BOX,
+    Arg,
+    Expr,
+    StringLiteral,
+    all_else,
+    arguments,
+    number,
+)
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import (
+    RUNTIME,
     ada_case,
     default_value,
     instance_package,
     type_name,
     value,
 )
-from ravenchart.gen.emit.ada.syntax import (
-    SPARK,
-    Assign,
-    Case,
-    Comment,
-    Decl,
-    Do,
-    Expr,
-    IfStatement,
-    Object,
-    OperatorChain,
-    Package,
-    Param,
-    Pragma,
-    Ref,
-    Stmt,
-    Subprogram,
-    Unit,
-    UseType,
-    arguments,
-    number,
-)
-from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
+from ravenchart.gen.emit.ada.statements import Assign, Case, Comment, Pragma, Stmt, do
 from ravenchart.gen.emit.charts.shape import RegionShape
 from ravenchart.gen.emit.commands.device_calls import (
     call_body,
@@ -65,17 +65,18 @@ from ravenchart.gen.emit.commands.remote_calls import (
 from ravenchart.gen.emit.commands.remote_reads import copies, copy_name, copy_objects, read_units
 from ravenchart.gen.emit.components.contracts import stored_type
 from ravenchart.gen.emit.components.packages import activity_package, leaf_type
-from ravenchart.gen.emit.language.events import event_value, name_of, null_event
+from ravenchart.gen.emit.language.events import name_of, null_event
 from ravenchart.gen.emit.language.own_names import event_literal
 from ravenchart.gen.emit.language.places import Places
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spec
+from ravenchart.gen.emit.tables.trace_calls import fault_units
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
-from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.commands import Need, Provided
-from ravenchart.gen.model.component import Activity, Event, Port, PortKind
-from ravenchart.gen.model.statechart import Overflow, Region
+from ravenchart.gen.model.component import Activity, Port, PortKind
+from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import System, Work
 
+from .offers import OFFERS, enqueue, offers_of_port, offers_of_region, overflowed, put
 from .releasing import releases, wait_body, wait_spec
 from .rows import Rows
 from .site import Site
@@ -95,51 +96,51 @@ class Glue(Site):
 
     # --- contexts
 
-    def _spec_withs(self) -> tuple[str, ...]:
+    def _spec_withs(self) -> tuple[DottedName, ...]:
         component = self.instance.component
-        own = (f"{ada_case(self.system.name)}.{self.component}",)
-        asked = ("Ravenchart.Queueing",) if self._served() else ()
-        rows = (f"{ada_case(self.system.name)}.Elements",) if self._slots() else ()
+        own = (ref(ada_case(self.system.name), self.component),)
+        asked = (ref("Ravenchart.Queueing"),) if self._served() else ()
+        rows = (ref(ada_case(self.system.name), "Elements"),) if self._slots() else ()
         return (*asked, *(own if component.events or asked else ()), *rows)
 
-    def _body_withs(self) -> tuple[str, ...]:
+    def _body_withs(self) -> tuple[DottedName, ...]:
         root = ada_case(self.system.name)
         component = self.instance.component
-        names = {"Ravenchart.Queueing", "Ravenchart.Health", "System", f"{root}.Health_Counts"}
+        names = {ref("System")}
         queued = bool(component.inputs()) or any(r.events() for r in component.regions)
-        if not queued and not self._served():
-            names -= {"Ravenchart.Queueing", "Ravenchart.Health", f"{root}.Health_Counts"}
+        if queued or self._served():
+            names |= {ref("Ravenchart.Queueing"), OFFERS, *fault_units(root)}
         if not component.events and not self._served():
-            names.add(f"{root}.{self.component}")
+            names.add(ref(root, self.component))
         if any(n.trace_depth for n in self.system.nodes):
-            names |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
+            names |= {ref(root, "Trace"), ref(root, "Elements"), ref("Ravenchart.Traces")}
         if recording(self.system):
-            names.add(f"{root}.{UNIT}")
+            names.add(ref(root, UNIT))
         if any(releases(self, port) for port in component.inputs()):
-            names.add("Ravenchart.Releasing_Queues")  # and no other queue: see `releases`
+            names.add(ref("Ravenchart.Releasing_Queues"))  # and no other queue: see `releases`
         elif queued or self._served():
-            names.add("Ravenchart.Queues")
+            names.add(ref("Ravenchart.Queues"))
         if any(b.instance == self.instance.name for b in self.system.bindings):
-            names.add("Ravenchart.Queueing")
+            names.add(ref("Ravenchart.Queueing"))
         names |= set(units_of(self.system, self.instance))
         names |= set(read_units(self.system, self.instance))
-        names.add("Ravenchart.Blackboards")
+        names.add(ref("Ravenchart.Blackboards"))
         if self.noted:
-            names.add("Ravenchart.Steps")
-        names |= {f"{root}.{self.component}.{ada_case(r.name)}" for r in component.regions}
+            names.add(ref("Ravenchart.Steps"))
+        names |= {ref(root, self.component, ada_case(r.name)) for r in component.regions}
         for activity in component.activities:
-            names.add(f"{root}.{self.component}.{activity_package(component, activity)}")
-        names |= {f"{root}.{unit}" for unit in providers(self.system, self.instance)}
+            names.add(ref(root, self.component, activity_package(component, activity)))
+        names |= {ref(root, unit) for unit in providers(self.system, self.instance)}
         for event in component.events:
-            names |= {f"{root}.{ada_case(bus)}" for bus in self._asked(event.name)}
+            names |= {ref(root, ada_case(bus)) for bus in self._asked(event.name)}
         for port in component.outputs():
             ends, messages = self._targets(port.name)
             names |= {
-                f"{root}.{ada_case(e.instance)}" for e in ends if e.instance != self.instance.name
+                ref(root, ada_case(e.instance)) for e in ends if e.instance != self.instance.name
             }
             for message in self.system.messages:
                 if message.name in messages:
-                    names.add(f"{root}.{ada_case(message.bus)}")
+                    names.add(ref(root, ada_case(message.bus)))
         names |= answering(self.system, self.instance)
         names -= {instance_package(self.system, self.instance), *self._spec_withs()}
         return tuple(sorted(names))
@@ -175,7 +176,7 @@ class Glue(Site):
         return Subprogram(f"Put_{ada_case(port.name)}", (param,))
 
     def _offer_spec(self) -> Subprogram:
-        return Subprogram("Offer", (Param("Item", "in", f"{self.component}.Event"),))
+        return Subprogram("Offer", (Param("Item", "in", ref(self.component, "Event")),))
 
     def _command_specs(self) -> Iterator[Decl]:
         for provided in self._served():
@@ -199,9 +200,9 @@ class Glue(Site):
         for provided in self._served():
             yield put_body(instance, provided, self._lost(provided.name))
         for spec, item in published(system, instance):
-            read: Stmt = Do(f"{ada_case(item)}_Board.Read", arguments(Ref("Reply")))
+            read: Stmt = do(ref(f"{ada_case(item)}_Board", "Read"), ref("Reply"))
             if not self._has_object(item):
-                read = Assign("Reply", Ref(f"{ada_case(item)}_Own"))
+                read = Assign("Reply", ref(f"{ada_case(item)}_Own"))
             yield Subprogram(spec.name, spec.params, body=(read,))
         for binding in taken_replies(system, instance):
             yield take_body(system, instance, binding.need)
@@ -214,15 +215,13 @@ class Glue(Site):
             yield watch_body(copy.need, copy_name(copy.need), self._passed(copy.need))
 
     def _lost(self, name: str) -> tuple[Stmt, ...]:
-        """Count a call that found no place."""
-        number_ = self._fault_number("Queue_Overflow")
-        return (self._fault("Queue_Overflow"), *self._note("Fault", name, "port", number_))
+        """Report a call that found no place."""
+        return (self._fault("Queue_Overflow", name, "port"),)
 
     def _passed(self, need: Need) -> tuple[Stmt, ...]:
-        """Count a reply that did not come in time, and tell of it."""
-        noted = self._note("Fault", need.name, "port", self._fault_number("Stale_Input"))
+        """Report a reply that did not come in time, and tell of it."""
         told = () if need.on_timeout is None else (self._raise(need.on_timeout),)
-        return (self._fault("Stale_Input"), *noted, *told)
+        return (self._fault("Stale_Input", need.name, "port"), *told)
 
     # --- body: objects
 
@@ -233,6 +232,7 @@ class Glue(Site):
         items += call_objects(self.system, self.instance)
         items += copy_objects(self.system, self.instance)
         items += heard_objects(self.system, self.instance)
+        items += overflowed(self.instance.component)
         component = self.instance.component
         items += [self._put_body(p) for p in self._connected_inputs()]
         items += [body for p in self._connected_inputs() for body in wait_body(self, p)]
@@ -259,32 +259,32 @@ class Glue(Site):
             items += [*run[:-1], executing(run[-1], slot)]
         return tuple(items)
 
-    def _board(self, name: str, of_type: str, initial: Expr, element: str) -> Instantiation:
-        return Instantiation(
+    def _board(self, name: str, of_type: Named, initial: Expr, element: str) -> GenericInstance:
+        return GenericInstance(
             f"{name}_Board",
             "Ravenchart.Blackboards",
-            arguments(Element_Type=Ref(of_type), Initial=initial, Ceiling=self._ceiling(element)),
+            arguments(Element_Type=ref(of_type), Initial=initial, Ceiling=self._ceiling(element)),
         )
 
     def _queue(
         self,
         name: str,
-        of_type: str,
+        of_type: Named,
         null: Expr,
         depth: int,
         policy: Overflow,
         element: str,
-        generic: str = "Ravenchart.Queues",
-    ) -> Instantiation:
-        return Instantiation(
+        generic: Named = "Ravenchart.Queues",
+    ) -> GenericInstance:
+        return GenericInstance(
             name,
             generic,
             arguments(
-                Element_Type=Ref(of_type),
+                Element_Type=ref(of_type),
                 Null_Element=null,
                 Capacity=number(depth),
                 Ceiling=self._ceiling(element),
-                Policy=Ref(f"Ravenchart.Queueing.{ada_case(policy.value)}"),
+                Policy=ref("Ravenchart.Queueing", ada_case(policy.value)),
             ),
         )
 
@@ -299,14 +299,16 @@ class Glue(Site):
             of_type = type_name(self.system, port.type)
             items.append(Comment(f"[{self._element(port.name)}]"))
             kind = "Releasing_Queues" if releases(self, port) else "Queues"
-            given = of_type, null, depth, policy, f"{port.name}.mailbox", f"Ravenchart.{kind}"
+            given = of_type, null, depth, policy, f"{port.name}.mailbox", ref(RUNTIME, kind)
             items.append(self._queue(f"{name}_Mailbox", *given))
-            view = f"{self.component}.{name}_View"
+            if not sampled and port in self._connected_inputs():
+                items.append(offers_of_port(self, port, of_type))
+            view = ref(self.component, f"{name}_View")
             items.append(Object(f"{name}_Port", view))
             if port.on_overflow:
                 items.append(Object(f"{name}_Lost_Before", "Ravenchart.Event_Count", number(0)))
             if self._has_object(port.name):
-                items.append(self._board(name, view, Ref("(others => <>)"), port.name))
+                items.append(self._board(name, view, all_else(BOX), port.name))
         return items
 
     def _data_objects(self) -> list[Decl]:
@@ -336,14 +338,14 @@ class Glue(Site):
             places = Places(region)
             items.append(Comment(f"[{self._element(region.name)}]"))
             kept = RegionShape(self.system, component, region).kept_as
-            items.append(Object(f"{name}_Region", f"{self.component}.{name}.{kept}"))
+            items.append(Object(f"{name}_Region", ref(self.component, name, kept)))
             items.append(
                 self._board(
                     name, leaf_type(component, region), places.initial(self.component), region.name
                 )
             )
             if region.events():
-                event = f"{self.component}.Event"
+                event = ref(self.component, "Event")
                 first = null_event(component)
                 items.append(
                     self._queue(
@@ -355,6 +357,7 @@ class Glue(Site):
                         f"{region.name}.queue",
                     )
                 )
+                items += offers_of_region(self, region, event)
             for activity, state in component.completing(region.name):
                 items.append(Comment(f"[{self._element(activity.name)}] completes {state}"))
                 for kind in ("visit", "done"):
@@ -367,14 +370,10 @@ class Glue(Site):
 
     def _put_body(self, port: Port) -> Subprogram:
         name = ada_case(port.name)
-        body: list[Stmt] = [
-            Do(f"{name}_Mailbox.Put", arguments(Ref("Item"), Ref("Status"))),
-            *self._note("Arrived", port.name, "port"),
-        ]
-        if releases(self, port):  # what it releases may run before Put returns
-            body = [*body[1:], body[0]]
+        noted = self._note("Arrived", port.name, "port")
         if port.kind is PortKind.SAMPLED:
             #  a new sample replaces the old one: nothing is lost
+            mailed = do(ref(f"{name}_Mailbox", "Put"), ref("Item"), ref("Status"))
             return Subprogram(
                 f"Put_{name}",
                 self._put_spec(port).params,
@@ -383,83 +382,41 @@ class Glue(Site):
                     Pragma(
                         "Warnings",
                         (
-                            Ref("GNATprove"),
-                            Ref("Off"),
-                            Ref('"""Status"" is set by ""Put"" but not used*"'),
-                            Ref('Reason => "a new sample replaces the old one"'),
+                            ref("GNATprove"),
+                            ref("Off"),
+                            StringLiteral('"Status" is set by "Put" but not used*'),
+                            Arg("Reason", StringLiteral("a new sample replaces the old one")),
                         ),
                     ),
                 ),
-                body=tuple(body),
+                body=(mailed, *noted),
             )
-        lost: list[Stmt] = [self._fault("Queue_Overflow")]
-        lost += self._note("Fault", port.name, "port", self._fault_number("Queue_Overflow"))
-        condition = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
-        body.append(IfStatement(((condition, tuple(lost)),)))
-        return Subprogram(
-            f"Put_{name}",
-            self._put_spec(port).params,
-            declarations=(
-                Object("Status", "Ravenchart.Queueing.Put_Status"),
-                UseType("Ravenchart.Queueing.Put_Status"),
-            ),
-            body=tuple(body),
-        )
+        body = (*noted, put(port.name, ref("Item")))
+        return Subprogram(f"Put_{name}", self._put_spec(port).params, body=body)
 
     def _offer_body(self) -> Subprogram:
         component = self.instance.component
         regions = [r for r in component.regions if r.events()]
-        rows: list[tuple[str, tuple[Stmt, ...]]] = []
+        rows: list[tuple[DottedName, tuple[Stmt, ...]]] = []
         for event in component.events:
             steps: list[Stmt] = []
             for region in regions:
                 if event.name in region.events():
-                    steps += self._enqueue(region, event, Ref("Item"), tells=True)
+                    steps.append(enqueue(region, event, ref("Item")))
             for bus in self._asked(event.name):
-                steps.append(Do(f"{ada_case(bus)}.Controller.Request_Recovery"))
+                steps.append(do(ref(ada_case(bus), "Controller.Request_Recovery")))
             steps += self._note("Raised", event.name, "event") if steps else ()
-            rows.append((f"{self.component}.{event_literal(event.name)}", tuple(steps)))
-        declarations: tuple[Decl, ...] = ()
-        if regions:
-            declarations = (
-                Object("Status", "Ravenchart.Queueing.Put_Status"),
-                UseType("Ravenchart.Queueing.Put_Status"),
-            )
+            rows.append((ref(self.component, event_literal(event.name)), tuple(steps)))
         return Subprogram(
             "Offer",
             self._offer_spec().params,
-            declarations=declarations,
-            body=(Case(Ref(name_of(component, "Item")), tuple(rows)),),
+            body=(Case(name_of(component, "Item"), rows),),
         )
 
     def _asked(self, event: str) -> tuple[str, ...]:
         """The buses that an event asks to recover."""
         pair = self.instance.name, event
         return tuple(bus.name for bus in self.system.buses if pair in bus.recovers_on)
-
-    def _enqueue(self, region: Region, event: Event, item: Expr, *, tells: bool) -> list[Stmt]:
-        """Put an event into a region's queue; with ``tells``, report what is lost by an event."""
-        queue = f"{ada_case(region.name)}_Queue"
-        full: list[Stmt] = [self._fault("Queue_Overflow")]
-        full += self._note("Fault", region.name, "region", self._fault_number("Queue_Overflow"))
-        if tells and region.on_overflow is not None:
-            full += self.overflowed(region.on_overflow)
-        condition = OperatorChain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
-        args = [item, Ref("Status")]
-        if event.overflow is not None and event.overflow is not region.overflow:
-            args.append(Ref(f"Ravenchart.Queueing.{ada_case(event.overflow.value)}"))
-        return [Do(f"{queue}.Put", arguments(*args)), IfStatement(((condition, tuple(full)),))]
-
-    def overflowed(self, name: str) -> list[Stmt]:
-        """Raise the event that tells of a loss; what is lost by that is only counted."""
-        component = self.instance.component
-        event: Event = named(component.events, name)
-        return [
-            s
-            for r in component.regions
-            if event.name in r.events()
-            for s in self._enqueue(r, event, event_value(component, name), tells=False)
-        ]
 
     def _send_body(self, port: Port) -> Subprogram:
         if port.is_command:
@@ -468,21 +425,18 @@ class Glue(Site):
         recorded = self._record(port.name, "Item")
         body: list[Stmt] = [*self._note("Sent", port.name, "port"), *recorded]
         for end in ends:
-            name = f"Put_{ada_case(end.port)}"
+            name = ref(f"Put_{ada_case(end.port)}")
             target = (
-                name if end.instance == self.instance.name else f"{ada_case(end.instance)}.{name}"
+                name if end.instance == self.instance.name else ref(ada_case(end.instance), name)
             )
-            body.append(Do(target, arguments(Ref("Item"))))
+            body.append(do(target, ref("Item")))
         for message in self.system.messages:
             if message.name in messages:
                 body.append(
-                    Do(
-                        f"{ada_case(message.bus)}.Send_{ada_case(message.name)}",
-                        arguments(Ref("Item")),
-                    )
+                    do(ref(ada_case(message.bus), f"Send_{ada_case(message.name)}"), ref("Item"))
                 )
         taken = ends or messages or recorded
-        unused = () if taken else (Pragma("Unreferenced", (Ref("Item"),)),)
+        unused = () if taken else (Pragma("Unreferenced", (ref("Item"),)),)
         param = Param("Item", "in", type_name(self.system, port.type))
         return Subprogram(
             f"Send_{ada_case(port.name)}", (param,), declarations=unused, body=tuple(body)

@@ -7,8 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.emit.ada.declarations import Decl, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import Prefix
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import Assign, Comment, Decl, Do, Param, Ref, Subprogram
+from ravenchart.gen.emit.ada.statements import Assign, Comment, do
 from ravenchart.gen.model.component import Port
 
 from .site import Site
@@ -33,9 +36,9 @@ def wait_body(site: Site, port: Port) -> Iterator[Decl]:
     """Their bodies."""
     if releases(site, port):
         name = ada_case(port.name)
-        yield Subprogram(f"Await_{name}", body=(Do(f"{name}_Mailbox.Wait"),))
+        yield Subprogram(f"Await_{name}", body=(do(ref(f"{name}_Mailbox", "Wait")),))
         if site.noted:
-            empty = Assign("Waiting", Ref(f"not {name}_Mailbox.Is_Empty"))
+            empty = Assign("Waiting", Prefix("not", ref(f"{name}_Mailbox", "Is_Empty")))
             yield Subprogram(f"Ask_{name}", _ASKED, body=(empty,))
 
 

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ravenchart.gen.emit.ada.expressions import Expr
+from ravenchart.gen.emit.ada.named import Named
 from ravenchart.gen.emit.ada.naming import component_name, priority
-from ravenchart.gen.emit.ada.syntax import Call, Do, Expr, Ref, Stmt, arguments
+from ravenchart.gen.emit.ada.statements import Stmt, do
 from ravenchart.gen.emit.language.events import event_value
-from ravenchart.gen.emit.tables.trace_calls import note
+from ravenchart.gen.emit.tables.trace_calls import fault, note
 from ravenchart.gen.emit.tables.value_calls import record
 from ravenchart.gen.model.component import Activity, Data, Port
 from ravenchart.gen.model.instances import End, Instance
@@ -75,17 +77,12 @@ class Site:
     ) -> tuple[Stmt, ...]:
         return note(self.system, kind, self._element(name), element_kind, item)
 
-    def _record(self, name: str, holder: str) -> tuple[Stmt, ...]:
+    def _record(self, name: str, holder: Named) -> tuple[Stmt, ...]:
         """Record the values of a port or data item, which the Ada object ``holder`` has."""
         return record(self.system, self.instance.name, name, holder, simulated=self.noted)
 
-    def _fault(self, kind: str) -> Stmt:
-        return Do(
-            "Health_Counts.Counters.Record_Fault", arguments(Ref(f"Ravenchart.Health.{kind}"))
-        )
-
-    def _fault_number(self, kind: str) -> Expr:
-        return Call("Ravenchart.Health.Fault_Kind'Pos", arguments(Ref(f"Ravenchart.Health.{kind}")))
+    def _fault(self, kind: str, name: str, element_kind: str) -> Stmt:
+        return fault(kind, self._element(name), element_kind)
 
     def _raise(self, event: str, value: Expr | None = None) -> Stmt:
-        return Do("Offer", arguments(event_value(self.instance.component, event, value)))
+        return do("Offer", event_value(self.instance.component, event, value))

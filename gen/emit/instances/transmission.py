@@ -5,8 +5,9 @@
 
 from __future__ import annotations
 
+from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case
-from ravenchart.gen.emit.ada.syntax import Do
+from ravenchart.gen.emit.ada.statements import Do, do
 from ravenchart.gen.model.component import Activity
 from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.statechart import Region
@@ -17,7 +18,7 @@ def transmits(system: System, instance: Instance, row: Region | Activity) -> tup
     """Send the newest value of each message of which a frame is due."""
     sources = [End(instance.name, port) for port in row.sends]
     return tuple(
-        Do(f"{ada_case(message.bus)}.Transmit_{ada_case(message.name)}")
+        do(ref(ada_case(message.bus), f"Transmit_{ada_case(message.name)}"))
         for message in system.messages
         if (message.transmission is not None or message.transport is not None)
         and message.source in sources
@@ -27,7 +28,7 @@ def transmits(system: System, instance: Instance, row: Region | Activity) -> tup
 def answers(system: System, instance: Instance) -> tuple[Do, ...]:
     """Send the flow control that the segments of a port of the instance ask for."""
     return tuple(
-        Do(f"{ada_case(message.bus)}.Answer_{ada_case(message.controls)}")
+        do(ref(ada_case(message.bus), f"Answer_{ada_case(message.controls)}"))
         for message in system.messages
         if message.controls
         and message.source is not None
@@ -35,7 +36,7 @@ def answers(system: System, instance: Instance) -> tuple[Do, ...]:
     )
 
 
-def answering(system: System, instance: Instance) -> set[str]:
+def answering(system: System, instance: Instance) -> set[DottedName]:
     """The units that the body of the instance needs for that."""
     calls = answers(system, instance)
-    return {f"{ada_case(system.name)}.{one.name.partition('.')[0]}" for one in calls}
+    return {ref(ada_case(system.name), one.name.first) for one in calls}

@@ -5,19 +5,17 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case, component_name, default_value, type_name
-from ravenchart.gen.emit.ada.syntax import (
-    Aggregate,
-    Arg,
-    Comment,
+from ravenchart.gen.emit.ada.declarations import (
     Decl,
     EnumType,
-    Expr,
     Object,
+    RecordComponent,
     RecordDeclaration,
-    Ref,
 )
-from ravenchart.gen.emit.ada.syntax import RecordComponent as Field
+from ravenchart.gen.emit.ada.expressions import BOX, OTHERS, Aggregate, Arg, Expr, all_else
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case, component_name, default_value, type_name
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.language.terms import Type, named
 from ravenchart.gen.model.component import Component, Event
 from ravenchart.gen.model.system import System
@@ -42,46 +40,45 @@ def event_types(system: System, component: Component) -> list[Decl]:
     if not carries(component):
         return [title, EnumType("Event", names)]
     types = {e.type.name: e.type for e in component.events if e.type is not None}
-    fields = [Field("Name", "Event_Name", Ref(names[0]))]
+    fields = [RecordComponent("Name", "Event_Name", ref(names[0]))]
     fields += [
-        Field(field_of(t), type_name(system, t), default_value(system, t)) for t in types.values()
+        RecordComponent(field_of(t), type_name(system, t), default_value(system, t))
+        for t in types.values()
     ]
     return [
         title,
         EnumType("Event_Name", names),
         Comment("An event with its value; components that it does not use keep their default."),
         RecordDeclaration("Event", tuple(fields)),
-        Object("No_Event", "Event", Aggregate((Arg("others", Ref("<>")),)), constant=True),
+        Object("No_Event", "Event", all_else(BOX), constant=True),
     ]
 
 
 def null_event(component: Component) -> Expr:
     """What stands where there is no event."""
     name = "No_Event" if carries(component) else event_literal(component.events[0].name)
-    return Ref(f"{component_name(component)}.{name}")
+    return ref(component_name(component), name)
 
 
 def event_value(
-    component: Component, name: str, value: Expr | None = None, prefix: str = ""
+    component: Component, name: str, value: Expr | None = None, root: str | None = None
 ) -> Expr:
-    """An event, with the value that it carries."""
+    """An event, with the value that it carries; ``root`` where the unit does not see into it."""
     event: Event = named(component.events, name)
-    literal = Ref(f"{prefix}{component_name(component)}.{event_literal(event.name)}")
+    package = ref(component_name(component))
+    if root is not None:
+        package = ref(root, package)
+    literal = ref(package, event_literal(event.name))
     if not carries(component):
         return literal
     rows = [Arg("Name", literal)]
     if event.type is not None and value is not None:
         rows.append(Arg(field_of(event.type), value))
-    return _record(component, *rows, prefix=prefix)
-
-
-def _record(component: Component, *rows: Arg, prefix: str = "") -> Aggregate:
-    """An event record; what is not given keeps its default."""
     types = {e.type.name for e in component.events if e.type is not None}
-    rest = () if len(rows) > len(types) else (Arg("others", Ref("<>")),)
-    return Aggregate((*rows, *rest), f"{prefix}{component_name(component)}.Event")
+    rest = () if len(rows) > len(types) else (Arg(OTHERS, BOX),)
+    return Aggregate((*rows, *rest), ref(package, "Event"))
 
 
-def name_of(component: Component, event: str) -> str:
+def name_of(component: Component, event: str) -> DottedName:
     """The enumeration value of an event held in ``event``."""
-    return f"{event}.Name" if carries(component) else event
+    return ref(event, "Name") if carries(component) else ref(event)

@@ -17,14 +17,13 @@ _EVERYWHERE = """
 ada boolean false interfaces natural positive ravenchart standard system true
 """
 _REGION = """
-active active_top after before beginning box c chart choice chosen completed count d data
-deferrals domain done_states due event event_lists fired firing firing_array firing_list first
-freed freed_events i initial_entry inputs ins item j kept last leaf memory none now occurrence
-outbox past place region released segment selection self t timer top_transition transition
-variables visit
+active active_at_first after before beginning box c chart choice chosen completed d data deferrals
+domain done_states due event event_lists fired firing firings first i initial_entry inputs ins
+item j last leaf memory name none now occurrence outbox past place region released segment
+selection self t time_outs timers top_transition transition variables visit was
 """
 _STATES = "leaf configuration"
-_NODES = "disorder node nowhere region self"
+_NODES = "disorder node nodes nowhere region self"
 
 _EVENTS = "activities event event_lists event_name flows no_event"
 
@@ -38,8 +37,8 @@ IN_NODES = frozenset((_EVERYWHERE + _NODES).split())
 IN_EVENTS = frozenset((_EVERYWHERE + _EVENTS).split())
 """Those of a component's package, and of units below it, that stand beside its events."""
 
-IN_LANES = frozenset(("none", "selection", "top"))
-"""Those that a choice of transitions needs to see beside its fields."""
+IN_LANES = frozenset(("node", "none", "selection", "top"))
+"""Those that records with a field for each lane need to see beside their fields."""
 
 
 def transition_literal(name: str) -> str:
@@ -63,7 +62,7 @@ def event_literal(name: str) -> str:
 
 
 def lane_name(name: str) -> str:
-    """A region of an orthogonal state as the fields of a choice name it."""
+    """A region of an orthogonal state as the fields of such records name it."""
     return _apart(name, IN_LANES, "Region")
 
 

@@ -12,24 +12,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.emit.ada.naming import ada_case, states_package, where
-from ravenchart.gen.emit.ada.syntax import (
-    Aggregate,
-    Arg,
-    Comment,
+from ravenchart.gen.emit.ada.declarations import (
     Decl,
     EnumType,
-    Expr,
-    OperatorChain,
     Package,
-    PlainType,
     RecordComponent,
     RecordDeclaration,
-    Ref,
+    SubtypeDeclaration,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    Aggregate,
+    Arg,
+    Expr,
+    OperatorChain,
+    Range,
+    RangeConstrained,
     both,
     equal,
     member,
 )
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
+from ravenchart.gen.emit.ada.naming import ada_case, states_package, where
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Region
 from ravenchart.gen.origins import Origin
@@ -57,9 +61,9 @@ class Places:
         return len(self.lanes) == 1
 
     @property
-    def place_type(self) -> str:
+    def place_type(self) -> DottedName:
         """The type of a configuration, from inside the component's packages."""
-        return f"{self.states}.{'Leaf' if self.single else 'Configuration'}"
+        return ref(self.states, "Leaf" if self.single else "Configuration")
 
     @property
     def place(self) -> str:
@@ -87,9 +91,9 @@ class Places:
         """Its component of a configuration."""
         return "Top" if lane.owner is None else f"In_{ada_case(lane.name)}"
 
-    def at(self, holder: str, lane: Lane) -> str:
+    def at(self, holder: Named, lane: Lane) -> DottedName:
         """The leaf of a lane in the configuration that ``holder`` names."""
-        return holder if self.single else f"{holder}.{self.lane_field(lane)}"
+        return ref(holder) if self.single else ref(holder, self.lane_field(lane))
 
     def literals(self, lane: Lane) -> tuple[str, ...]:
         """The leaves of a lane in tree order, passed pseudostates behind their siblings."""
@@ -112,19 +116,19 @@ class Places:
             or len(self.region.state(vertex).regions) != 1
         )
 
-    def literal(self, vertex: str) -> str:
-        """A leaf or composite by its expanded name."""
-        return f"{self.states}.{state_literal(vertex)}"
+    def literal(self, vertex: str, component: str | None = None) -> DottedName:
+        """A leaf or composite by its expanded name, as seen from inside ``component`` if given."""
+        own = ref(self.states, state_literal(vertex))
+        return own if component is None else ref(component, own)
 
-    def in_state(self, holder: str, vertex: str, prefix: str = "") -> Expr:
+    def in_state(self, holder: Named, vertex: str, component: str | None = None) -> Expr:
         """Is the configuration that ``holder`` names in a state, or inside it?"""
         lane = self.lane(vertex)
-        leaf = Ref(self.at(holder, lane))
-        name = prefix + self.literal(vertex)
-        here = equal(leaf, Ref(name)) if self.is_literal(vertex) else member(leaf, name)
+        leaf, name = self.at(holder, lane), self.literal(vertex, component)
+        here = equal(leaf, name) if self.is_literal(vertex) else member(leaf, name)
         if lane.owner is None:
             return here
-        return both(*flat([self.in_state(holder, lane.owner, prefix), here]))
+        return both(*flat([self.in_state(holder, lane.owner, component), here]))
 
     def traced(self, lane: Lane) -> str:
         """The name under which traces know a lane."""
@@ -155,14 +159,14 @@ class Places:
         for state in self.region.states:
             if len(state.regions) == 1:
                 leaves = list(self.literals_in(Place(state.name, state.regions[0].name)))
-                outer = self.parent_type(state.name)
-                bounds = f"{outer} range {state_literal(leaves[0])} .. {state_literal(leaves[-1])}"
+                bounds = Range(ref(state_literal(leaves[0])), ref(state_literal(leaves[-1])))
+                base = RangeConstrained(self.parent_type(state.name), bounds)
                 items.append(self._where(state.name, model))
-                items.append(PlainType(state_literal(state.name), bounds, subtype=True))
+                items.append(SubtypeDeclaration(state_literal(state.name), base))
         if not self.single:
             rows = tuple(
                 RecordComponent(
-                    self.lane_field(n), self.lane_type(n), Ref(state_literal(self.default_leaf(n)))
+                    self.lane_field(n), self.lane_type(n), ref(state_literal(self.default_leaf(n)))
                 )
                 for n in reversed(self.lanes)
             )
@@ -199,23 +203,24 @@ class Places:
                 found |= {n: self.default_leaf(n) for n in self.lanes_of(step.vertex)}
         return found
 
-    def configuration(self, leaves: dict[Lane, str], kept: str, prefix: str = "") -> Expr:
+    def configuration(
+        self, leaves: dict[Lane, str], kept: Named | None, component: str | None = None
+    ) -> Expr:
         """A configuration with these leaves; those of other lanes come from ``kept``."""
-        if self.single:
-            return Ref(prefix + self.literal(leaves[self.lanes[0]]) if leaves else kept)
         rows = tuple(
-            Arg(self.lane_field(lane), Ref(prefix + self.literal(leaves[lane])))
+            Arg(self.lane_field(lane), self.literal(leaves[lane], component))
             for lane in reversed(self.lanes)
             if lane in leaves
         )
+        base = None if kept is None or len(rows) == len(self.lanes) else ref(kept)
         if not rows:
-            return Ref(kept)
-        return Aggregate(rows, base=kept if len(rows) < len(self.lanes) else None)
+            assert base is not None
+            return base
+        return rows[0].value if self.single else Aggregate(rows, base=base)
 
-    def initial(self, component: str = "") -> Expr:
+    def initial(self, component: str | None = None) -> Expr:
         """The configuration before the region has started, seen from inside ``component``."""
-        prefix = f"{component}." if component else ""
-        return self.configuration({n: self.default_leaf(n) for n in self.lanes}, "", prefix)
+        return self.configuration({n: self.default_leaf(n) for n in self.lanes}, None, component)
 
 
 def flat(parts: list[Expr]) -> list[Expr]:

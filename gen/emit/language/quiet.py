@@ -1,184 +1,237 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Models in which the compiler can decide conditions, and what keeps it from saying so.
+"""Conditions that the compiler can decide, and what keeps it from saying so.
 
-A type of one value, a region of one leaf or a guard that ranges decide are
-sound, and the compiler warns of each. Only the units in which such a condition
-can stand say that these warnings are not wanted.
+A type of one value, a region of one leaf or a guard that ranges decide are sound, and the
+compiler warns of each. Only a unit in which such a condition stands says that these warnings
+are not wanted: what stands in it is read from its constructs, and ranges from the terms of
+the model.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from ravenchart.gen.emit.ada.syntax import Package, Pragma, Ref, Unit, compares
+from ravenchart.gen.emit.ada.declarations import Package, Unit
+from ravenchart.gen.emit.ada.expressions import ChoiceList, Membership, OperatorChain, StringLiteral
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import component_name
+from ravenchart.gen.emit.ada.statements import Pragma
+from ravenchart.gen.emit.ada.walking import nodes_in
 from ravenchart.gen.language import terms as m
+from ravenchart.gen.language.narrowing import COMPARISONS
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region, When
-from ravenchart.gen.model.system import System
 
 from .places import Places
 from .terms import expressions_in
 
-_DECIDED = ("can only be", "can never be")
-_MEMBERSHIP = ("explicit membership test", "'Valid attribute")
+_DECIDED = "can * be"
+"""What it says of a condition that ranges decide, "can only be" or "can never be"."""
+_MEMBERSHIP = "explicit membership test"
 """What it says of a state that is always active."""
-_COMPUTED = ("condition is always",)
+_COMPUTED = "condition is always"
 """What it says where operators, and not types alone, decide."""
+_IDLE = "formal parameter * is not referenced"
+"""What it says of functions of a chart without transitions: they ask for nothing that occurs."""
 
 
-def quiet(unit: Unit, words: Sequence[str]) -> Unit:
-    """The unit, with the warnings of these words off where a comparison stands in it."""
-    if not isinstance(unit.item, Package) or not words or not compares(unit.item):
+class DecidedStates:
+    """The states that are active whatever their regions do, as the units of Ada name them."""
+
+    def __init__(self, components: Sequence[Component]) -> None:
+        self._literals: set[DottedName] = set()
+        self._composites: set[DottedName] = set()
+        for component in components:
+            for region in component.regions:
+                self._add(component, Places(region))
+
+    def _add(self, component: Component, places: Places) -> None:
+        lanes = [places.literals(lane) for lane in places.lanes]
+        single = [leaves[0] for leaves in lanes if len(leaves) == 1]
+        for own, found in ((self._literals, single), (self._composites, _whole(places, lanes))):
+            own.update(places.literal(name, component_name(component)) for name in found)
+
+    def words(self, unit: Unit, component: Component | None) -> Iterator[str]:
+        """What the compiler says of the states that a unit asks for."""
+        prefix = () if component is None else (component_name(component),)
+        for node in nodes_in(unit.item):
+            match node:
+                case OperatorChain("=" | "/=", (_, DottedName() as asked)):
+                    if ref(*prefix, asked) in self._literals:
+                        yield _DECIDED
+                case Membership(_, ChoiceList((DottedName() as asked,))):
+                    if ref(*prefix, asked) in self._composites:
+                        yield _MEMBERSHIP
+
+
+def _whole(places: Places, lanes: Sequence[tuple[str, ...]]) -> list[str]:
+    """The composites that hold all the leaves of their lane."""
+    found = []
+    for state in places.region.states:
+        if len(state.regions) == 1:
+            leaves = tuple(places.literals_in(Place(state.name, state.regions[0].name)))
+            if leaves in lanes:
+                found.append(state.name)
+    return found
+
+
+def quiet(unit: Unit, words: Iterator[str]) -> Unit:
+    """The unit, with the warnings of these words off."""
+    if not isinstance(unit.item, Package):
         return unit
-    pragmas = (Pragma("Warnings", (Ref("Off"), Ref(f'"*{word} *"'))) for word in words)
+    wanted = set(words)
+    ordered = (word for word in (_DECIDED, _MEMBERSHIP, _COMPUTED, _IDLE) if word in wanted)
+    pragmas = (Pragma("Warnings", (ref("Off"), StringLiteral(f"*{word}*"))) for word in ordered)
     return replace(unit, item=replace(unit.item, items=(*pragmas, *unit.item.items)))
 
 
-class OfComponent:
-    """What the compiler says of conditions that it can decide in the units of a component.
+def words_of(expressions: Iterable[m.Expression], *, by_name: bool = False) -> Iterator[str]:
+    """What the compiler says of these terms of the model.
 
-    ``types`` is what it says of the types of the system (`words_of_types`).
+    With ``by_name`` the names in them are parameters of their own, of which it knows that
+    `x - 1` is below `x`.
     """
-
-    def __init__(self, component: Component, types: Sequence[str]) -> None:
-        self.component, self.types = component, types
-        self._states = {r.name: _words_of_states(r) for r in component.regions}
-
-    def region(self, region: Region) -> tuple[str, ...]:
-        """In the package of a region, which may ask for the states of others."""
-        asked = (self._states[name] for name in region.reads if name in self._states)
-        return _in_order(_words([*_of_region(region)], [region]), self.types, *asked)
-
-    def activities(self) -> tuple[str, ...]:
-        """In the packages of its activities."""
-        own = _words([*_of_activities(self.component)], [])
-        return _in_order(own, self.types, *self._states.values())
+    for expression in expressions:
+        if isinstance(expression, m.Operation):
+            yield from words_of(expression.operands, by_name=by_name)
+            if expression.operator in COMPARISONS:
+                yield from _words(expression, by_name)
 
 
-def words_of_system(system: System) -> tuple[str, ...]:
-    """The same in the units that belong to no component."""
-    regions = [r for c in system.components for r in c.regions]
-    expressions = [e for c in system.components for e in _of_component(c)]
-    return _in_order(_words(expressions, regions), words_of_types(system))
+def words_of_idle(region: Region) -> Iterator[str]:
+    """What the compiler says in the spec of a region that never fires."""
+    if not Places(region).compounds.firings:
+        yield from (_DECIDED, _COMPUTED, _IDLE)
 
 
-def words_of_types(system: System) -> tuple[str, ...]:
-    """What it says of the only value of a type."""
-    return _DECIDED if any(_has_one_value(t) for t in system.types) else ()
+def declared_in(component: Component, region: Region) -> list[m.Expression]:
+    """The terms in the spec of a region: guards, conditions and invariants."""
+    found = [t.guard for t in region.transitions if t.guard is not None]
+    found += [t.trigger.condition for t in region.transitions if isinstance(t.trigger, When)]
+    return found + [one.condition for one in component.invariants]
 
 
-def _in_order(*found: Iterable[str]) -> tuple[str, ...]:
-    wanted = {word for words in found for word in words}
-    return tuple(word for word in (*_DECIDED, *_MEMBERSHIP, *_COMPUTED) if word in wanted)
+def done_in(region: Region) -> list[m.Expression]:
+    """The terms in its body: those of behaviours."""
+    flows = [t.effect for t in region.transitions]
+    flows += [flow for state in region.states for flow in (state.entry, state.exit)]
+    flows += [r.initial.effect for state in region.states for r in state.regions]
+    return [e for flow in (*flows, region.initial.effect) for e in expressions_in(flow)]
 
 
-def _words(expressions: Sequence[m.Expression], regions: Sequence[Region]) -> Iterator[str]:
-    """The words for what stands in expressions, and for the places of regions."""
-    if any(_is_decided(e) for e in expressions):
-        yield from _DECIDED
-    if any(_is_decided(e, computed=True) for e in expressions):
-        yield from _COMPUTED
-    if any(not region.transitions for region in regions):
-        yield from _DECIDED
-    for region in regions:
-        yield from _words_of_states(region)
+def promised_in(component: Component) -> list[m.Expression]:
+    """The terms of the contracts of activities."""
+    clauses = (c for a in component.activities for c in (*a.requires, *a.ensures))
+    return [clause.condition for clause in clauses]
 
 
-def _words_of_states(region: Region) -> tuple[str, ...]:
-    """The words for a state that is active whatever its region does."""
-    if _has_whole_state(region):
-        return (*_DECIDED, *_MEMBERSHIP)
-    return _DECIDED if _has_single_leaf(region) else ()
+def worked_in(component: Component) -> list[m.Expression]:
+    """The terms of the activities that the model gives."""
+    return [e for a in component.activities for e in expressions_in(a.flow or ())]
 
 
-def _has_single_leaf(region: Region) -> bool:
-    """Is a lane a single leaf?"""
-    places = Places(region)
-    return any(len(places.literals(lane)) == 1 for lane in places.lanes)
+Range = tuple[float, float]
+_ANY: Range = (-math.inf, math.inf)
 
 
-def _has_whole_state(region: Region) -> bool:
-    """Holds a composite all the leaves of its lane?"""
-    places = Places(region)
-    lanes = [places.literals(lane) for lane in places.lanes]
-    nested = (s for s in region.states if len(s.regions) == 1)
-    inside = (tuple(places.literals_in(Place(s.name, s.regions[0].name))) for s in nested)
-    return any(leaves in lanes for leaves in inside)
+def _words(comparison: m.Operation, by_name: bool) -> Iterator[str]:
+    operator, (left, right) = comparison.operator, comparison.operands
+    if _is_of_one_value(left) or _is_of_one_value(right):
+        yield _DECIDED
+    if by_name and _apart_by_a_number(left, right):
+        yield from (_DECIDED, _COMPUTED)
+    held = _range(left, valid=True), _range(right, valid=True)
+    if held[0] is not None and held[1] is not None:
+        if _tells(operator, held[0], held[1]):
+            yield _DECIDED
+        always = _range(left, valid=False), _range(right, valid=False)
+        assert always[0] is not None
+        assert always[1] is not None
+        if _tells(operator, always[0], always[1], halves=False):
+            yield _COMPUTED
 
 
-def _has_one_value(of_type: m.Type) -> bool:
-    match of_type:
-        case m.IntegerType():
-            return of_type.first == of_type.last
-        case m.EnumerationType():
-            return len(of_type.literals) == 1
-        case _:
-            return False
+def _is_of_one_value(side: m.Expression) -> bool:
+    return isinstance(side, m.Name) and m.has_one_value(_type_of(side))
 
 
-def _of_component(component: Component) -> Iterator[m.Expression]:
-    for region in component.regions:
-        yield from _of_region(region)
-    yield from _of_activities(component)
+def _type_of(name: m.Name) -> m.Type:
+    """The type of a name, or of the field that it selects."""
+    if isinstance(name.type, m.RecordType) and name.field:
+        return name.type.field(name.field).type
+    return name.type
 
 
-def _of_region(region: Region) -> Iterator[m.Expression]:
-    for transition in region.transitions:
-        yield from (e for e in (transition.guard,) if e is not None)
-        if isinstance(transition.trigger, When):
-            yield transition.trigger.condition
-        yield from expressions_in(transition.effect)
-    for state in region.states:
-        yield from (*expressions_in(state.entry), *expressions_in(state.exit))
+def _apart_by_a_number(left: m.Expression, right: m.Expression) -> bool:
+    """Are both one name, with a number added or subtracted?"""
+    names = [_name(side) for side in (left, right)]
+    return names[0] is not None and names[0] == names[1]
 
 
-def _of_activities(component: Component) -> Iterator[m.Expression]:
-    for activity in component.activities:
-        yield from expressions_in(activity.flow or ())
-        yield from (clause.condition for clause in (*activity.requires, *activity.ensures))
+def _name(side: m.Expression) -> m.Name | None:
+    """The name of a sum of it and a number, or the name itself."""
+    match side:
+        case m.Name(field=None):
+            return side
+        case m.Operation("+" | "-", (m.Name(field=None) as name, m.Literal())):
+            return name
+    return None
 
 
-def _is_decided(expression: m.Expression, *, computed: bool = False) -> bool:
-    """Holds it a comparison whose outcome, or one of whose halves, the ranges decide?
+def _tells(operator: str, left: Range, right: Range, *, halves: bool = True) -> bool:
+    """Do the ranges of both sides decide a comparison, or one of the halves of `<=` and `>=`?"""
+    apart = left[1] < right[0] or right[1] < left[0]
+    above, below = left[0] >= right[1], left[1] <= right[0]
+    match operator:
+        case ">":
+            return apart or below
+        case "<":
+            return apart or above
+        case ">=":
+            return apart or above or (below and halves)
+        case "<=":
+            return apart or below or (above and halves)
+    return apart or (above and below)
 
-    With ``computed`` only comparisons with an operation count.
+
+def _range(expression: m.Expression, *, valid: bool) -> Range | None:
+    """What the compiler knows of a number, where it takes those of names for ``valid`` or not.
+
+    None: nothing, as of what attributes and conditional expressions give.
     """
-    if not isinstance(expression, m.Operation):
-        return isinstance(expression, m.Literal) and isinstance(expression.value, bool)
-    if any(_is_decided(o, computed=computed) for o in expression.operands):
-        return True
-    if expression.operator not in ("=", "/=", "<", "<=", ">", ">="):
-        return False
-    if computed and not any(isinstance(o, m.Operation) for o in expression.operands):
-        return False
-    names = [_names(o) for o in expression.operands]
-    if names[0] & names[1]:  # the compiler knows that `x - 1` is below `x`
-        return True
-    left, right = (_bounds(o) for o in expression.operands)
-    return bool(left and right and (left[0] >= right[1] or right[0] >= left[1]))
-
-
-def _names(expression: m.Expression) -> frozenset[m.Expression]:
-    """Everything that an expression reads."""
-    return frozenset(leaf for leaf in m.leaves(expression) if isinstance(leaf, m.Name))
-
-
-def _bounds(expression: m.Expression) -> tuple[int, int] | None:
     match expression:
+        case m.Literal(bool()):
+            return None
         case m.Literal(int(value)):
             return value, value
-        case m.Operation(type=None):
-            return expression.low, expression.high
-        case m.Name(_, _, field, of_type):
-            scalar = (
-                of_type.field(field).type
-                if isinstance(of_type, m.RecordType) and field
-                else of_type
-            )
+        case m.Name():
+            scalar = _type_of(expression)
             if isinstance(scalar, m.IntegerType):
-                return scalar.first, scalar.last
+                return (scalar.first, scalar.last) if valid else _ANY
+        case m.Operation("+" | "-" | "*" | "/" | "neg" | "abs", operands):
+            ranges = [_range(operand, valid=valid) for operand in operands]
+            if all(ranges):
+                known = [r for r in ranges if r is not None]
+                if valid:
+                    return expression.low, expression.high
+                return _result(expression.operator, known)
     return None
+
+
+def _result(operator: str, given: Sequence[Range]) -> Range:
+    """The range of an operation on these; any where that is not simple."""
+    match operator, given:
+        case "+", [left, right]:
+            return left[0] + right[0], left[1] + right[1]
+        case "-", [left, right]:
+            return left[0] - right[1], left[1] - right[0]
+        case "neg", [only]:
+            return -only[1], -only[0]
+        case "abs", [only]:
+            return max(0, only[0], -only[1]), max(-only[0], only[1])
+    return _ANY

@@ -8,25 +8,23 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
-from ravenchart.gen.emit.ada.naming import ada_case, counted, type_name, unit_type
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.expressions import (
     FALSE,
     TRUE,
     Aggregate,
     Arg,
-    Assign,
-    Call,
-    Do,
+    Attribute,
     Expr,
     IfExpr,
-    IfStatement,
-    Old,
     OperatorChain,
     Prefix,
-    Ref,
-    Stmt,
-    arguments,
+    call,
+    old,
+    select,
 )
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
+from ravenchart.gen.emit.ada.naming import NUMBER, ada_case, counted, type_name, unit_type
+from ravenchart.gen.emit.ada.statements import Assign, IfStatement, Stmt, do
 from ravenchart.gen.language import terms as m
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.system import System
@@ -36,6 +34,8 @@ from .places import Places
 
 _CHAINS = {"and": "and then", "or": "or else"}
 _FUNCTIONS = {"min": "Min", "max": "Max"}
+FRESHNESS = ref("Ravenchart.Freshness")
+"""Whether the value of a port is recent enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,9 +49,9 @@ class Scope:
 
     system: System
     component: Component
-    variable: Callable[[str], str]
-    target: Callable[[str], str]
-    sent: Callable[[str], tuple[str, str]]
+    variable: Callable[[str], Named]
+    target: Callable[[str], Named]
+    sent: Callable[[str], tuple[Named, Named]]
     raised: Callable[[str, Expr | None], tuple[Stmt, ...]]
 
 
@@ -89,29 +89,29 @@ def states_in(expression: m.Expression) -> set[tuple[str, str]]:
     return {(test.region, test.state) for test in tests}
 
 
-def compared_states(component: Component, expressions: Iterable[m.Expression]) -> set[str]:
+def compared_states(component: Component, expressions: Iterable[m.Expression]) -> set[DottedName]:
     """The types of states that expressions compare, seen from the component's package."""
     asked = {pair for e in expressions for pair in states_in(e)}
     return {
-        f"{places.states}.{kind}"
+        ref(places.states, kind)
         for name, state in asked
         for places in (Places(component.region(name)),)
         for kind in places.compared_types(state)
     }
 
 
-def operators_in(expression: m.Expression) -> set[str]:
+def operators_in(expression: m.Expression) -> set[DottedName]:
     """The runtime's types whose operators an expression uses."""
     match expression:
         case m.PortTest():
-            return {"Ravenchart.Freshness"}
+            return {FRESHNESS}
         case m.Operation(operator, operands):
             found = {name for operand in operands for name in operators_in(operand)}
             plain = any(_is_plain(o) for o in operands)
             if operator in ("*", "/") and expression.unit is not None:
                 plain = False  # plain factors are converted
             if operator not in ("min", "max", "clamp", "if") and plain:
-                found.add("Ravenchart.Number")
+                found.add(NUMBER)
             return found
         case _:
             return set()
@@ -178,7 +178,7 @@ def _set_anew(data: str, rest: m.Flow) -> bool:
     return False
 
 
-def flow_operators(flow: m.Flow) -> set[str]:
+def flow_operators(flow: m.Flow) -> set[DottedName]:
     """The runtime's types whose operators a flow uses."""
     return {name for expression in expressions_in(flow) for name in operators_in(expression)}
 
@@ -206,14 +206,15 @@ def emit_expression(scope: Scope, expression: m.Expression, unit: str | None = N
         case m.Literal(value, of_type):
             return _literal(scope, value, of_type, unit)
         case m.Name(m.Reading.OLD, name, field):
-            return Old(scope.variable(name), "" if field is None else f".{ada_case(field)}")
+            before = old(ref(scope.variable(name)))
+            return before if field is None else select(before, ada_case(field))
         case m.Name(m.Reading.SENT, name):
-            return Ref(scope.sent(name)[1])
+            return ref(scope.sent(name)[1])
         case m.Name():
-            return Ref(_name(scope, expression))
+            return _name(scope, expression)
         case m.PortTest(port, state):
             view = scope.variable(port)
-            return OperatorChain("=", (Ref(f"{view}.State"), Ref(f"Ravenchart.{ada_case(state)}")))
+            return OperatorChain("=", (ref(view, "State"), ref("Ravenchart", ada_case(state))))
         case m.InState(region, state):
             return _in_state(scope, region, state)
         case m.Operation():
@@ -225,24 +226,17 @@ def _literal(scope: Scope, value: m.Scalar, of_type: m.ScalarType | None, unit: 
         return counted(value, unit)
     if of_type is None or of_type == m.BOOLEAN:
         return TRUE if str(value).lower() == "true" else FALSE
-    return Ref(f"{ada_case(scope.system.name)}.{ada_case(str(value))}")
+    return ref(ada_case(scope.system.name), ada_case(str(value)))
 
 
-def _name(scope: Scope, name: m.Name) -> str:
+def _name(scope: Scope, name: m.Name) -> DottedName:
+    fields = [] if name.field is None else [ada_case(name.field)]
     if name.kind is m.Reading.EVENT:
-        return _of_event(scope, name)
-    text = scope.variable(name.name)
-    if name.kind is m.Reading.PORT:
-        text += ".Value"
-    return text if name.field is None else f"{text}.{ada_case(name.field)}"
-
-
-def _of_event(scope: Scope, name: m.Name) -> str:
-    """The value of the event that a step is made for, or a field of it."""
-    of_type = m.named(scope.component.events, name.name).type
-    assert of_type is not None
-    text = f"Item.{field_of(of_type)}"
-    return text if name.field is None else f"{text}.{ada_case(name.field)}"
+        of_type = m.named(scope.component.events, name.name).type
+        assert of_type is not None
+        return ref("Item", field_of(of_type), *fields)
+    value = ["Value"] if name.kind is m.Reading.PORT else []
+    return ref(scope.variable(name.name), *value, *fields)
 
 
 def _in_state(scope: Scope, region_name: str, state: str) -> Expr:
@@ -278,16 +272,15 @@ def _bounded(
     base = unit_type(scope.system, unit)
     if operation.operator == "clamp":
         item, low, high = operands
-        inner = Call(f"{base}'Max", arguments(item, low))
-        return Call(f"{base}'Min", arguments(inner, high))
-    return Call(f"{base}'{_FUNCTIONS[operation.operator]}", arguments(*operands))
+        return call(Attribute(base, "Min"), call(Attribute(base, "Max"), item, low), high)
+    return call(Attribute(base, _FUNCTIONS[operation.operator]), *operands)
 
 
 def _scaled(scope: Scope, unit: str | None, operand: m.Expression) -> Expr:
     """A factor in the unit type of the product, for Ada multiplies only within a type."""
     if isinstance(operand, m.Literal) or unit_of(operand) == unit:
         return emit_expression(scope, operand, unit)
-    return Call(unit_type(scope.system, unit), arguments(emit_expression(scope, operand)))
+    return call(unit_type(scope.system, unit), emit_expression(scope, operand))
 
 
 def emit_flow(scope: Scope, flow: m.Flow) -> tuple[Stmt, ...]:
@@ -298,15 +291,15 @@ def emit_flow(scope: Scope, flow: m.Flow) -> tuple[Stmt, ...]:
 def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
     match action:
         case m.Set(_, data, field, value):
-            target = scope.target(data) + (f".{ada_case(field)}" if field else "")
+            target = ref(scope.target(data), *([ada_case(field)] if field else []))
             item = next(d.type for d in scope.component.data if d.name == data)
             return (Assign(target, emit_expression(scope, value, _unit_in(item, field))),)
         case m.Send(_, port, values):
             slot, flag = scope.sent(port)
             if scope.component.port(port).is_void:
-                return (Assign(flag, TRUE),)
+                return (Assign(ref(flag), TRUE),)
             given = _given(scope, scope.component.port(port).type, values)
-            return (Assign(slot, given), Assign(flag, TRUE))
+            return (Assign(ref(slot), given), Assign(ref(flag), TRUE))
         case m.Raise(_, event, values):
             of_type = m.named(scope.component.events, event).type if values else None
             return scope.raised(event, _given(scope, of_type, values) if of_type else None)
@@ -336,9 +329,9 @@ def _given(
     )
 
 
-def raise_in_list(list_package: str, target: str, event: Expr) -> Stmt:
+def raise_in_list(list_package: str, target: Named, event: Expr) -> Stmt:
     """Append ``event`` to the list of events raised in this step."""
-    return Do(f"{list_package}.Append", arguments(Ref(target), event))
+    return do(ref(list_package, "Append"), ref(target), event)
 
 
 def asks_event(expression: m.Expression) -> bool:

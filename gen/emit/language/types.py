@@ -5,7 +5,25 @@
 
 from __future__ import annotations
 
+from ravenchart.gen.emit.ada.declarations import (
+    SPARK,
+    Aspect,
+    Decl,
+    DerivedDefinition,
+    EnumType,
+    Object,
+    Package,
+    RecordComponent,
+    RecordDeclaration,
+    SubtypeDeclaration,
+    TypeDeclaration,
+    Unit,
+)
+from ravenchart.gen.emit.ada.expressions import Expr, Range, RangeConstrained, signed
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import (
+    NUMBER,
+    RUNTIME,
     ada_case,
     counted,
     default_name,
@@ -13,20 +31,7 @@ from ravenchart.gen.emit.ada.naming import (
     unit_type,
     value,
 )
-from ravenchart.gen.emit.ada.syntax import (
-    SPARK,
-    Aspect,
-    Comment,
-    Decl,
-    EnumType,
-    Object,
-    Package,
-    PlainType,
-    Ref,
-    Unit,
-)
-from ravenchart.gen.emit.ada.syntax import RecordComponent as RecordComponent
-from ravenchart.gen.emit.ada.syntax import RecordDeclaration as AdaRecord
+from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     EnumerationType,
@@ -43,38 +48,36 @@ def emit_root(system: System, header: str) -> Unit:
     items: list[Decl] = []
     for unit in system.units:
         items.append(Comment(f"All values counted in {unit}."))
-        items.append(PlainType(unit_type(system, unit).split(".")[-1], "new Ravenchart.Number"))
+        items.append(TypeDeclaration(unit_type(system, unit).last, DerivedDefinition(NUMBER)))
     scalars = [t for t in system.types if not isinstance(t, RecordType)]
     records = [t for t in system.types if isinstance(t, RecordType)]
     for item in (*scalars, *records):
         if item != BOOLEAN:
             items += _declare(system, item)
-    withs = ("Ravenchart",)
     name = ada_case(system.name)
-    return Unit(header, withs, Package(name, tuple(items), (SPARK, Aspect("Pure"))))
+    return Unit(header, (RUNTIME,), Package(name, tuple(items), (SPARK, Aspect("Pure"))))
 
 
-def _bound(value: int, unit: str | None) -> str:
-    bound = counted(value, unit)
-    return bound.text if unit is None and value < 0 and isinstance(bound, Ref) else f"{value:_}"
+def _bound(value: int, unit: str | None) -> Expr:
+    return counted(value, unit) if unit is None else signed(value)
 
 
 def _declare(system: System, item: Type) -> list[Decl]:
     name = ada_case(item.name)
     match item:
         case IntegerType(_, _, first, last, unit):
-            bounds = f"{_bound(first, unit)} .. {_bound(last, unit)}"
-            base = unit_type(system, unit).removeprefix(f"{ada_case(system.name)}.")
-            return [PlainType(name, f"{base} range {bounds}", subtype=True)]
+            bounds = Range(_bound(first, unit), _bound(last, unit))
+            base = NUMBER if unit is None else ref(unit_type(system, unit).last)
+            return [SubtypeDeclaration(name, RangeConstrained(base, bounds))]
         case EnumerationType(_, _, literals):
             return [EnumType(name, tuple(ada_case(i) for i in literals))]
         case RecordType(_, _, fields):
             rows = tuple(
                 RecordComponent(ada_case(f.name), type_name(system, f.type)) for f in fields
             )
-            constant = default_name(system, item).split(".")[-1]
+            constant = default_name(system, item).last
             start = value(system, item, default(item))
             return [
-                AdaRecord(name, rows),
+                RecordDeclaration(name, rows),
                 Object(constant, name, start, constant=True),
             ]

@@ -6,6 +6,34 @@
 from __future__ import annotations
 
 from ravenchart.gen.derive.instants import has_offset
+from ravenchart.gen.emit.ada.declarations import (
+    SPARK,
+    ArrayDefinition,
+    Aspect,
+    Decl,
+    EnumType,
+    GenericInstance,
+    Object,
+    Package,
+    Param,
+    Subprogram,
+    TypeDeclaration,
+    Unit,
+    UseType,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    Aggregate,
+    Arg,
+    Expr,
+    Indexed,
+    OperatorChain,
+    StringLiteral,
+    arguments,
+    equal,
+    number,
+    record,
+)
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import (
     ada_case,
     constant_name,
@@ -14,36 +42,7 @@ from ravenchart.gen.emit.ada.naming import (
     root_package,
     row_name,
 )
-from ravenchart.gen.emit.ada.syntax import (
-    SPARK,
-    Aggregate,
-    Arg,
-    Aspect,
-    Call,
-    Case,
-    Comment,
-    Decl,
-    Do,
-    EnumType,
-    Expr,
-    GenericInstance,
-    IfStatement,
-    Object,
-    OperatorChain,
-    Package,
-    Param,
-    PlainType,
-    Pragma,
-    Ref,
-    Stmt,
-    Subprogram,
-    Unit,
-    UseType,
-    arguments,
-    do,
-    equal,
-    number,
-)
+from ravenchart.gen.emit.ada.statements import Case, Comment, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.emit.buses.packages import emit_bus
 from ravenchart.gen.emit.certificate.certified import (
     CERTIFICATE,
@@ -53,7 +52,13 @@ from ravenchart.gen.emit.certificate.certified import (
     timed_by,
 )
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID
-from ravenchart.gen.emit.tables.trace_calls import element_constant, note, row_number, traced
+from ravenchart.gen.emit.tables.trace_calls import (
+    element_constant,
+    fault,
+    fault_units,
+    row_number,
+    traced,
+)
 from ravenchart.gen.emit.tables.trace_map import VALUE, MappedElement, elements
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.nodes import Node
@@ -63,7 +68,7 @@ from ravenchart.gen.model.system import Processor, Slot, System, Work
 from .reports import emit_main, emit_reports
 from .supervision import emit_supervision, offer
 
-BUFFERS = "Ravenchart.Value_Buffers"
+BUFFERS = ref("Ravenchart.Value_Buffers")
 
 PROBE_STACK = 16_384
 """Bytes of stack for the host probe."""
@@ -94,22 +99,31 @@ def emit_without_tasks(system: System, header: str) -> tuple[Unit, ...]:
 
 def _health(system: System, header: str) -> Unit:
     args = arguments(Ceiling=priority(system.object("health").ceiling))
-    return _holding(system, "Health_Counts", "Counters", "Ravenchart.Health_Counters", args, header)
+    counters, reports = ref("Ravenchart.Health_Counters"), ref("Ravenchart.Fault_Reports")
+    does = arguments(Record_Fault=ref("Counters.Record_Fault"))
+    does += arguments(Note=ref("Trace.Buffer.Note")) if traced(system) else ()
+    root = root_package(system)
+    trace = (ref(root, "Trace"),) if traced(system) else ()
+    items = GenericInstance("Counters", counters, args), GenericInstance("Faults", reports, does)
+    package = Package(ref(root, "Health_Counts"), items, (SPARK,))
+    return Unit(header, (counters, reports, ref("System"), *trace), package)
 
 
 def _holding(
     system: System,
     unit: str,
     name: str,
-    generic: str,
+    generic: Named,
     args: tuple[Arg, ...],
     header: str,
     checks: tuple[Decl, ...] = (),
 ) -> Unit:
     """A unit around an instance: gnatprove checks no ceiling in an instance that is a unit."""
     root = root_package(system)
-    package = Package(f"{root}.{unit}", (GenericInstance(name, generic, args), *checks), (SPARK,))
-    return Unit(header, (generic, f"{root}.{CERTIFICATE}" if checks else "System"), package)
+    package = Package(ref(root, unit), (GenericInstance(name, generic, args), *checks), (SPARK,))
+    return Unit(
+        header, (ref(generic), ref(root, CERTIFICATE) if checks else ref("System")), package
+    )
 
 
 def _trace(system: System, header: str) -> Unit:
@@ -125,7 +139,7 @@ def _recording(system: System, header: str) -> Unit:
     values = (item for item in elements(system) if item.kind == VALUE)
     numbers = tuple(_numbered(constant_name(item.element), item) for item in values)
     package = Package(
-        f"{root_package(system)}.{UNIT}",
+        ref(root_package(system), UNIT),
         (
             Comment("Numbers of the recorded values; trace.json has their names and places."),
             *numbers,
@@ -133,14 +147,14 @@ def _recording(system: System, header: str) -> Unit:
         ),
         (SPARK,),
     )
-    return Unit(header, (BUFFERS, "System"), package)
+    return Unit(header, (BUFFERS, ref("System")), package)
 
 
 def _probe(system: System, node: Node, header: str) -> Unit:
     assert node.probe is not None
     element = f"{node.name}.probe"
     args = arguments(
-        Name=Ref(f'"{element}"'),
+        Name=StringLiteral(element),
         Period=fact(element, "T"),
         Probe_Priority=fact(element, "Priority"),
         Stack_Bytes=number(PROBE_STACK),
@@ -160,7 +174,7 @@ def _elements(system: System, header: str) -> Unit:
     for item in elements(system):
         if item.kind != VALUE:
             items.append(_numbered(element_constant(item.element, item.kind), item))
-    package = Package(f"{root_package(system)}.Elements", tuple(items), (SPARK, Aspect("Pure")))
+    package = Package(ref(root_package(system), "Elements"), tuple(items), (SPARK, Aspect("Pure")))
     return Unit(header, (), package)
 
 
@@ -187,49 +201,48 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         Task_Priority=fact(processor.name, "Priority"),
         Ceiling=priority(system.object(f"{processor.name}.monitor").ceiling),
         Stack_Bytes=number(processor.stack_bytes),
-        Execute=Ref("Execute"),
-        On_Deadline_Miss=Ref("On_Deadline_Miss"),
+        Execute=ref("Execute"),
+        On_Deadline_Miss=ref("On_Deadline_Miss"),
     )
     if processor.released_by is None:
-        generic = "Ravenchart.Periodic_Processors"
-        slots = tuple(Arg(row_name(s), _slot(processor, s)) for s in processor.slots)
-        items.append(PlainType("Row_Table", "array (Row) of Ravenchart.Schedules.Slot"))
+        generic = ref("Ravenchart.Periodic_Processors")
+        slots = tuple(Arg(ref(row_name(s)), _slot(processor, s)) for s in processor.slots)
+        items.append(
+            TypeDeclaration("Row_Table", ArrayDefinition("Row", "Ravenchart.Schedules.Slot"))
+        )
         args = arguments(
-            Activity_Id=Ref("Row"),
-            Table_Type=Ref("Row_Table"),
+            Activity_Id=ref("Row"),
+            Table_Type=ref("Row_Table"),
             Table=Aggregate(slots),
             Cycle=number(processor.cycle),
             Period=fact(processor.name, "T"),
             Offset=offset,
         )
     else:
-        generic = "Ravenchart.Sporadic_Processors"
+        generic = ref("Ravenchart.Sporadic_Processors")
         args = arguments(
-            Activity_Id=Ref("Row"),
+            Activity_Id=ref("Row"),
             Minimum_Separation=fact(processor.name, "T"),
-            Wait=Ref(_wait(processor.released_by)),
+            Wait=_wait(processor),
         )
     if processor.on_overrun:
-        shared += arguments(On_Executed=Ref("On_Executed"))
+        shared += arguments(On_Executed=ref("On_Executed"))
         items += _budgets(processor)
     items.append(Comment(f"[{processor.name}]"))
-    named = arguments(Name=Ref(f'"{processor.name}"'))
+    named = arguments(Name=StringLiteral(processor.name))
     items.append(GenericInstance("Processor", generic, (*named, *args, *shared)))
     items += _checks(processor, offset)
-    withs = {generic, "System", f"{root}.{CERTIFICATE}"}
+    withs = {generic, ref("System"), ref(root, CERTIFICATE)}
     if processor.released_by is None:
-        withs.add("Ravenchart.Schedules")
+        withs.add(ref("Ravenchart.Schedules"))
     else:
-        withs.add(f"{root}.{_wait(processor.released_by).rpartition('.')[0]}")
-    context = {f"{root}.Health_Counts", "Ravenchart.Health"}
+        withs.add(ref(root, _wait(processor).parent))
+    context = fault_units(root)
     context |= {_owner_unit(system, s) for s in processor.slots}
-    context |= {f"{root}.{ada_case(i)}" for i, _ in processor.raises}
-    context |= {
-        f"{root}.{ada_case(system.instance(i).component.name)}" for i, _ in processor.raises
-    }
-    context.add(f"{root}.Elements")
+    context |= {ref(root, ada_case(i)) for i, _ in processor.raises}
+    context |= {ref(root, ada_case(system.instance(i).component.name)) for i, _ in processor.raises}
     if traced(system):
-        context |= {f"{root}.Trace", "Ravenchart.Traces"}
+        context |= {ref(root, "Trace"), ref("Ravenchart.Traces")}
     spec = Package(name, tuple(items), (SPARK,))
     body = Package(name, _processor_body(system, processor), (SPARK,), is_body=True)
     return [
@@ -238,11 +251,12 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     ]
 
 
-def _wait(releaser: str) -> str:
+def _wait(processor: Processor) -> DottedName:
     """What a sporadic processor waits in: the receiver of a bus, or the mailbox of a port."""
-    instance, dot, port = releaser.rpartition(".")
-    waits = f"{ada_case(instance)}.Await_{ada_case(port)}"
-    return waits if dot else f"{ada_case(port)}.Receiver.Wait"
+    end = processor.released_by_port
+    if end is not None:
+        return ref(ada_case(end.instance), f"Await_{ada_case(end.port)}")
+    return ref(ada_case(processor.released_by or ""), "Receiver.Wait")
 
 
 def _checks(processor: Processor, offset: Expr) -> list[Decl]:
@@ -257,7 +271,10 @@ def _checks(processor: Processor, offset: Expr) -> list[Decl]:
         compared.append(("Given_Offset", offset, "offset"))
     found: list[Decl] = [
         UseType("Ravenchart.Nanoseconds"),
-        *(agrees(f"Processor.{given}", to, processor.name, what) for given, to, what in compared),
+        *(
+            agrees(ref("Processor", given), to, processor.name, what)
+            for given, to, what in compared
+        ),
     ]
     if processor.released_by is None:
         found += rows_agree(processor, "Processor.Given_Table")
@@ -269,17 +286,17 @@ def _slot(processor: Processor, slot: Slot) -> Expr:
         what: fact(timed_by(processor.name, processor.slots, slot), what)
         for what in ("Divisor", "Phase")
     }
-    return Aggregate(tuple(Arg(what, value) for what, value in facts.items()))
+    return record(facts)
 
 
-def _owner_unit(system: System, slot: Slot) -> str:
-    return f"{root_package(system)}.{_package(slot)}"
+def _owner_unit(system: System, slot: Slot) -> DottedName:
+    return ref(root_package(system), _package(slot))
 
 
-def _package(slot: Slot) -> str:
+def _package(slot: Slot) -> DottedName:
     """Where the procedure of a row is."""
-    unit = {Work.BUS_RECEIVE: ".Receiver", Work.BUS_WATCH: ".Watch"}.get(slot.work, "")
-    return f"{ada_case(slot.owner)}{unit}"
+    units = {Work.BUS_RECEIVE: ["Receiver"], Work.BUS_WATCH: ["Watch"]}
+    return ref(ada_case(slot.owner), *units.get(slot.work, []))
 
 
 def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
@@ -287,24 +304,22 @@ def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
     for slot in processor.slots:
         name = slot.work.value if slot.of_bus else slot.name
         rows.append(
-            (row_name(slot), (do(f"{_package(slot)}.Run_{ada_case(name)}", Ref("Executed")),))
+            (row_name(slot), (do(ref(_package(slot), f"Run_{ada_case(name)}"), ref("Executed")),))
         )
     execute: list[Stmt] = []
     if traced(system):
         execute.append(
-            Do(
+            do(
                 "Trace.Buffer.Note",
-                arguments(
-                    Ref("Ravenchart.Traces.Activity"),
-                    row_number(processor, "Row", "Item"),
-                    number(0),
-                ),
+                ref("Ravenchart.Traces.Activity"),
+                row_number(processor, "Row", "Item"),
+                number(0),
             )
         )
-    execute.append(Case(Ref("Item"), tuple(rows)))
+    execute.append(Case(ref("Item"), tuple(rows)))
     #  each row once, and none for another
     execute.append(
-        Pragma("Assert", (equal(Ref("Executed"), row_number(processor, "Row", "Item")),))
+        Pragma("Assert", (equal(ref("Executed"), row_number(processor, "Row", "Item")),))
     )
     missed = _fault(system, processor, "Deadline_Miss", processor.on_deadline_miss)
     uses = [UseType(ELEMENT_ID)]
@@ -318,7 +333,7 @@ def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
         Subprogram("On_Deadline_Miss", body=missed),
     ]
     if processor.on_overrun:
-        over = OperatorChain(">", (Ref("Used"), Ref("Budgets (Item)")))
+        over = OperatorChain(">", (ref("Used"), Indexed("Budgets", ref("Item"))))
         raised = _fault(system, processor, "Overrun", processor.on_overrun)
         found.append(Subprogram("On_Executed", _EXECUTED, body=(IfStatement(((over, raised),)),)))
     return (*uses, *found)
@@ -329,10 +344,10 @@ _EXECUTED = (Param("Item", "in", "Row"), Param("Used", "in", "Ravenchart.Nanosec
 
 def _budgets(processor: Processor) -> list[Decl]:
     """What each row may use, and what compares it with what it used."""
-    rows = tuple(Arg(row_name(slot), fact(slot.element, "Budget")) for slot in processor.slots)
+    rows = tuple(Arg(ref(row_name(slot)), fact(slot.element, "Budget")) for slot in processor.slots)
     return [
         Subprogram("On_Executed", _EXECUTED),
-        PlainType("Row_Budgets", "array (Row) of Ravenchart.Nanoseconds"),
+        TypeDeclaration("Row_Budgets", ArrayDefinition("Row", "Ravenchart.Nanoseconds")),
         Comment(f"[{processor.name}.table] the longest that each activity may take"),
         Object("Budgets", "Row_Budgets", Aggregate(rows), constant=True),
     ]
@@ -342,10 +357,7 @@ def _fault(
     system: System, processor: Processor, kind: str, events: tuple[tuple[str, str], ...]
 ) -> tuple[Stmt, ...]:
     """Count and note a fault of a processor, and raise its events."""
-    fault = Ref(f"Ravenchart.Health.{kind}")
-    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(fault))
     return (
-        Do("Health_Counts.Counters.Record_Fault", arguments(fault)),
-        *note(system, "Fault", processor.name, "processor", position),
+        fault(kind, processor.name, "processor"),
         *(offer(system, instance, event) for instance, event in events),
     )

@@ -5,32 +5,40 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case, processor_package, root_package
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import (
     SPARK,
-    TRUE,
     Aspect,
-    Assign,
-    Comment,
     Decl,
-    Do,
-    IfStatement,
-    Loop,
     Object,
-    OperatorChain,
     Package,
-    Prefix,
-    Ref,
-    Say,
-    Stmt,
     Subprogram,
     Unit,
     UseType,
-    arguments,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    TRUE,
+    Indexed,
+    OperatorChain,
+    Prefix,
+    StringLiteral,
     call,
-    do,
     equal,
     number,
+    plain,
+    up_to,
+)
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import LOWEST, ada_case, processor_package, root_package
+from ravenchart.gen.emit.ada.statements import (
+    Assign,
+    Comment,
+    DelayUntil,
+    ExitStatement,
+    ForLoop,
+    IfStatement,
+    Loop,
+    Stmt,
+    do,
 )
 from ravenchart.gen.emit.certificate.certified import CERTIFICATE
 from ravenchart.gen.emit.commands.lifecycle import UNIT as LIFECYCLE
@@ -49,7 +57,7 @@ POLL_NS = 5_000_000
 def emit_reports(system: System, header: str) -> list[Unit]:
     """What is handed to the host: the trace while it runs, statistics at the end."""
     root = root_package(system)
-    name = f"{root}.Reports"
+    name = ref(root, "Reports")
     spec: list[Decl] = []
     bodies: list[Decl] = []
     if traced(system):
@@ -57,59 +65,62 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         bodies.append(_drain(system))
     spec += [Subprogram("Put_All"), Comment("Hand the statistics of all processors to the host.")]
     bodies += [_report(system, p) for p in system.processors]
-    steps: list[Stmt] = [Do("Ravenchart.Hosts.Put_Now")]
-    steps += [Do(f"Report_{ada_case(p.name)}") for p in system.processors]
-    steps.append(Do("Health_Counts.Counters.Read", arguments(Ref("Faults"))))
+    steps: list[Stmt] = [do("Ravenchart.Hosts.Put_Now")]
+    steps += [do(ref(f"Report_{ada_case(p.name)}")) for p in system.processors]
+    steps.append(do("Health_Counts.Counters.Read", ref("Faults")))
     for bus in system.buses:
         log = f"{ada_case(bus.name)}_Faults"
-        steps.append(Do(f"{ada_case(bus.name)}.Controller.Read_Faults", arguments(Ref(log))))
+        steps.append(do(ref(ada_case(bus.name), "Controller.Read_Faults"), ref(log)))
         for kind, count in (("Error_Passive", "Passive_Entries"), ("Bus_Off", "Off_Entries")):
-            fault = f"Faults (Ravenchart.Health.Can_{kind})"
-            steps.append(Assign(fault, Ref(f"{log}.{count}")))
+            fault = Indexed("Faults", ref("Ravenchart.Health", f"Can_{kind}"))
+            steps.append(Assign(fault, ref(log, count)))
     steps.append(
         Loop(
-            "for Kind in Ravenchart.Health.Fault_Kind",
-            (Do("Ravenchart.Hosts.Put_Fault_Count", arguments(Ref("Kind"), Ref("Faults (Kind)"))),),
+            ForLoop("Kind", "Ravenchart.Health.Fault_Kind"),
+            (do("Ravenchart.Hosts.Put_Fault_Count", ref("Kind"), Indexed("Faults", ref("Kind"))),),
         )
     )
     declarations: list[Decl] = [Object("Faults", "Ravenchart.Health.Fault_Counts")]
     if traced(system):
         declarations.append(Object("Lost", "Ravenchart.Event_Count"))
         for buffer, label in _buffers(system):
-            steps.append(Assign("Lost", Ref(f"{buffer}.Lost")))
-            word = Ref(f'"{label}"')
-            steps.append(Do("Ravenchart.Hosts.Put_Lost", arguments(word, Ref("Lost"))))
+            steps.append(Assign("Lost", ref(buffer, "Lost")))
+            word = StringLiteral(label)
+            steps.append(do("Ravenchart.Hosts.Put_Lost", word, ref("Lost")))
     for bus in system.buses:
         counters = f"{ada_case(bus.name)}_Counters"
         declarations.append(Object(counters, "Ravenchart.Can.Counters"))
         log = f"{ada_case(bus.name)}_Faults"
         declarations.append(Object(log, "Ravenchart.Can.Fault_Notices.Fault_Log"))
-        steps.append(Do(f"{ada_case(bus.name)}.Controller.Read_Counters", arguments(Ref(counters))))
+        steps.append(do(ref(ada_case(bus.name), "Controller.Read_Counters"), ref(counters)))
         for field in ("Lost_Out", "Lost_In", "Rejected_Lines"):
-            label = f'"{bus.name}.{field.lower()}"'
-            steps.append(
-                Do("Ravenchart.Hosts.Put_Lost", arguments(Ref(label), Ref(f"{counters}.{field}")))
-            )
+            word = StringLiteral(f"{bus.name}.{field.lower()}")
+            steps.append(do("Ravenchart.Hosts.Put_Lost", word, ref(counters, field)))
     if any(n.probe for n in system.nodes):
         declarations.append(Object("Late", "Ravenchart.Nanoseconds"))
-        steps.append(Do("Host_Probe.Probe.Read", arguments(Ref("Late"))))
-        steps.append(Do("Ravenchart.Hosts.Put_Host_Latency", arguments(Ref("Late"))))
+        steps.append(do("Host_Probe.Probe.Read", ref("Late")))
+        steps.append(do("Ravenchart.Hosts.Put_Host_Latency", ref("Late")))
     if supervised(system):
         declarations.append(Object("Fed", "Ravenchart.Event_Count"))
-        steps.append(Do("Liveness_Supervision.Supervisor.Read", arguments(Ref("Fed"))))
-        steps.append(Do("Ravenchart.Hosts.Put_Feeds", arguments(Ref("Fed"))))
+        steps.append(do("Liveness_Supervision.Supervisor.Read", ref("Fed")))
+        steps.append(do("Ravenchart.Hosts.Put_Feeds", ref("Fed")))
     bodies.append(Subprogram("Put_All", declarations=tuple(declarations), body=tuple(steps)))
-    context = {"Ravenchart.Hosts", "Ravenchart.Health", f"{root}.Health_Counts", f"{root}.Elements"}
+    context = {
+        ref("Ravenchart.Hosts"),
+        ref("Ravenchart.Health"),
+        ref(root, "Health_Counts"),
+        ref(root, "Elements"),
+    }
     context |= {processor_package(system, p) for p in system.processors}
-    context |= {f"{root}.{ada_case(b.name)}" for b in system.buses}
+    context |= {ref(root, ada_case(b.name)) for b in system.buses}
     if system.buses:
-        context |= {"Ravenchart.Can", "Ravenchart.Can.Fault_Notices"}
+        context |= {ref("Ravenchart.Can"), ref("Ravenchart.Can.Fault_Notices")}
     if any(n.probe for n in system.nodes):
-        context.add(f"{root}.Host_Probe")
+        context.add(ref(root, "Host_Probe"))
     if supervised(system):
-        context.add(f"{root}.Liveness_Supervision")
+        context.add(ref(root, "Liveness_Supervision"))
     if traced(system):
-        context |= {f"{root}.Trace", "Ravenchart.Queueing", "Ravenchart.Traces"}
+        context |= {ref(root, "Trace"), ref("Ravenchart.Queueing"), ref("Ravenchart.Traces")}
         context |= _of_values(root) if recording(system) else set()
     return [
         Unit(header, (), Package(name, tuple(spec), (SPARK,))),
@@ -117,14 +128,17 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     ]
 
 
-def _buffers(system: System) -> tuple[tuple[str, str], ...]:
+TRACE, VALUES = ref("Trace.Buffer"), ref(UNIT, "Values")
+
+
+def _buffers(system: System) -> tuple[tuple[DottedName, str], ...]:
     """What holds records until the host has them, and what the report calls it."""
-    values = ((f"{UNIT}.Values", "values"),) if recording(system) else ()
-    return (("Trace.Buffer", "trace"), *values)
+    values = ((VALUES, "values"),) if recording(system) else ()
+    return ((TRACE, "trace"), *values)
 
 
-def _of_values(root: str) -> set[str]:
-    return {f"{root}.{UNIT}", "Ravenchart.Hosts.Value_Lines", "Ravenchart.Recorded_Values"}
+def _of_values(root: str) -> set[DottedName]:
+    return {ref(root, UNIT), ref("Ravenchart.Hosts.Value_Lines"), ref("Ravenchart.Recorded_Values")}
 
 
 def _drain(system: System) -> Subprogram:
@@ -133,50 +147,52 @@ def _drain(system: System) -> Subprogram:
         Object("Item", "Ravenchart.Traces.Trace_Record"),
         Object("Status", "Ravenchart.Queueing.Take_Status"),
     ]
-    body = [_drained("Trace.Buffer", "Item", "Ravenchart.Hosts.Put_Trace")]
+    body = [_drained(TRACE, "Item", "Ravenchart.Hosts.Put_Trace")]
     if recording(system):
         declarations.insert(2, Object("Value", "Ravenchart.Recorded_Values.Value_Record"))
-        body.append(_drained(f"{UNIT}.Values", "Value", "Ravenchart.Hosts.Value_Lines.Put"))
+        body.append(_drained(VALUES, "Value", "Ravenchart.Hosts.Value_Lines.Put"))
     return Subprogram("Drain_Trace", declarations=tuple(declarations), body=tuple(body))
 
 
-def _drained(buffer: str, item: str, put: str) -> Loop:
+def _drained(buffer: DottedName, item: str, put: str) -> Loop:
     """Hand all that a buffer holds to the host."""
-    empty = equal(Ref("Status"), Ref("Ravenchart.Queueing.Empty"))
+    empty = equal(ref("Status"), ref("Ravenchart.Queueing.Empty"))
     return Loop(
-        "",
+        None,
         (
-            Do(f"{buffer}.Take", arguments(Ref(item), Ref("Status"))),
-            IfStatement(((empty, (Say("exit"),)),)),
-            Do(put, arguments(Ref(item))),
+            do(ref(buffer, "Take"), ref(item), ref("Status")),
+            IfStatement(((empty, (ExitStatement(),)),)),
+            do(put, ref(item)),
         ),
     )
 
 
 def _report(system: System, processor: Processor) -> Subprogram:
     package = ada_case(processor.name)
-    own = Ref(f"Elements.{element_constant(processor.name, 'processor')}")
-    row = row_number(processor, f"{package}.Row", "Row")
+    own = ref("Elements", element_constant(processor.name, "processor"))
+    row = row_number(processor, ref(package, "Row"), "Row")
     return Subprogram(
         f"Report_{package}",
         declarations=(
             UseType("Ravenchart.Element_Id"),
-            Object("Found", f"{package}.Processor.Statistics"),
+            Object("Found", ref(package, "Processor.Statistics")),
         ),
         body=(
-            Do(f"{package}.Processor.Observe", arguments(Ref("Found"))),
-            Do(
+            do(ref(package, "Processor.Observe"), ref("Found")),
+            do(
                 "Ravenchart.Hosts.Put_Processor",
-                arguments(
-                    own, Ref("Found.Releases"), Ref("Found.Misses"), Ref("Found.Worst_Response")
-                ),
+                own,
+                ref("Found.Releases"),
+                ref("Found.Misses"),
+                ref("Found.Worst_Response"),
             ),
             Loop(
-                f"for Row in {package}.Row",
+                ForLoop("Row", ref(package, "Row")),
                 (
-                    Do(
+                    do(
                         "Ravenchart.Hosts.Put_Activity",
-                        arguments(row, Ref("Found.Worst_Execution (Row)")),
+                        row,
+                        Indexed("Found.Worst_Execution", ref("Row")),
                     ),
                 ),
             ),
@@ -187,58 +203,55 @@ def _report(system: System, processor: Processor) -> Subprogram:
 def emit_main(system: System, header: str) -> Unit:
     """The main program: it empties the trace, and leads the shutdown."""
     root = root_package(system)
-    drain: tuple[Stmt, ...] = (Do(f"{root}.Reports.Drain_Trace"),) if traced(system) else ()
+    drain: tuple[Stmt, ...] = (do(ref(root, "Reports.Drain_Trace")),) if traced(system) else ()
     wait: tuple[Stmt, ...] = (
-        Assign("Next", OperatorChain("+", (Ref("Next"), Ref("Step")))),
-        Say("delay until Next"),
+        Assign("Next", OperatorChain("+", (ref("Next"), ref("Step")))),
+        DelayUntil(ref("Next")),
     )
     shutdown = [
-        Do(
-            f"{root}.{ada_case(i)}.Offer",
-            arguments(event_value(system.instance(i).component, e, prefix=f"{root}.")),
-        )
+        do(ref(root, ada_case(i), "Offer"), event_value(system.instance(i).component, e, root=root))
         for i, e in system.shutdown.raises
     ]
     steps = -(-system.shutdown.grace // POLL_NS)
     begins = has_lifecycle(system)
-    started = (do(f"{root}.{LIFECYCLE}.Start_All", Ref("Started")),) if begins else ()
-    ended = OperatorChain("or else", (Ref("Stop"), Prefix("not", Ref("Started"))))
+    started = (do(ref(root, LIFECYCLE, "Start_All"), ref("Started")),) if begins else ()
+    ended = OperatorChain("or else", (ref("Stop"), Prefix("not", ref("Started"))))
     body: list[Stmt] = [
-        Do("Ravenchart.Hosts.Start"),
-        do("Ravenchart.Hosts.Put_Model", Ref(f"{root}.{CERTIFICATE}.Model_Digest")),
+        do("Ravenchart.Hosts.Start"),
+        do("Ravenchart.Hosts.Put_Model", ref(root, CERTIFICATE, "Model_Digest")),
         *started,
         Loop(
-            "",
+            None,
             (
                 *drain,
-                Assign("Stop", Ref("Ravenchart.Hosts.Stop_Requested")),
-                IfStatement(((ended if begins else Ref("Stop"), (Say("exit"),)),)),
+                Assign("Stop", ref("Ravenchart.Hosts.Stop_Requested")),
+                IfStatement(((ended if begins else ref("Stop"), (ExitStatement(),)),)),
                 *wait,
             ),
         ),
         *shutdown,
     ]
     if steps:
-        body.append(Loop(f"for Unused in 1 .. {steps}", (*drain, *wait)))
+        body.append(Loop(ForLoop("Unused", up_to(plain(steps))), (*drain, *wait)))
     body += [
         *safe_state(system),
         *drain,
-        Do(f"{root}.Reports.Put_All"),
-        Do("Ravenchart.Hosts.Finish", arguments(Success=Ref("Started") if begins else TRUE)),
+        do(ref(root, "Reports.Put_All")),
+        do("Ravenchart.Hosts.Finish", Success=ref("Started") if begins else TRUE),
     ]
-    withs = {"Ada.Real_Time", "Ravenchart.Hosts", "System", f"{root}.Reports"}
-    withs.add(f"{root}.{CERTIFICATE}")
-    withs |= {f"{root}.{LIFECYCLE}"} if begins else set()
-    withs |= {f"{root}.{ada_case(i)}" for i, _ in system.shutdown.raises}
+    withs = {ref("Ada.Real_Time"), ref("Ravenchart.Hosts"), ref("System"), ref(root, "Reports")}
+    withs.add(ref(root, CERTIFICATE))
+    withs |= {ref(root, LIFECYCLE)} if begins else set()
+    withs |= {ref(root, ada_case(i)) for i, _ in system.shutdown.raises}
     withs |= {
-        f"{root}.{ada_case(system.instance(i).component.name)}" for i, _ in system.shutdown.raises
+        ref(root, ada_case(system.instance(i).component.name)) for i, _ in system.shutdown.raises
     }
     return Unit(
         header,
         tuple(sorted(withs)),
         Subprogram(
             f"{root}_Main",
-            aspects=(SPARK, Aspect("Priority", Ref("System.Priority'First"))),
+            aspects=(SPARK, Aspect("Priority", LOWEST)),
             declarations=(
                 UseType("Ada.Real_Time.Time"),
                 Object(
@@ -247,7 +260,7 @@ def emit_main(system: System, header: str) -> Unit:
                     call("Ada.Real_Time.Milliseconds", number(POLL_NS // 1_000_000)),
                     constant=True,
                 ),
-                Object("Next", "Ada.Real_Time.Time", Ref("Ada.Real_Time.Clock")),
+                Object("Next", "Ada.Real_Time.Time", ref("Ada.Real_Time.Clock")),
                 Object("Stop", "Boolean"),
                 *((Object("Started", "Boolean"),) if begins else ()),
             ),

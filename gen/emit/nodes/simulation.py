@@ -15,33 +15,39 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from ravenchart.gen.derive.completion import on_one_node
-from ravenchart.gen.emit.ada.naming import ada_case, component_name, root_package, type_name
-from ravenchart.gen.emit.ada.syntax import (
+from ravenchart.gen.emit.ada.declarations import (
+    ArrayDefinition,
+    Decl,
+    GenericInstance,
+    Object,
+    Param,
+    RangeDefinition,
+    Subprogram,
+    TypeDeclaration,
+    Unit,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    OTHERS,
     Aggregate,
     Arg,
-    Assign,
-    Case,
-    Decl,
-    Do,
+    Attribute,
+    Choice,
     Expr,
-    IfStatement,
-    Object,
+    Indexed,
     OperatorChain,
-    Param,
-    PlainType,
     Prefix,
-    Ref,
-    Say,
-    Stmt,
-    Subprogram,
-    Unit,
+    StringLiteral,
+    all_else,
     arguments,
     call,
-    do,
     equal,
     number,
+    plain,
+    up_to,
 )
-from ravenchart.gen.emit.ada.syntax import GenericInstance as Instantiation
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.naming import ada_case, component_name, root_package, type_name
+from ravenchart.gen.emit.ada.statements import Assign, Case, IfStatement, RaiseStatement, Stmt, do
 from ravenchart.gen.emit.commands.lifecycle import UNIT as LIFECYCLE
 from ravenchart.gen.emit.commands.lifecycle import has_lifecycle
 from ravenchart.gen.emit.language.events import event_value
@@ -50,6 +56,9 @@ from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType, T
 from ravenchart.gen.model.component import Port
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.system import Processor, Slot, System
+
+INTEGER = ref("Long_Long_Integer")
+"""The type of times and of the numbers of stimuli."""
 
 Stimulus = tuple[str, str, Type | None]
 """Instance, event or input port, and the type of its value."""
@@ -101,11 +110,11 @@ def emit_simulation(system: System, header: str) -> Unit:
     order = [processor for processor in urgent if processor.released_by is None]
     woken = [processor for processor in urgent if processor.released_by is not None]
     last = len(order)
-    withs = {f"{root}.{ada_case(i.name)}" for i in system.instances}
-    withs |= {f"{root}.{component_name(i.component)}" for i in system.instances}
-    withs |= {"Ravenchart.Simulated_Runs", "Ravenchart.Steps"}
-    withs |= {f"{root}.{LIFECYCLE}"} if has_lifecycle(system) else set()
-    releases: list[tuple[str, tuple[Stmt, ...]]] = []
+    withs = {ref(root, ada_case(i.name)) for i in system.instances}
+    withs |= {ref(root, component_name(i.component)) for i in system.instances}
+    withs |= {ref("Ravenchart.Simulated_Runs"), ref("Ravenchart.Steps")}
+    withs |= {ref(root, LIFECYCLE)} if has_lifecycle(system) else set()
+    releases: list[tuple[Choice, tuple[Stmt, ...]]] = []
     for position, processor in enumerate(order, 1):
         rows: list[Stmt] = []
         for slot in processor.slots:
@@ -114,66 +123,66 @@ def emit_simulation(system: System, header: str) -> Unit:
             run = _run(root, slot)
             above = sum(one.priority > processor.priority for one in woken)
             if above:
-                rows.append(Do("Release_Waiting", arguments(number(above))))
-            turn = OperatorChain("mod", (Ref("Count"), number(slot.divisor)))
+                rows.append(do("Release_Waiting", number(above)))
+            turn = OperatorChain("mod", (ref("Count"), number(slot.divisor)))
             due = equal(turn, number(slot.phase))
             rows += run if slot.divisor == 1 else (IfStatement(((due, run),)),)
-        releases.append((str(position), tuple(rows)))
+        releases.append((plain(position), tuple(rows)))
     executes = any(rows for _, rows in releases)
-    takes = [
-        (str(k), _taken(system, root, name, what, of_type))
+    takes: list[tuple[Choice, tuple[Stmt, ...]]] = [
+        (plain(k), _taken(system, root, name, what, of_type))
         for k, (name, what, of_type) in enumerate(stimuli(system), 1)
     ]
     width = max((len(_scalars(t)) for _, _, t in stimuli(system) if t is not None), default=0)
     taken: list[Decl] = []
     if width:
-        taken.append(Object("V", f"array (1 .. {width}) of Long_Long_Integer"))
+        taken.append(Object("V", _integers(width)))
     return Unit(
         header,
         tuple(sorted(withs)),
         Subprogram(
             f"{root}_Simulation",
             declarations=(
-                PlainType("Processor", f"range 1 .. {last}"),
-                PlainType("Instants", "array (Processor) of Long_Long_Integer"),
+                TypeDeclaration("Processor", RangeDefinition(up_to(plain(last)))),
+                TypeDeclaration("Instants", ArrayDefinition("Processor", INTEGER)),
                 *_waiting(root, woken),
                 Subprogram(
                     "Release",
                     (Param("P", "in", "Processor"), Param("Count", "in", "Natural")),
                     declarations=(Object("Executed", ELEMENT_ID),) if executes else (),
-                    body=(Case(Ref("P"), tuple(releases)),),
+                    body=(Case(ref("P"), tuple(releases)),),
                 ),
                 Subprogram(
                     "Take",
                     (Param("Number", "in", "Positive"),),
                     declarations=tuple(taken),
-                    body=(Case(Ref("Number"), (*takes, ("others", ()))),),
+                    body=(Case(ref("Number"), (*takes, (OTHERS, ()))),),
                 ),
-                Instantiation(
+                GenericInstance(
                     "Run",
                     "Ravenchart.Simulated_Runs",
                     arguments(
-                        Processor=Ref("Processor"),
-                        Instants=Ref("Instants"),
+                        Processor=ref("Processor"),
+                        Instants=ref("Instants"),
                         Offsets=_instants([p.offset for p in order]),
                         Periods=_instants([p.period for p in order]),
-                        Release=Ref("Release"),
-                        Take=Ref("Take"),
-                        **({"End_Instant": Ref("End_Instant")} if woken else {}),
+                        Release=ref("Release"),
+                        Take=ref("Take"),
+                        **({"End_Instant": ref("End_Instant")} if woken else {}),
                     ),
                     kind="procedure",
                 ),
                 *((Object("Started", "Boolean"),) if has_lifecycle(system) else ()),
             ),
-            body=(*_start(system), Do("Run")),
+            body=(*_start(system), do("Run")),
         ),
     )
 
 
 def _run(root: str, slot: Slot) -> tuple[Stmt, ...]:
     """One execution of a row."""
-    name = f"{root}.{ada_case(slot.owner)}.Run_{ada_case(slot.name)}"
-    return Assign("Executed", number(0)), do(name, Ref("Executed"))
+    name = ref(root, ada_case(slot.owner), f"Run_{ada_case(slot.name)}")
+    return Assign("Executed", number(0)), do(name, ref("Executed"))
 
 
 def _waiting(root: str, woken: Sequence[Processor]) -> Iterator[Decl]:
@@ -182,18 +191,18 @@ def _waiting(root: str, woken: Sequence[Processor]) -> Iterator[Decl]:
         return
     body: list[Stmt] = []
     for number_, processor in enumerate(woken, 1):
-        end, earliest = processor.released_by_port, Ref(f"Earliest ({number_})")
+        end, earliest = processor.released_by_port, Indexed("Earliest", plain(number_))
         assert end is not None
-        now = Ref("Ravenchart.Steps.Now")
-        due = OperatorChain(">=", (Ref("Last"), number(number_)))
+        now = ref("Ravenchart.Steps.Now")
+        due = OperatorChain(">=", (ref("Last"), number(number_)))
         late = OperatorChain(">=", (now, earliest))
-        following = Assign(earliest.text, OperatorChain("+", (now, number(processor.period))))
+        following = Assign(earliest, OperatorChain("+", (now, number(processor.period))))
         rows = [stmt for slot in processor.slots for stmt in _run(root, slot)]
-        ask = do(f"{root}.{ada_case(end.instance)}.Ask_{ada_case(end.port)}", Ref("Waiting"))
-        run = IfStatement(((Ref("Waiting"), (following, *rows)),))
+        ask = do(ref(root, ada_case(end.instance), f"Ask_{ada_case(end.port)}"), ref("Waiting"))
+        run = IfStatement(((ref("Waiting"), (following, *rows)),))
         body.append(IfStatement(((OperatorChain("and then", (due, late)), (ask, run)),)))
-    times = f"array (1 .. {len(woken)}) of Long_Long_Integer"
-    yield Object("Earliest", times, Ref("(others => 0)"))
+    times = _integers(len(woken))
+    yield Object("Earliest", times, all_else(number(0)))
     yield Subprogram(
         "Release_Waiting",
         (Param("Last", "in", "Positive"),),
@@ -207,13 +216,18 @@ def _start(system: System) -> tuple[Stmt, ...]:
     """Start all devices, where there are such as need it."""
     if not has_lifecycle(system):
         return ()
-    failed = Say('raise Program_Error with "a device has not started"')
-    start = do(f"{root_package(system)}.{LIFECYCLE}.Start_All", Ref("Started"))
-    return start, IfStatement(((Prefix("not", Ref("Started")), (failed,)),))
+    words = StringLiteral("a device has not started")
+    failed = RaiseStatement(ref("Program_Error"), words)
+    start = do(ref(root_package(system), LIFECYCLE, "Start_All"), ref("Started"))
+    return start, IfStatement(((Prefix("not", ref("Started")), (failed,)),))
+
+
+def _integers(count: int) -> ArrayDefinition:
+    return ArrayDefinition(up_to(plain(count)), INTEGER)
 
 
 def _instants(times: list[int]) -> Expr:
-    return Aggregate(tuple(Arg(str(i), number(t)) for i, t in enumerate(times, 1)))
+    return Aggregate(tuple(Arg(plain(i), number(t)) for i, t in enumerate(times, 1)))
 
 
 def _scalars(of_type: Type) -> list[ScalarType]:
@@ -230,8 +244,8 @@ def _taken(
     value: Expr | None = None
     if of_type is not None:
         scalars = _scalars(of_type)
-        steps += [do("Ravenchart.Steps.Get", Ref(f"V ({k + 1})")) for k in range(len(scalars))]
-        parts = [_read(system, t, f"V ({k + 1})") for k, t in enumerate(scalars)]
+        steps += [do("Ravenchart.Steps.Get", _given(k)) for k in range(len(scalars))]
+        parts = [_read(system, t, _given(k)) for k, t in enumerate(scalars)]
         value = parts[0]
         if isinstance(of_type, RecordType):
             fields = zip(of_type.fields, parts, strict=True)
@@ -239,17 +253,22 @@ def _taken(
                 tuple(Arg(ada_case(f.name), part) for f, part in fields),
                 type_name(system, of_type),
             )
-    target = f"{root}.{ada_case(name)}"
+    target = ref(root, ada_case(name))
     ports: tuple[Port, ...] = instance.component.inputs()
     if any(p.name == what for p in ports):
         assert value is not None
-        steps.append(do(f"{target}.Put_{ada_case(what)}", value))
+        steps.append(do(ref(target, f"Put_{ada_case(what)}"), value))
     else:
-        event = event_value(instance.component, what, value, prefix=f"{root}.")
-        steps.append(do(f"{target}.Offer", event))
+        event = event_value(instance.component, what, value, root=root)
+        steps.append(do(ref(target, "Offer"), event))
     return tuple(steps)
 
 
-def _read(system: System, of_type: ScalarType, item: str) -> Expr:
+def _given(position: int) -> Indexed:
+    """One of the integers of a stimulus."""
+    return Indexed("V", plain(position + 1))
+
+
+def _read(system: System, of_type: ScalarType, item: Expr) -> Expr:
     name = type_name(system, of_type)
-    return call(name if isinstance(of_type, IntegerType) else f"{name}'Val", Ref(item))
+    return call(name if isinstance(of_type, IntegerType) else Attribute(name, "Val"), item)

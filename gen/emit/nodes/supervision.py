@@ -6,6 +6,27 @@
 from __future__ import annotations
 
 from ravenchart.gen.derive.instants import has_offset
+from ravenchart.gen.emit.ada.declarations import (
+    SPARK,
+    Decl,
+    EnumType,
+    GenericInstance,
+    Object,
+    Package,
+    Param,
+    Subprogram,
+    Unit,
+    UseType,
+)
+from ravenchart.gen.emit.ada.expressions import (
+    Aggregate,
+    Arg,
+    StringLiteral,
+    arguments,
+    call,
+    number,
+)
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import (
     ada_case,
     component_name,
@@ -13,34 +34,11 @@ from ravenchart.gen.emit.ada.naming import (
     processor_package,
     root_package,
 )
-from ravenchart.gen.emit.ada.syntax import (
-    SPARK,
-    Aggregate,
-    Arg,
-    Assign,
-    Call,
-    Case,
-    Comment,
-    Decl,
-    Do,
-    EnumType,
-    GenericInstance,
-    Object,
-    Package,
-    Param,
-    Ref,
-    Stmt,
-    Subprogram,
-    Unit,
-    UseType,
-    arguments,
-    call,
-    number,
-)
+from ravenchart.gen.emit.ada.statements import Assign, Case, Comment, Stmt, do
 from ravenchart.gen.emit.certificate.certified import agrees, fact
 from ravenchart.gen.emit.commands.lifecycle import UNIT, ends_devices
 from ravenchart.gen.emit.language.own_names import event_literal
-from ravenchart.gen.emit.tables.trace_calls import note, traced
+from ravenchart.gen.emit.tables.trace_calls import fault, fault_units
 from ravenchart.gen.model.nodes import SUPERVISOR, Node, Supervision
 from ravenchart.gen.model.system import Processor, System
 
@@ -64,7 +62,7 @@ def safe_state(system: System) -> tuple[Stmt, ...]:
     """
     if not ends_devices(system):
         return ()
-    return (Do(f"{root_package(system)}.{UNIT}.Make_All_Safe"),)
+    return (do(ref(root_package(system), UNIT, "Make_All_Safe")),)
 
 
 def emit_supervision(system: System, header: str) -> list[Unit]:
@@ -79,7 +77,7 @@ def _literal(processor: Processor) -> str:
 
 def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
     root = root_package(system)
-    name = f"{root}.Liveness_Supervision"
+    name = ref(root, "Liveness_Supervision")
     element = f"{node.name}.{SUPERVISOR}"
     watched = sorted(
         (p for p in system.processors if p.node == node.name), key=lambda p: -p.priority
@@ -90,17 +88,17 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
         Param("Is_Silent", "out", "Boolean"),
     )
     args = arguments(
-        Processor_Id=Ref("Watched"),
-        Name=Ref(f'"{element}"'),
+        Processor_Id=ref("Watched"),
+        Name=StringLiteral(element),
         Period=fact(element, "T"),
         Patience=number(system.shutdown.grace + END_MARGIN),
         Task_Priority=fact(element, "Priority"),
         Ceiling=priority(system.object(f"{element}.board").ceiling),
         Stack_Bytes=number(STACK),
-        Look=Ref("Look"),
-        On_Silence=Ref("On_Silence"),
-        Feed_Watchdog=Ref("Ravenchart.Failures.Feed_Watchdog"),
-        Give_Up=Ref("Give_Up" if ends_devices(system) else "Ravenchart.Failures.Give_Up"),
+        Look=ref("Look"),
+        On_Silence=ref("On_Silence"),
+        Feed_Watchdog=ref("Ravenchart.Failures.Feed_Watchdog"),
+        Give_Up=ref("Give_Up" if ends_devices(system) else "Ravenchart.Failures.Give_Up"),
     )
     spec: tuple[Decl, ...] = (
         Comment(f"[{node.name}] the processors, the most urgent first"),
@@ -120,36 +118,28 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
     looks = tuple((_literal(p), _look(system, p)) for p in watched)
     events = tuple((_literal(p), _silence(system, p)) for p in watched)
     body: tuple[Decl, ...] = (
-        Subprogram("Look", look, declarations=(seen,), body=(Case(Ref("Item"), looks),)),
+        Subprogram("Look", look, declarations=(seen,), body=(Case(ref("Item"), looks),)),
         Subprogram(
             "On_Silence",
             (Param("Item", "in", "Watched"),),
-            body=(
-                Do(
-                    "Health_Counts.Counters.Record_Fault",
-                    arguments(Ref("Ravenchart.Health.Silence")),
-                ),
-                Case(Ref("Item"), events),
-            ),
+            body=(Case(ref("Item"), events),),
         ),
     )
     if ends_devices(system):
-        ends = (*safe_state(system), Do("Ravenchart.Failures.Give_Up"))
+        ends = (*safe_state(system), do("Ravenchart.Failures.Give_Up"))
         body += (Subprogram("Give_Up", body=ends),)
-    devices = {f"{root}.{UNIT}"} if ends_devices(system) else set()
+    devices = {ref(root, UNIT)} if ends_devices(system) else set()
     raised = [i for p in watched for i, _ in p.on_silence]
-    context = {f"{root}.Health_Counts", "Ravenchart.Health", "Ravenchart.Liveness"}
-    context |= {f"{root}.Timing_Certificate", *devices}
+    context = fault_units(root) | {ref("Ravenchart.Liveness")}
+    context |= {ref(root, "Timing_Certificate"), *devices}
     context |= {processor_package(system, p) for p in watched}
-    context |= {f"{root}.{ada_case(i)}" for i in raised}
-    context |= {f"{root}.{component_name(system.instance(i).component)}" for i in raised}
-    if traced(system):
-        context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
+    context |= {ref(root, ada_case(i)) for i in raised}
+    context |= {ref(root, component_name(system.instance(i).component)) for i in raised}
     withs = {
-        "Ravenchart.Failures",
-        "Ravenchart.Supervisors",
-        "System",
-        f"{root}.Timing_Certificate",
+        ref("Ravenchart.Failures"),
+        ref("Ravenchart.Supervisors"),
+        ref("System"),
+        ref(root, "Timing_Certificate"),
     }
     return [
         Unit(header, tuple(sorted(withs)), Package(name, spec, (SPARK,))),
@@ -171,7 +161,7 @@ def _look(system: System, processor: Processor) -> tuple[Stmt, ...]:
     """Ask one processor how far it has come, and judge."""
     name = ada_case(processor.name)
     limit = fact(processor.name, "L")
-    seen, elapsed = Ref("Seen"), Ref("Elapsed")
+    seen, elapsed = ref("Seen"), ref("Elapsed")
     if processor.released_by is not None:
         judged = call("Ravenchart.Liveness.Is_Stuck", limit, seen, elapsed)
     else:
@@ -186,22 +176,21 @@ def _look(system: System, processor: Processor) -> tuple[Stmt, ...]:
         )
         judged = call("Ravenchart.Liveness.Is_Silent", rhythm, seen, elapsed)
     return (
-        Do(f"{name}.Processor.Observe_Progress", arguments(seen)),
+        do(ref(name, "Processor.Observe_Progress"), seen),
         Assign("Is_Silent", judged),
     )
 
 
 def _silence(system: System, processor: Processor) -> tuple[Stmt, ...]:
-    """Note the silence of a processor, raise its events, and let the program stop."""
-    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(Ref("Ravenchart.Health.Silence")))
+    """Report the silence of a processor, raise its events, and let the program stop."""
     return (
-        *note(system, "Fault", processor.name, "processor", position),
+        fault("Silence", processor.name, "processor"),
         *(offer(system, instance, event) for instance, event in processor.on_silence),
-        Do("Ravenchart.Failures.Note_Silence", arguments(Ref(f'"{processor.name}"'))),
+        do("Ravenchart.Failures.Note_Silence", StringLiteral(processor.name)),
     )
 
 
 def offer(system: System, instance: str, event: str) -> Stmt:
     """Raise an event of an instance from outside it."""
     component = component_name(system.instance(instance).component)
-    return Do(f"{ada_case(instance)}.Offer", arguments(Ref(f"{component}.{event_literal(event)}")))
+    return do(ref(ada_case(instance), "Offer"), ref(component, event_literal(event)))

@@ -11,24 +11,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ravenchart.gen.emit.ada.syntax import (
-    Aspect,
-    Assign,
-    Expr,
-    OperatorChain,
-    Param,
-    Ref,
-    Stmt,
-    Subprogram,
-    equal,
-    number,
-)
+from ravenchart.gen.emit.ada.declarations import Aspect, Param, Subprogram
+from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, equal, number
+from ravenchart.gen.emit.ada.named import ref
+from ravenchart.gen.emit.ada.statements import Assign, Stmt
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import Slot, System, Work
 
 from .trace_calls import element_constant
 
-ELEMENT_ID = "Ravenchart.Element_Id"
+ELEMENT_ID = ref("Ravenchart.Element_Id")
 EXECUTED = Param("Executed", "in out", ELEMENT_ID)
 
 
@@ -39,13 +31,13 @@ def bus_row(system: System, bus: Bus, work: Work) -> Slot:
 
 def row_of(slot: Slot) -> Expr:
     """The number of a row."""
-    return Ref(f"Elements.{element_constant(slot.element, 'row')}")
+    return ref("Elements", element_constant(slot.element, "row"))
 
 
 def run_spec(name: str, slot: Slot) -> Subprogram:
     """The procedure that executes a row once."""
-    before = equal(Ref("Executed"), number(0))
-    after = equal(Ref("Executed"), row_of(slot))
+    before = equal(ref("Executed"), number(0))
+    after = equal(ref("Executed"), row_of(slot))
     return Subprogram(
         f"Run_{name}", (EXECUTED,), aspects=(Aspect("Pre", before), Aspect("Post", after))
     )
@@ -53,7 +45,7 @@ def run_spec(name: str, slot: Slot) -> Subprogram:
 
 def executed(slot: Slot) -> Stmt:
     """Note in its body that the row is executed."""
-    return Assign("Executed", OperatorChain("+", (Ref("Executed"), row_of(slot))))
+    return Assign("Executed", OperatorChain("+", (ref("Executed"), row_of(slot))))
 
 
 def executing(run: Subprogram, slot: Slot) -> Subprogram:

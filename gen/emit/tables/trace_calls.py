@@ -1,22 +1,25 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Trace calls: present only when the node declares a trace."""
+"""Trace calls, present only when the node declares a trace, and reports of faults."""
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import constant_name
-from ravenchart.gen.emit.ada.syntax import (
-    Do,
+from ravenchart.gen.emit.ada.expressions import (
+    Attribute,
     Expr,
     OperatorChain,
-    Ref,
-    Stmt,
     arguments,
     call,
     number,
 )
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
+from ravenchart.gen.emit.ada.naming import constant_name
+from ravenchart.gen.emit.ada.statements import Do, Stmt, do
 from ravenchart.gen.model.system import Processor, System
+
+FAULTS = ref("Health_Counts.Faults")
+"""What counts and traces the faults of a node."""
 
 
 def traced(system: System) -> bool:
@@ -31,11 +34,27 @@ def note(
     if not traced(system):
         return ()
     args = arguments(
-        Ref(f"Ravenchart.Traces.{kind}"),
-        Ref(f"Elements.{element_constant(element, element_kind)}"),
+        ref("Ravenchart.Traces", kind),
+        ref("Elements", element_constant(element, element_kind)),
         value or number(0),
     )
     return (Do("Trace.Buffer.Note", args),)
+
+
+def fault_number(kind: str) -> Expr:
+    """What a trace record about a fault says of its kind."""
+    return call(Attribute("Ravenchart.Health.Fault_Kind", "Pos"), ref("Ravenchart.Health", kind))
+
+
+def fault(kind: str, element: str, element_kind: str) -> Stmt:
+    """Count a fault about ``element``, and trace it where there is a trace."""
+    named = ref("Elements", element_constant(element, element_kind))
+    return do(ref(FAULTS, "Report"), ref("Ravenchart.Health", kind), named)
+
+
+def fault_units(root: str) -> set[DottedName]:
+    """The units that a body with such calls needs."""
+    return {ref(root, "Health_Counts"), ref("Ravenchart.Health"), ref(root, "Elements")}
 
 
 def element_constant(element: str, kind: str) -> str:
@@ -44,8 +63,8 @@ def element_constant(element: str, kind: str) -> str:
     return constant_name(element) + kinds.get(kind, "")
 
 
-def row_number(processor: Processor, row_type: str, row: str) -> Expr:
+def row_number(processor: Processor, row_type: Named, row: str) -> Expr:
     """The element number of a row: those of a table follow their processor's."""
-    position = call("Ravenchart.Element_Id", call(f"{row_type}'Pos", Ref(row)))
-    first = Ref(f"Elements.{element_constant(processor.name, 'processor')}")
+    position = call("Ravenchart.Element_Id", call(Attribute(ref(row_type), "Pos"), ref(row)))
+    first = ref("Elements", element_constant(processor.name, "processor"))
     return OperatorChain("+", (first, number(1), position))

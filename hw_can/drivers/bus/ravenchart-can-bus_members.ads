@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A node of a served bus, as it knows itself: whether it has joined, which
 --  of its requests are open, and its error counters.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What a node says to its bus server, and what it hears from it
 --  (docs/bus-protocol.md).
 --

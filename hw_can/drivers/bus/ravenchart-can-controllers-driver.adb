@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Driver "bus": a node of the simulated bus behind a bus server on this
 --  machine (docs/bus-protocol.md), as each other process that joins it.
 --
@@ -23,6 +26,8 @@ with Ravenchart.Epochs;
 with Ravenchart.Can.Bus_Members;
 with Ravenchart.Can.Bus_Records.Client_Side;
 with Ravenchart.Can.Connections;
+with Ravenchart.Can.Driver_Hosts;
+with Ravenchart.Can.Ports;
 with Ravenchart.Can.Sockets;
 with Ravenchart.Can.Tcp_Sockets;
 
@@ -87,8 +92,20 @@ package body Driver is
    with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
    --  Asks for what is in the transmit queue to be sent, and for recovery.
 
+   Bus_Port : constant Ports.Port := 29_536;
+   --  Of a bus server that was told no other.
+
+   procedure Connect (Server : out Sockets.Socket; Port : out Ports.Port)
+   with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
+   --  Become a client of the bus server on the port that RAVENCHART_BUS_PORT
+   --  names, or Bus_Port.
+
+   procedure Limit_Wait (Server : Sockets.Socket; To : Tcp_Sockets.Patience)
+   with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
+   --  Wait no longer than that for the server.
+
    procedure Say_Hello (Server : Sockets.Socket; Done : out Boolean)
-   with Global => (In_Out => Sockets.Network);
+   with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
    --  Ask to be taken in, under the name that the environment gives.
 
    procedure Write (Bytes : Bus_Records.Image)
@@ -116,11 +133,14 @@ package body Driver is
    with Global => (In_Out => Upper.State, Input => Membership);
    --  The node stands so.
 
-   procedure Serve (Server : Sockets.Socket; Announced : in out Boolean)
+   procedure Serve
+     (Server    : Sockets.Socket;
+      Port      : Ports.Port;
+      Announced : in out Boolean)
    with
      Global =>
        (In_Out => (Membership, Upper.State, Upper.Wake_Up,
-                   Sockets.Network),
+                   Driver_Hosts.Console, Sockets.Network),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  Say hello, and take what the server says until the connection ends.
 
@@ -168,24 +188,68 @@ package body Driver is
 
    end Membership;
 
+   -------------
+   -- Connect --
+   -------------
+
+   procedure Connect (Server : out Sockets.Socket; Port : out Ports.Port) is
+      Is_Sound : Boolean;
+      Result   : Tcp_Sockets.Outcome;
+   begin
+      Server := Sockets.No_Socket;
+      Ports.Read ("RAVENCHART_BUS_PORT", Bus_Port, Port, Is_Sound);
+      if Is_Sound then
+         Tcp_Sockets.Connect (Port, Server, Result);
+         case Result is
+            when Tcp_Sockets.Opened    =>
+               null;
+            when Tcp_Sockets.None_Left =>
+               Driver_Hosts.Complain
+                 ("no socket: the system has none left");
+            when Tcp_Sockets.Refused   =>
+               Driver_Hosts.Complain
+                 ("no bus server at 127.0.0.1:",
+                  Natural (Port),
+                  ": trying again");
+         end case;
+      end if;
+   end Connect;
+
+   ----------------
+   -- Limit_Wait --
+   ----------------
+
+   procedure Limit_Wait (Server : Sockets.Socket; To : Tcp_Sockets.Patience)
+   is
+      Done : Boolean;
+   begin
+      Tcp_Sockets.Limit_Wait (Server, To, Done);
+      if not Done then
+         Driver_Hosts.Complain
+           ("this system has no limit for the wait on a socket");
+      end if;
+   end Limit_Wait;
+
    ---------------
    -- Say_Hello --
    ---------------
 
    procedure Say_Hello (Server : Sockets.Socket; Done : out Boolean) is
       Default : constant String := "ravenchart";
-      Text    : Tcp_Sockets.Name_Text;
-      Last    : Tcp_Sockets.Name_Length;
+      Text    : String (1 .. 17);
+      --  Room for a name, and for one character more.
+      Last    : Natural;
       Bytes   : Bus_Records.Image;
    begin
-      Tcp_Sockets.Read_Name (Text, Last);
+      Driver_Hosts.Read_Setting ("RAVENCHART_BUS_NAME", Text, Last);
       if Bus_Records.Is_Name (Text (1 .. Last)) then
          Bytes := Client_Side.Hello (Text (1 .. Last), Setting.Takes_Fd);
       else
          if Last > 0 then
-            Sockets.Complain
-              ("RAVENCHART_BUS_NAME must have 1 to 16 characters from ! to ~;"
-               & " joining as " & Default);
+            Driver_Hosts.Complain
+              ("RAVENCHART_BUS_NAME must have 1 to 16 characters from ! to ~;",
+               " joining as ",
+               Default);
          end if;
          Bytes := Client_Side.Hello (Default, Setting.Takes_Fd);
       end if;
@@ -259,14 +323,18 @@ package body Driver is
    -- Serve --
    -----------
 
-   procedure Serve (Server : Sockets.Socket; Announced : in out Boolean) is
+   procedure Serve
+     (Server    : Sockets.Socket;
+      Port      : Ports.Port;
+      Announced : in out Boolean)
+   is
       Bytes   : Wire_Record;
       Done    : Boolean;
       A       : Client_Side.Answer;
       Then_Do : Bus_Members.Consequence;
       Joined  : Boolean := False;
    begin
-      Tcp_Sockets.Limit_Wait (Server, Welcome_Limit);
+      Limit_Wait (Server, Welcome_Limit);
       Say_Hello (Server, Done);
       while Done loop
          Tcp_Sockets.Receive_All (Server, Bytes, Done);
@@ -277,9 +345,10 @@ package body Driver is
             when Bus_Members.Note_Joined    =>
                Joined := True;
                Note_State;
-               Tcp_Sockets.Limit_Wait (Server, To => 0);
+               Limit_Wait (Server, To => 0);
                if not Announced then
-                  Tcp_Sockets.Announce_Joined;
+                  Driver_Hosts.Announce
+                    ("joined the bus at 127.0.0.1:", Natural (Port));
                   Announced := True;
                end if;
             when Bus_Members.Take_Frame     =>
@@ -303,7 +372,7 @@ package body Driver is
          end case;
       end loop;
       if not Joined then
-         Sockets.Complain
+         Driver_Hosts.Complain
            ("the bus server does not take this node in: trying again");
       end if;
    end Serve;
@@ -314,16 +383,17 @@ package body Driver is
 
    task body Reader is
       Server    : Sockets.Socket;
+      Port      : Ports.Port;
       Announced : Boolean := False;
       Lost      : Bus_Members.Open_Count;
    begin
       delay until Epochs.Start;
       --  Frames that come before the processors run would find nobody.
       loop
-         Tcp_Sockets.Connect (Server);
+         Connect (Server, Port);
          if Server /= Sockets.No_Socket then
             Line.Attach (Server);
-            Serve (Server, Announced);
+            Serve (Server, Port, Announced);
             --  The writer may be waiting for the server, or for an answer.
             Line.Detach;
             Membership.Leave (Lost);

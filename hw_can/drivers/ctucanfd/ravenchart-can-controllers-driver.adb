@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Driver "ctucanfd": a CTU CAN FD core by its registers, without the kernel.
 --
 --  Guarantees   frames go to the bus in the order sent, whatever their

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  One CTU CAN FD core: its registers, as volatile words of memory.
 --
 --  Guarantees   each access reads or writes one whole word, once

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Frames as a CTU CAN FD core keeps them, in a transmit buffer and in its
 --  receive buffer: "CTU CAN FD IP Core: Datasheet", chapter "CAN frame
 --  format".

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What the CTU CAN FD driver needs of Linux: where the core is, its words in
 --  the memory of this process, and a few lines said.
 --

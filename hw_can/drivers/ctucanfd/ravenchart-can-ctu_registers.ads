@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The registers of a CTU CAN FD core that the driver uses, by the names of
 --  "CTU CAN FD IP Core: Datasheet", chapter "Memory map".
 --

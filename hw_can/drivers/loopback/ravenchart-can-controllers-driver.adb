@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Driver "loopback": a bus inside the process, with this one node on it,
 --  which receives what it sends.
 --

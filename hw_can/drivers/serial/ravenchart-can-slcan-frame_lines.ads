@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Frames as lines of slcan, without the carriage return: the letter, the
 --  digits of the identifier, that of the length code, and those of the data.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The slcan line protocol: frames and commands as lines of ASCII that end in
 --  a carriage return. CAN FD frames have lines too, d, D, b and B, as
 --  adapters and python-can write them.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Driver "slcan": a server on 127.0.0.1 that speaks slcan to one client,
 --  which stands for the rest of the bus; or the host of an slcan adapter on
 --  the serial line that RAVENCHART_CAN_DEVICE names.
@@ -18,8 +21,10 @@ with Ada.Real_Time;
 with Ravenchart.Epochs;
 with Ravenchart.Queues;
 with Ravenchart.Can.Connections;
+with Ravenchart.Can.Driver_Hosts;
+with Ravenchart.Can.Ports;
 with Ravenchart.Can.Serial_Lines;
-with Ravenchart.Can.Slcan;
+with Ravenchart.Can.Slcan.Openings;
 with Ravenchart.Can.Sockets;
 with Ravenchart.Can.Tcp_Sockets;
 
@@ -106,6 +111,87 @@ package body Driver is
        (In_Out => (Line.State, Line.Wake_Up, Upper.State,
                    Sockets.Network));
    --  Write it, if there is a client whose channel is open, and count it.
+
+   Device_Variable : constant String := "RAVENCHART_CAN_DEVICE";
+   --  It names the serial line of an adapter.
+
+   procedure Open_Server (Server : out Sockets.Socket)
+   with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
+   --  Listen on the port that RAVENCHART_CAN_PORT names, or on one that the
+   --  system chooses, and announce it on standard output.
+
+   procedure Open_Serial (Client : out Sockets.Socket)
+   with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
+   --  Open the serial line, tell the slcan adapter there its bit rates and to
+   --  open its channel, and announce it on standard output. The digit that
+   --  RAVENCHART_CAN_SPEED names goes before the bit rate of the bus.
+
+   -----------------
+   -- Open_Server --
+   -----------------
+
+   procedure Open_Server (Server : out Sockets.Socket) is
+      Asked    : Ports.Port;
+      Given    : Ports.Port;
+      Is_Sound : Boolean;
+      Result   : Tcp_Sockets.Outcome;
+   begin
+      Server := Sockets.No_Socket;
+      Ports.Read ("RAVENCHART_CAN_PORT", 0, Asked, Is_Sound);
+      if Is_Sound then
+         Tcp_Sockets.Open_Server (Asked, Server, Given, Result);
+         case Result is
+            when Tcp_Sockets.Opened    =>
+               Driver_Hosts.Announce
+                 ("slcan on 127.0.0.1:", Natural (Given));
+            when Tcp_Sockets.None_Left =>
+               Driver_Hosts.Complain
+                 ("no socket: the system has none left");
+            when Tcp_Sockets.Refused   =>
+               Driver_Hosts.Complain
+                 ("port ",
+                  Natural (Asked),
+                  " cannot be opened: is it in use? trying again");
+         end case;
+      end if;
+   end Open_Server;
+
+   -----------------
+   -- Open_Serial --
+   -----------------
+
+   procedure Open_Serial (Client : out Sockets.Socket) is
+      Path       : String (1 .. Serial_Lines.Path_Limit);
+      Path_Last  : Natural;
+      Speed      : String (1 .. 2);
+      Speed_Last : Natural;
+      First      : Slcan.Openings.Opening_Text;
+      First_Last : Natural;
+      Result     : Serial_Lines.Outcome;
+   begin
+      Client := Sockets.No_Socket;
+      Driver_Hosts.Read_Setting ("RAVENCHART_CAN_SPEED", Speed, Speed_Last);
+      if not Slcan.Openings.Is_Speed (Speed (1 .. Speed_Last)) then
+         Driver_Hosts.Complain
+           ("RAVENCHART_CAN_SPEED must be a digit, 0 to 8");
+         return;
+      end if;
+      Slcan.Openings.Format
+        (Setting, Speed (1 .. Speed_Last), First, First_Last);
+      Driver_Hosts.Read_Setting (Device_Variable, Path, Path_Last);
+      Serial_Lines.Open
+        (Path (1 .. Path_Last), First (1 .. First_Last), Client, Result);
+      case Result is
+         when Serial_Lines.Opened    =>
+            Driver_Hosts.Announce ("slcan on ", Path (1 .. Path_Last));
+         when Serial_Lines.No_Device =>
+            Driver_Hosts.Complain
+              (Path (1 .. Path_Last), " cannot be opened: trying again");
+         when Serial_Lines.No_Line   =>
+            Driver_Hosts.Complain
+              (Path (1 .. Path_Last), " is no serial line: trying again");
+      end case;
+   end Open_Serial;
 
    ----------------
    -- Put_Answer --
@@ -226,21 +312,24 @@ package body Driver is
       Server : Sockets.Socket := Sockets.No_Socket;
       Client : Sockets.Socket;
       Serial : Boolean;
+      Unused : String (1 .. 1);
+      Last   : Natural;
    begin
       delay until Epochs.Start;
       --  A client that came before the processors run would find nobody
       --  to take its frames.
-      Serial_Lines.Ask (Serial);
+      Driver_Hosts.Read_Setting (Device_Variable, Unused, Last);
+      Serial := Last > 0;
       if not Serial then
          loop
-            Tcp_Sockets.Open_Server (Server);
+            Open_Server (Server);
             exit when Server /= Sockets.No_Socket;
             Line.Pause (Milliseconds => 1_000);
          end loop;
       end if;
       loop
          if Serial then
-            Serial_Lines.Open (Setting, Client);
+            Open_Serial (Client);
          else
             Tcp_Sockets.Accept_Client (Server, Client);
          end if;

@@ -1,5 +1,7 @@
---  The serial line of the slcan driver, where an slcan adapter is to be at the
---  other end.
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
+--  Serial lines of the host.
 --
 --  Guarantees   a line that is not there shows as No_Socket
 --  Tasking      one task
@@ -10,17 +12,21 @@ with Ravenchart.Can.Sockets;
 package Ravenchart.Can.Serial_Lines
   with SPARK_Mode
 is
+   type Outcome is (Opened, No_Device, No_Line);
+   --  No_Device: there is no such file, or not for us. No_Line: it is
+   --  something else, or does not take what is written.
 
-   procedure Ask (Wanted : out Boolean)
-   with Global => (In_Out => Sockets.Network);
-   --  Does RAVENCHART_CAN_DEVICE name a serial line?
+   Path_Limit : constant := 1_024;
 
-   procedure Open (Bus : Bus_Setting; Line : out Sockets.Socket)
-   with Global => (In_Out => Sockets.Network);
-   --  Open that line as it is set, without echo and translation; tell the
-   --  slcan adapter there its bit rates and to open its channel, and announce
-   --  it on standard output. Its commands S and Y have digits for usual bit
-   --  rates alone, and Y is told where CAN FD frames switch to a whole number
-   --  of Mbit/s; the digit that RAVENCHART_CAN_SPEED names goes before.
+   procedure Open
+     (Path   : String;
+      First  : String;
+      Line   : out Sockets.Socket;
+      Result : out Outcome)
+   with
+     Global => (In_Out => Sockets.Network),
+     Pre    => Path'Length <= Path_Limit;
+   --  Open the line that Path names as it is set, without echo and
+   --  translation, and write First; No_Socket when it is not Opened.
 
 end Ravenchart.Can.Serial_Lines;

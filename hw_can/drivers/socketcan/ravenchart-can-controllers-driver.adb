@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Driver "socketcan": a CAN interface of Linux, through a raw socket.
 --
 --  Guarantees   frames go to the interface in the order sent; one that it has
@@ -15,6 +18,7 @@
 with Ada.Real_Time;
 with Ravenchart.Epochs;
 with Ravenchart.Can.Connections;
+with Ravenchart.Can.Driver_Hosts;
 with Ravenchart.Can.Raw_Sockets;
 with Ravenchart.Can.Socket_Frames;
 with Ravenchart.Can.Sockets;
@@ -66,8 +70,60 @@ package body Driver is
    with
      Global =>
        (In_Out => (Line.State, Line.Wake_Up, Upper.State,
-                   Sockets.Network));
+                   Driver_Hosts.Console, Sockets.Network));
    --  Try to send F once; Sent is False when it must wait.
+
+   subtype Interface_Name is String (1 .. Raw_Sockets.Name_Limit);
+
+   procedure Read_Name (Name : out Interface_Name; Last : out Positive)
+   with Global => null, Post => Last <= Interface_Name'Last;
+   --  What RAVENCHART_CAN_INTERFACE says, or can0.
+
+   procedure Open (Bus : out Sockets.Socket)
+   with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
+   --  A socket on that interface, announced on standard output; No_Socket,
+   --  with one message on standard error, where there is none.
+
+   ---------------
+   -- Read_Name --
+   ---------------
+
+   procedure Read_Name (Name : out Interface_Name; Last : out Positive) is
+      Default : constant String := "can0";
+      Length  : Natural;
+   begin
+      Driver_Hosts.Read_Setting ("RAVENCHART_CAN_INTERFACE", Name, Length);
+      if Length = 0 then
+         Length := Default'Length;
+         Name (1 .. Length) := Default;
+      end if;
+      Last := Length;
+   end Read_Name;
+
+   ----------
+   -- Open --
+   ----------
+
+   procedure Open (Bus : out Sockets.Socket) is
+      Name   : Interface_Name;
+      Last   : Positive;
+      Result : Raw_Sockets.Opening;
+   begin
+      Read_Name (Name, Last);
+      Raw_Sockets.Open (Name (1 .. Last), Setting.Takes_Fd, Bus, Result);
+      case Result is
+         when Raw_Sockets.Joined       =>
+            Driver_Hosts.Announce ("socketcan on ", Name (1 .. Last));
+         when Raw_Sockets.No_Can       =>
+            Driver_Hosts.Complain
+              ("this system has no SocketCAN; trying again");
+         when Raw_Sockets.No_Interface =>
+            Driver_Hosts.Complain
+              ("there is no CAN interface ",
+               Name (1 .. Last),
+               "; trying again");
+      end case;
+   end Open;
 
    -----------------
    -- Note_Report --
@@ -130,6 +186,8 @@ package body Driver is
    procedure Put (F : Any_Frames.Any_Frame; Sent : out Boolean) is
       Bus    : Sockets.Socket;
       Result : Raw_Sockets.Outcome := Raw_Sockets.Refused;
+      Name   : Interface_Name;
+      Last   : Positive;
    begin
       Line.Begin_Use (Bus);
       if Bus /= Sockets.No_Socket then
@@ -143,6 +201,9 @@ package body Driver is
             null;
          when Raw_Sockets.Refused                 =>
             Upper.Count (Upper.Lost_Out);
+            Read_Name (Name, Last);
+            Driver_Hosts.Complain
+              (Name (1 .. Last), " is not set up for CAN FD (fd on)");
          when Raw_Sockets.Down | Raw_Sockets.Gone =>
             Upper.Count (Upper.Lost_Out);
             Upper.Note (Stopped);
@@ -161,7 +222,7 @@ package body Driver is
       delay until Epochs.Start;
       --  Frames that come before the processors run would find nobody.
       loop
-         Raw_Sockets.Open (Setting.Takes_Fd, Bus);
+         Open (Bus);
          if Bus = Sockets.No_Socket then
             Line.Pause (Milliseconds => 1_000);
          else

@@ -1,4 +1,8 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 with Interfaces.C;
+with System;
 with Ravenchart.Can.Linux_Calls;
 
 package body Ravenchart.Can.Raw_Sockets
@@ -26,8 +30,7 @@ is
 
    Can_Address_Length : constant C_Int := 24;
 
-   function C_Index
-     (Name : Interfaces.C.char_array) return Interfaces.C.unsigned
+   function C_Index (Name : System.Address) return Interfaces.C.unsigned
    with Import, Convention => C, External_Name => "if_nametoindex";
 
    Raw_Protocol    : constant C_Int := 1;
@@ -38,9 +41,6 @@ is
    Fd_Frame_Length : constant := 72;
    --  Numbers of linux/can.h and linux/can/raw.h.
 
-   function Interface_Name return String;
-   --  What RAVENCHART_CAN_INTERFACE says, or can0.
-
    function Failure return Outcome
    is (case C_Error is
          when No_Room | Try_Again => Busy,
@@ -48,53 +48,49 @@ is
          when others              => Gone);
    --  What the call before it has failed of.
 
-   --------------------
-   -- Interface_Name --
-   --------------------
-
-   function Interface_Name return String is
-      Named : constant String := Setting ("RAVENCHART_CAN_INTERFACE");
-   begin
-      return (if Named = "" then "can0" else Named);
-   end Interface_Name;
-
    ----------
    -- Open --
    ----------
 
-   procedure Open (With_Fd : Boolean; Opened : out Socket) is
-      Name    : constant String := Interface_Name;
+   procedure Open
+     (Name    : String;
+      With_Fd : Boolean;
+      Opened  : out Socket;
+      Result  : out Opening)
+   is
       All_Of  : aliased Interfaces.Unsigned_32 := 16#1FFF_FFFF#;
       Yes     : aliased C_Int := 1;
       Address : aliased Can_Address;
       File    : constant C_Int :=
         C_Socket (Can_Family, Raw_Socket + Close_On_Exec, Raw_Protocol);
-      Index   : constant Interfaces.C.unsigned :=
-        C_Index (Interfaces.C.To_C (Name));
-      Result  : C_Int;
+      C_Name  : String (1 .. Name_Limit + 1) := (others => ASCII.NUL);
+      Index   : Interfaces.C.unsigned;
+      Status  : C_Int;
    begin
       Opened := No_Socket;
+      Result := No_Can;
       if File < 0 then
-         Complain ("this system has no SocketCAN; trying again");
          return;
       end if;
+      C_Name (1 .. Name'Length) := Name;
+      Index         := C_Index (C_Name'Address);
       Address.Index := C_Int (Index);
-      Result := C_Set_Option
+      Status := C_Set_Option
         (File, Raw_Level, Error_Filter, All_Of'Address, 4);
-      if With_Fd and then Result = 0 then
-         Result := C_Set_Option
+      if With_Fd and then Status = 0 then
+         Status := C_Set_Option
            (File, Raw_Level, Fd_Frames_Too, Yes'Address, C_Int'Size / 8);
       end if;
-      if Index /= 0 and then Result = 0 then
-         Result := C_Bind (File, Address'Address, Can_Address_Length);
+      if Index /= 0 and then Status = 0 then
+         Status := C_Bind (File, Address'Address, Can_Address_Length);
       end if;
-      if Index = 0 or else Result /= 0 then
-         Complain ("there is no CAN interface " & Name & "; trying again");
-         Result := C_Close (File);
-         return;
+      if Index /= 0 and then Status = 0 then
+         Opened := Socket (File);
+         Result := Joined;
+      else
+         Status := C_Close (File);
+         Result := No_Interface;
       end if;
-      Announce ("socketcan on " & Name);
-      Opened := Socket (File);
    end Open;
 
    -------------
@@ -144,7 +140,6 @@ is
       if Sent = Interfaces.C.long (Length) then
          Result := Done;
       elsif Socket_Frames.Is_Fd (Item) and then C_Error = Invalid then
-         Complain (Interface_Name & " is not set up for CAN FD (fd on)");
          Result := Refused;
       else
          Result := Failure;

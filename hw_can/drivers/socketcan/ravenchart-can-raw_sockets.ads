@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The few calls of the SocketCAN driver: one raw socket on one interface.
 --
 --  Guarantees   an interface that is down or gone shows as an outcome, never
@@ -15,15 +18,23 @@ is
 
    type Outcome is (Done, Busy, Refused, Down, Gone);
    --  Busy: no room to send at present. Refused: the interface is not set up
-   --  for CAN FD, which is said once on standard error. Down: the interface
-   --  is not up. Gone: the socket is of no use any more.
+   --  for CAN FD. Down: the interface is not up. Gone: the socket is of no use
+   --  any more.
 
-   procedure Open (With_Fd : Boolean; Opened : out Socket)
-   with Global => (In_Out => Network);
-   --  A socket on the interface that RAVENCHART_CAN_INTERFACE names, can0
-   --  where it does not, with all error reports, and with CAN FD frames if
-   --  so asked; announced on standard output. No_Socket, with one message on
-   --  standard error, where the system has no CAN or no such interface.
+   type Opening is (Joined, No_Can, No_Interface);
+   --  No_Can: the system has none.
+
+   Name_Limit : constant := 64;
+   --  More than Linux allows.
+
+   procedure Open
+     (Name    : String;
+      With_Fd : Boolean;
+      Opened  : out Socket;
+      Result  : out Opening)
+   with Global => (In_Out => Network), Pre => Name'Length <= Name_Limit;
+   --  A socket on the interface of that name, with all error reports, and with
+   --  CAN FD frames if so asked; No_Socket when it has not Joined.
 
    procedure Receive
      (From   : Socket;

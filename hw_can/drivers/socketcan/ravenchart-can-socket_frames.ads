@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Frames and error reports as Linux hands them over on a raw CAN socket:
 --  struct can_frame and struct canfd_frame of linux/can.h, and the error
 --  classes of linux/can/error.h.

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The socket of a driver: its reader opens it and closes it, its writer uses
 --  it.
 --

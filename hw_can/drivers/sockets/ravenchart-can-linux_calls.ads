@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What the drivers by sockets and serial lines ask of Linux: calls of the C
 --  library, and numbers.
 --
@@ -101,12 +104,6 @@ is
    function C_Error return C_Int
    with Import, Convention => C, External_Name => "__get_errno";
    --  errno of the calling task, by the Ada run-time library.
-
-   function Setting (Name : String) return String;
-   --  What the environment says; nothing when it is not set.
-
-   procedure Print (File : C_Int; Text : String);
-   --  Write Text and the end of a line to File, unbuffered.
 
    function C_To_Network
      (Value : Interfaces.Unsigned_16) return Interfaces.Unsigned_16

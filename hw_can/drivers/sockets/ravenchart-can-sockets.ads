@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What sockets of every kind have in common.
 --
 --  Guarantees   nothing is raised
@@ -18,15 +21,6 @@ is
 
    No_Socket : constant Socket := -1;
    --  What a failed call hands over.
-
-   procedure Announce (Text : String)
-   with Global => (In_Out => Network);
-   --  Print Text to standard output.
-
-   procedure Complain (Reason : String)
-   with Global => (In_Out => Network);
-   --  Say on standard error what is wrong: the first time only, as most is
-   --  tried again.
 
    procedure Close (Old : Socket)
    with Global => (In_Out => Network);

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 with Interfaces.C;
 with System;
 with Ravenchart.Can.Linux_Calls;
@@ -10,16 +13,6 @@ is
    use type Interfaces.C.long;
    use Linux_Calls;
 
-   Bus_Port : constant := 29_536;
-   --  Of a bus server that was told no other.
-
-   procedure Read_Port
-     (Variable : String;
-      Default  : Interfaces.Unsigned_16;
-      Port     : out Interfaces.Unsigned_16;
-      Sound    : out Boolean);
-   --  The port that Variable names; Default when it is not set.
-
    function Address_Of (Port : Interfaces.Unsigned_16) return Socket_Address
    is (Family  => 2,
        Port    => C_To_Network (Port),
@@ -27,83 +20,8 @@ is
        Padding => 0);
    --  That port of this machine.
 
-   function Image (Port : Interfaces.Unsigned_16) return String;
-   --  In decimal.
-
-   procedure Open_Stream
-     (Variable : String;
-      Default  : Interfaces.Unsigned_16;
-      Port     : out Interfaces.Unsigned_16;
-      File     : out C_Int);
-   --  A socket for the port that Variable names; negative without it.
-
    procedure Hurry (File : C_Int);
    --  Small records shall not wait for more.
-
-   ---------------
-   -- Read_Port --
-   ---------------
-
-   procedure Read_Port
-     (Variable : String;
-      Default  : Interfaces.Unsigned_16;
-      Port     : out Interfaces.Unsigned_16;
-      Sound    : out Boolean)
-   is
-      Text : constant String := Setting (Variable);
-      Sum  : Natural := 0;
-   begin
-      Port  := Default;
-      Sound := True;
-      if Text = "" then
-         return;
-      end if;
-      for C of Text loop
-         if C in '0' .. '9' and then Sum <= 65_535 then
-            Sum := 10 * Sum + Character'Pos (C) - Character'Pos ('0');
-         else
-            Sound := False;
-         end if;
-      end loop;
-      Sound := Sound and then Sum <= 65_535;
-      if Sound then
-         Port := Interfaces.Unsigned_16 (Sum);
-      else
-         Complain (Variable & " must be a port, 0 to 65535");
-      end if;
-   end Read_Port;
-
-   -----------
-   -- Image --
-   -----------
-
-   function Image (Port : Interfaces.Unsigned_16) return String is
-      Text : constant String := Port'Image;
-   begin
-      return Text (Text'First + 1 .. Text'Last);
-   end Image;
-
-   -----------------
-   -- Open_Stream --
-   -----------------
-
-   procedure Open_Stream
-     (Variable : String;
-      Default  : Interfaces.Unsigned_16;
-      Port     : out Interfaces.Unsigned_16;
-      File     : out C_Int)
-   is
-      Sound : Boolean;
-   begin
-      File := -1;
-      Read_Port (Variable, Default, Port, Sound);
-      if Sound then
-         File := C_Socket (Internet, Stream + Close_On_Exec, 0);
-         if File < 0 then
-            Complain ("no socket: the system has none left");
-         end if;
-      end if;
-   end Open_Stream;
 
    -----------
    -- Hurry --
@@ -121,40 +39,44 @@ is
    -- Open_Server --
    -----------------
 
-   procedure Open_Server (Server : out Socket) is
+   procedure Open_Server
+     (Asked  : Interfaces.Unsigned_16;
+      Server : out Socket;
+      Given  : out Interfaces.Unsigned_16;
+      Result : out Outcome)
+   is
       One     : aliased C_Int := 1;
       Length  : aliased C_Int := Address_Length;
-      Address : aliased Socket_Address;
-      Port    : Interfaces.Unsigned_16;
-      File    : C_Int;
-      Result  : C_Int;
+      Address : aliased Socket_Address := Address_Of (Asked);
+      File    : constant C_Int :=
+        C_Socket (Internet, Stream + Close_On_Exec, 0);
+      Status  : C_Int;
    begin
       Server := No_Socket;
-      Open_Stream ("RAVENCHART_CAN_PORT", 0, Port, File);
+      Given  := Asked;
+      Result := None_Left;
       if File < 0 then
          return;
       end if;
-      Result := C_Set_Option
+      Status := C_Set_Option
         (File, Socket_Level, Reuse_Address, One'Address, 4);
-      Address := Address_Of (Port);
-      if Result = 0 then
-         Result := C_Bind (File, Address'Address, Address_Length);
+      if Status = 0 then
+         Status := C_Bind (File, Address'Address, Address_Length);
       end if;
-      if Result = 0 then
-         Result := C_Listen (File, 1);
+      if Status = 0 then
+         Status := C_Listen (File, 1);
       end if;
-      if Result = 0 then
-         Result := C_Get_Name (File, Address'Address, Length'Address);
+      if Status = 0 then
+         Status := C_Get_Name (File, Address'Address, Length'Address);
       end if;
-      if Result /= 0 then
-         Complain
-           ("port " & Image (Port) & " cannot be opened: is it in use?"
-            & " trying again");
-         Result := C_Close (File);
-         return;
+      if Status = 0 then
+         Server := Socket (File);
+         Given  := C_To_Network (Address.Port);
+         Result := Opened;
+      else
+         Status := C_Close (File);
+         Result := Refused;
       end if;
-      Announce ("slcan on 127.0.0.1:" & Image (C_To_Network (Address.Port)));
-      Server := Socket (File);
    end Open_Server;
 
    -------------------
@@ -177,55 +99,31 @@ is
    -- Connect --
    -------------
 
-   procedure Connect (Client : out Socket) is
-      Address : aliased Socket_Address;
-      Port    : Interfaces.Unsigned_16;
-      File    : C_Int;
-      Result  : C_Int;
+   procedure Connect
+     (Port   : Interfaces.Unsigned_16;
+      Client : out Socket;
+      Result : out Outcome)
+   is
+      Address : aliased Socket_Address := Address_Of (Port);
+      File    : constant C_Int :=
+        C_Socket (Internet, Stream + Close_On_Exec, 0);
+      Status  : C_Int;
    begin
       Client := No_Socket;
-      Open_Stream ("RAVENCHART_BUS_PORT", Bus_Port, Port, File);
+      Result := None_Left;
       if File < 0 then
          return;
       end if;
-      Address := Address_Of (Port);
-      Result  := C_Connect (File, Address'Address, Address_Length);
-      if Result /= 0 then
-         Complain
-           ("no bus server at 127.0.0.1:" & Image (Port)
-            & ": trying again");
-         Result := C_Close (File);
-         return;
+      Status := C_Connect (File, Address'Address, Address_Length);
+      if Status = 0 then
+         Hurry (File);
+         Client := Socket (File);
+         Result := Opened;
+      else
+         Status := C_Close (File);
+         Result := Refused;
       end if;
-      Hurry (File);
-      Client := Socket (File);
    end Connect;
-
-   ---------------------
-   -- Announce_Joined --
-   ---------------------
-
-   procedure Announce_Joined is
-      Port  : Interfaces.Unsigned_16;
-      Sound : Boolean;
-   begin
-      Read_Port ("RAVENCHART_BUS_PORT", Bus_Port, Port, Sound);
-      if Sound then
-         Announce ("joined the bus at 127.0.0.1:" & Image (Port));
-      end if;
-   end Announce_Joined;
-
-   ---------------
-   -- Read_Name --
-   ---------------
-
-   procedure Read_Name (Text : out Name_Text; Last : out Name_Length) is
-      Found : constant String := Setting ("RAVENCHART_BUS_NAME");
-   begin
-      Last := Natural'Min (Found'Length, Name_Length'Last);
-      Text := (others => ' ');
-      Text (1 .. Last) := Found (Found'First .. Found'First + Last - 1);
-   end Read_Name;
 
    -------------
    -- Receive --
@@ -268,7 +166,9 @@ is
    -- Limit_Wait --
    ----------------
 
-   procedure Limit_Wait (Partner : Socket; To : Patience) is
+   procedure Limit_Wait
+     (Partner : Socket; To : Patience; Done : out Boolean)
+   is
       type Time_Value is record
          Seconds      : Interfaces.C.long;
          Microseconds : Interfaces.C.long;
@@ -280,16 +180,14 @@ is
         (Seconds      => Milliseconds / 1_000,
          Microseconds => Milliseconds mod 1_000 * 1_000);
    begin
-      if C_Set_Option
-           (C_Int (Partner),
-            Socket_Level,
-            Receive_Limit,
-            Value'Address,
-            Time_Value'Size / 8)
-        /= 0
-      then
-         Complain ("this system has no limit for the wait on a socket");
-      end if;
+      Done :=
+        C_Set_Option
+          (C_Int (Partner),
+           Socket_Level,
+           Receive_Limit,
+           Value'Address,
+           Time_Value'Size / 8)
+        = 0;
    end Limit_Wait;
 
    ----------

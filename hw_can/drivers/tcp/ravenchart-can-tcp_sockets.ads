@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The few socket calls of the drivers that TCP on this machine reaches: a
 --  server with one client at a time, or a client.
 --
@@ -26,33 +29,30 @@ is
    subtype Chunk is Octets (1 .. Chunk_Limit);
    --  Received bytes, and unused ones behind them.
 
-   procedure Open_Server (Server : out Socket)
+   type Outcome is (Opened, None_Left, Refused);
+   --  None_Left: the system has no more sockets. Refused: the port is in use,
+   --  or nobody listens there.
+
+   procedure Open_Server
+     (Asked  : Interfaces.Unsigned_16;
+      Server : out Socket;
+      Given  : out Interfaces.Unsigned_16;
+      Result : out Outcome)
    with Global => (In_Out => Network);
-   --  Listen on the port that RAVENCHART_CAN_PORT names, or on one that the
-   --  system chooses, and announce it on standard output.
+   --  Listen on the port Asked, or for 0 on one that the system chooses; Given
+   --  is that port. No_Socket when it is not Opened.
 
    procedure Accept_Client (Server : Socket; Client : out Socket)
    with Global => (In_Out => Network);
    --  Wait for the next client.
 
-   procedure Connect (Client : out Socket)
+   procedure Connect
+     (Port   : Interfaces.Unsigned_16;
+      Client : out Socket;
+      Result : out Outcome)
    with Global => (In_Out => Network);
-   --  Become a client of the bus server on the port that RAVENCHART_BUS_PORT
-   --  names, 29536 without it.
-
-   procedure Announce_Joined
-   with Global => (In_Out => Network);
-   --  Say on standard output that the bus server has taken us in.
-
-   subtype Name_Text is String (1 .. 17);
-   --  Room for a name, and for one character more.
-
-   subtype Name_Length is Natural range 0 .. 17;
-
-   procedure Read_Name (Text : out Name_Text; Last : out Name_Length)
-   with Global => (In_Out => Network);
-   --  What RAVENCHART_BUS_NAME says, cut off behind 17 characters; nothing
-   --  when it is not set.
+   --  Become a client of the server on that port of this machine; No_Socket
+   --  when it is not Opened.
 
    procedure Receive
      (From : Socket; Bytes : out Chunk; Last : out Chunk_Length)
@@ -68,10 +68,12 @@ is
    type Patience is range 0 .. 60_000;
    --  Milliseconds; 0 is for ever.
 
-   procedure Limit_Wait (Partner : Socket; To : Patience)
+   procedure Limit_Wait
+     (Partner : Socket; To : Patience; Done : out Boolean)
    with Global => (In_Out => Network);
    --  From now on what receives from Partner, and finds nothing for so long,
-   --  takes the other side for gone.
+   --  takes the other side for gone; not Done where the system has no such
+   --  limit.
 
    procedure Send (To : Socket; Bytes : Octets; Done : out Boolean)
    with Global => (In_Out => Network);

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Driver "xilinx": the CAN controller of Zynq-7000 and Zynq UltraScale+.
 --
 --  Guarantees   frames go to the bus in the order sent, whatever their

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The core of the one controller: CAN0 of Zynq UltraScale+ (UG1085). That of
 --  Zynq-7000 is at 16#E000_8000#.
 

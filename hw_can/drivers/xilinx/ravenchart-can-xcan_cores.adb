@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 with System.Storage_Elements;
 
 package body Ravenchart.Can.Xcan_Cores

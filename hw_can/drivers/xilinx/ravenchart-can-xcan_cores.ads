@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  One CAN controller of Zynq-7000 or Zynq UltraScale+: its registers, as
 --  volatile words at their address.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Frames as the CAN controller of Zynq-7000 and Zynq UltraScale+ keeps them,
 --  in its FIFOs: UG585 and UG1085, registers TXFIFO_ID to RXFIFO_DATA2.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The registers of the CAN controller of Zynq-7000 and Zynq UltraScale+ that
 --  the driver uses, by the names of UG585 and UG1085.
 --

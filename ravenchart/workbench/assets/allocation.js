@@ -31,6 +31,7 @@ export function Allocation() {
 function told(search) {
   if (!search) return "";
   if (search.old) return "The model has changed since this search: search again.";
+  if (search.fault) return `The search ended: ${search.fault}`;
   const found = search.best?.verdict ?? "no tables yet";
   return search.running ? `Best so far: ${found}` : search.best ? `Found: ${found}` : "The search found no tables.";
 }

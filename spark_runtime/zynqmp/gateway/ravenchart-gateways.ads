@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Gateway between the CAN bus of an emulated ZynqMP and a bench on its host.
 --  CAN0 is the controller's. What comes on CAN1 goes to the bench, and back.
 --

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Generated code against nested case statements written by hand: the same
 --  chart, the same actions, the same switches, one run.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The chart of model.yaml as people write it: nested case statements, one
 --  procedure for each composite that handles what its substates do not.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 with Xcan_Model;
 
 package body Ravenchart.Can.Xcan_Cores

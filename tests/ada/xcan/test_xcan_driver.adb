@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The driver of the CAN controller of Zynq on a model of its registers: what
 --  becomes of frames when it is bus-off, and how it comes back.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A CAN controller of Zynq as the driver sees it, without a bus: what is sent
 --  is kept, and the test says what comes and how it stands.
 

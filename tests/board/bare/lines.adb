@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What stands for a C library where there is none: the serial line, the end of
 --  a run, and the copies that the compiler asks for.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 package body System.Assertions is
 
    procedure Last_Chance (Message : Address; Line : Integer)

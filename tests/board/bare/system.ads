@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A run-time library of nothing: types that the language asks for, on AArch64
 --  without an operating system.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Sends a frame that the filter refuses, then one that comes back.
 
 with Bus_Ends;

@@ -32,7 +32,7 @@ is
      Address => System.Storage_Elements.To_Address (16#A000_5008#);
 
    procedure Write_Control
-     (Unit  : Force_Sensor_Units.Unit; Value : Interfaces.Unsigned_32) is
+     (Unit : Force_Sensor_Units.Unit; Value : Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Force_Sensor_Units.Wrist_Unit =>
@@ -41,7 +41,7 @@ is
    end Write_Control;
 
    procedure Read_Status
-     (Unit  : Force_Sensor_Units.Unit; Value : out Interfaces.Unsigned_32) is
+     (Unit : Force_Sensor_Units.Unit; Value : out Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Force_Sensor_Units.Wrist_Unit =>
@@ -50,7 +50,7 @@ is
    end Read_Status;
 
    procedure Read_Sample
-     (Unit  : Force_Sensor_Units.Unit; Value : out Interfaces.Unsigned_16) is
+     (Unit : Force_Sensor_Units.Unit; Value : out Interfaces.Unsigned_16) is
    begin
       case Unit is
          when Force_Sensor_Units.Wrist_Unit =>

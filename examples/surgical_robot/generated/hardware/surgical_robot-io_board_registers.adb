@@ -91,7 +91,7 @@ is
      Address => System.Storage_Elements.To_Address (16#A000_1024#);
 
    procedure Read_Control
-     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
+     (Unit : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Io_Board_Units.Left_Unit =>
@@ -113,7 +113,7 @@ is
    end Write_Control;
 
    procedure Read_Status
-     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
+     (Unit : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Io_Board_Units.Left_Unit =>
@@ -124,7 +124,7 @@ is
    end Read_Status;
 
    procedure Read_Count_1
-     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
+     (Unit : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Io_Board_Units.Left_Unit =>
@@ -135,7 +135,7 @@ is
    end Read_Count_1;
 
    procedure Read_Count_2
-     (Unit  : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
+     (Unit : Io_Board_Units.Unit; Value : out Interfaces.Unsigned_32) is
    begin
       case Unit is
          when Io_Board_Units.Left_Unit =>

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Simulated drives: they go to their goals while somebody looks at them.
 
 with Surgical_Robot.Arm;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A simulated device of the model of Surgical_Robot, written once by
 --  ravenchart as a starting point: it is yours.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A simulated converter: nobody pushes.
 
 package body Surgical_Robot.Force_Sensor_Registers

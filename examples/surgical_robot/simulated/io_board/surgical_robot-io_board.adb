@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A simulated I/O board: its joints go as fast as they are driven, to a stop.
 
 package body Surgical_Robot.Io_Board

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Simulated I/O boards: each has two joints of the arm.
 
 with Surgical_Robot.Arm;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A simulated tachometer: what the arm moved in the last 5 ms, in mrad/s.
 
 with Surgical_Robot.Arm;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A simulated tracker: it sees the arm.
 
 with Surgical_Robot.Arm;

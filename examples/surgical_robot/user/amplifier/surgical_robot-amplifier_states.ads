@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The driver of an amplifier remembers nothing.
 
 package Surgical_Robot.Amplifier_States

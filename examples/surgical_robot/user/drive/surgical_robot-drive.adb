@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  An intelligent drive of four axes: goals and positions in mrad.
 
 with Surgical_Robot.Words;

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The driver of the drives remembers nothing: they have a servo loop.
 
 package Surgical_Robot.Drive_States

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A force sensor behind an analogue-to-digital converter of 16 bits.
 
 with Interfaces;

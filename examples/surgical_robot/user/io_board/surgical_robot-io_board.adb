@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  An I/O board: encoders that count in two's complement, and converters
 --  whose middle is no current.
 

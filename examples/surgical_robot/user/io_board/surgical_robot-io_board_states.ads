@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The driver of an I/O board remembers nothing: all is in its registers.
 
 package Surgical_Robot.Io_Board_States

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Velocity from position, where there is no tachometer.
 
 package body Surgical_Robot.Servo.Differ_Stand_In

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Position from velocity, where there is no encoder.
 
 package body Surgical_Robot.Servo.Follow_Stand_In

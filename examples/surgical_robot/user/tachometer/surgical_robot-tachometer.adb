@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  A tachometer: speeds in mrad/s.
 
 with Surgical_Robot.Words;

@@ -9,29 +9,23 @@ with Ravenchart.Can.Layouts;
 package Two_Nodes.Codecs
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Interfaces.Unsigned_32;
    use type Interfaces.Unsigned_64;
    use type Interfaces.Unsigned_8;
    use type Ravenchart.Number;
 
    function Value_Of_Type_Wish
-     (Raw : Interfaces.Unsigned_8)
-     return Two_Nodes.Wish is
+     (Raw : Interfaces.Unsigned_8) return Two_Nodes.Wish is
      (Two_Nodes.Wish'Val (Raw))
    with Pre => Raw <= 1;
 
    function Value_Of_Type_Position
-     (Raw : Interfaces.Unsigned_32)
-     return Two_Nodes.Position is
+     (Raw : Interfaces.Unsigned_32) return Two_Nodes.Position is
      (Two_Nodes.Position (Ravenchart.Number (Raw)))
    with Pre => Raw <= 100_000;
 
    function Value_Of_Type_Condition
-     (Raw : Interfaces.Unsigned_8)
-     return Two_Nodes.Condition is
+     (Raw : Interfaces.Unsigned_8) return Two_Nodes.Condition is
      (Two_Nodes.Condition'Val (Raw))
    with Pre => Raw <= 2;
 
@@ -53,25 +47,21 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Wish)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Target));
 
       function Raw_Of_Wish
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#1#));
 
       function Raw_Of_Target
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 1) and 16#1FFFF#));
 
       function Pack
-        (Item : Two_Nodes.Servo_Order)
-        return Interfaces.Unsigned_64
+        (Item : Two_Nodes.Servo_Order) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Wish)
@@ -125,25 +115,21 @@ is
          Offset => 0);
 
       function Fits_In
-        (Row : Ravenchart.Can.Layouts.Frame_Row)
-        return Boolean is
+        (Row : Ravenchart.Can.Layouts.Frame_Row) return Boolean is
         (Ravenchart.Can.Layouts.Holds (Row, Signal_Condition)
          and then Ravenchart.Can.Layouts.Holds (Row, Signal_Position));
 
       function Raw_Of_Condition
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_8 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_8 is
         (Interfaces.Unsigned_8 (Word and 16#3#));
 
       function Raw_Of_Position
-        (Word : Interfaces.Unsigned_64)
-        return Interfaces.Unsigned_32 is
+        (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_32 is
         (Interfaces.Unsigned_32
            (Interfaces.Shift_Right (Word, 2) and 16#1FFFF#));
 
       function Pack
-        (Item : Two_Nodes.Servo_Report)
-        return Interfaces.Unsigned_64
+        (Item : Two_Nodes.Servo_Report) return Interfaces.Unsigned_64
       with
         Post =>
           Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Condition)

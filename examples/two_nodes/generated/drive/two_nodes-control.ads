@@ -10,9 +10,6 @@ with Two_Nodes.Timing_Certificate;
 package Two_Nodes.Control
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [control.table] the activities, in the order in which they run
    type Row is
      (Link_Watch_Drive, Servo_Ports, Servo_Drive, Servo_Control, Servo_Tell);

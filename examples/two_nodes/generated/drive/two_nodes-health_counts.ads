@@ -3,11 +3,16 @@
 --  model's elements; trace.json says where they stand.
 
 with Ravenchart.Health_Counters;
+with Ravenchart.Fault_Reports;
 with System;
+with Two_Nodes.Trace;
 
 package Two_Nodes.Health_Counts
 with SPARK_Mode
 is
    package Counters is new Ravenchart.Health_Counters
      (Ceiling => System.Default_Priority + 3);
+
+   package Faults is new Ravenchart.Fault_Reports
+     (Record_Fault => Counters.Record_Fault, Note => Trace.Buffer.Note);
 end Two_Nodes.Health_Counts;

@@ -8,9 +8,6 @@ with Two_Nodes.Timing_Certificate;
 package Two_Nodes.Host_Probe
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    package Probe is new Ravenchart.Host_Probes
      (Name => "drive.probe",
       Period => Timing_Certificate.Drive_Probe_T,

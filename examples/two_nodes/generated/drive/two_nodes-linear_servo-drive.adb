@@ -5,33 +5,21 @@
 package body Two_Nodes.Linear_Servo.Drive
 with SPARK_Mode
 is
-   function Select_Transition
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (case Self.Leaf is
-        when Drive_States.Standing =>
-           (if Now = On_Told
-               and then Ins.Order.Value.Wish = Two_Nodes.Follow
-               then Go
-            elsif Now = On_Nobody_Tells then Lost_At_Rest
-            elsif Now = On_Bus_Failed then Cut_Off_At_Rest
-            else None),
-        when Drive_States.Following =>
-           (if Now = On_Told and then Ins.Order.Value.Wish = Two_Nodes.Rest
-               then Rest
-            elsif Now = On_Nobody_Tells then Lost
-            elsif Now = On_Bus_Failed then Cut_Off
-            else None),
-        when Drive_States.Safe =>
-           (if Now = On_Bus_Failed then Cut_Off_Besides
-            elsif Now = On_Told then Back
-            else None),
-        when Drive_States.Safe_Off_Bus =>
-           (if Now = On_Bus_Failed then Still_Cut_Off
-            elsif Now = On_Told then Told_Off_Bus
-            elsif Now = On_Bus_Back then Connected
-            else None))
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -62,8 +50,7 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started and then Self.Leaf = Target (Chosen, Before.Leaf))
    with Ghost;
    --  Is the region after it as declared?
@@ -78,49 +65,40 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Before : constant Drive_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
-         To_Node     : Chart.Node)
-        return Chart.Node is
+         To_Node     : Chart.Node) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node then To_Node
          else Chart.Disorder) with Ghost;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen, Before);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Active := Moved (Active, Chart.Nowhere, Chart.Standing);
-            Self.Leaf := Drive_States.Standing;
          when Go =>
             Active := Moved (Active, Chart.Standing, Chart.Following);
-            Self.Leaf := Drive_States.Following;
          when Rest =>
             Active := Moved (Active, Chart.Following, Chart.Standing);
-            Self.Leaf := Drive_States.Standing;
          when Lost_At_Rest =>
             Active := Moved (Active, Chart.Standing, Chart.Safe);
-            Self.Leaf := Drive_States.Safe;
          when Lost =>
             Active := Moved (Active, Chart.Following, Chart.Safe);
-            Self.Leaf := Drive_States.Safe;
          when Cut_Off_At_Rest =>
             Active := Moved (Active, Chart.Standing, Chart.Safe_Off_Bus);
-            Self.Leaf := Drive_States.Safe_Off_Bus;
          when Cut_Off =>
             Active := Moved (Active, Chart.Following, Chart.Safe_Off_Bus);
-            Self.Leaf := Drive_States.Safe_Off_Bus;
          when Cut_Off_Besides =>
             Active := Moved (Active, Chart.Safe, Chart.Safe_Off_Bus);
-            Self.Leaf := Drive_States.Safe_Off_Bus;
          when Still_Cut_Off | Told_Off_Bus =>
             null;
          when Connected =>
             Active := Moved (Active, Chart.Safe_Off_Bus, Chart.Safe);
-            Self.Leaf := Drive_States.Safe;
          when Back =>
             Active := Moved (Active, Chart.Safe, Chart.Standing);
-            Self.Leaf := Drive_States.Standing;
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
@@ -134,7 +112,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins);
+         Fired := Selected (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Fired);

@@ -44,8 +44,7 @@ is
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Drive_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Drive_States.Leaf) return Boolean is
      (case T is
         when Go | Lost_At_Rest | Cut_Off_At_Rest =>
            Leaf = Drive_States.Standing,
@@ -57,7 +56,7 @@ is
    --  around it?
 
    function Enabled
-     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
@@ -77,8 +76,7 @@ is
    --  The trigger and the guard of each transition.
 
    function Target
-     (T : Firing; Leaf : Drive_States.Leaf)
-     return Drive_States.Leaf is
+     (T : Firing; Leaf : Drive_States.Leaf) return Drive_States.Leaf is
      (case T is
         when Initial_Entry | Rest | Back => Drive_States.Standing,
         when Go => Drive_States.Following,
@@ -89,10 +87,7 @@ is
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
-     (Chosen : Selection;
-      Self   : Region;
-      Now    : Occurrence;
-      Ins    : Inputs)
+     (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition

@@ -10,7 +10,7 @@ is
       Drive    : Linear_Servo.Drive_States.Leaf;
       Position : in out Two_Nodes.Position)
    with Global => null;
-   --  [Linear_Servo.control] budget 150_000 ns, every 10_000_000 ns
+   --  [Linear_Servo.control] WCET 150_000 ns, every 10_000_000 ns
 
    procedure Tell
      (Position    : Two_Nodes.Position;
@@ -18,5 +18,5 @@ is
       Report      : out Two_Nodes.Servo_Report;
       Send_Report : out Boolean)
    with Global => null;
-   --  [Linear_Servo.tell] budget 100_000 ns, every 20_000_000 ns
+   --  [Linear_Servo.tell] WCET 100_000 ns, every 20_000_000 ns
 end Two_Nodes.Linear_Servo.Flows;

@@ -12,9 +12,6 @@ with Two_Nodes.Trace;
 package body Two_Nodes.Link.Watch
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [link.watch] the controller at the last look
    Seen : Ravenchart.Can.Fault_Notices.Fault_Log;
 

@@ -7,9 +7,6 @@ with Two_Nodes.Elements;
 package Two_Nodes.Link.Watch
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Element_Id;
 
    procedure Run_Watch (Executed : in out Ravenchart.Element_Id)

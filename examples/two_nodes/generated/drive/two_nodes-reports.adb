@@ -19,9 +19,6 @@ with Two_Nodes.Trace;
 package body Two_Nodes.Reports
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    procedure Drain_Trace is
       use type Ravenchart.Queueing.Take_Status;
 

@@ -4,6 +4,7 @@
 
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -17,9 +18,6 @@ with Two_Nodes.Trace;
 package body Two_Nodes.Servo
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [servo.order]
    package Order_Mailbox is new Ravenchart.Queues
      (Element_Type => Two_Nodes.Servo_Order,
@@ -58,6 +56,13 @@ is
       Ceiling => System.Default_Priority + 2,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Drive_Offers is new Ravenchart.Offers
+     (Element_Type => Linear_Servo.Event,
+      Put => Drive_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Servo_Drive,
+      Report => Health_Counts.Faults.Report);
+
    procedure Put_Order (Item : Two_Nodes.Servo_Order) is
       Status : Ravenchart.Queueing.Put_Status;
       pragma Warnings (GNATprove, Off,
@@ -69,57 +74,22 @@ is
    end Put_Order;
 
    procedure Offer (Item : Linear_Servo.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
          when Linear_Servo.Told =>
-            Drive_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Servo_Drive,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Drive_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Servo_Told, 0);
          when Linear_Servo.Nobody_Tells =>
-            Drive_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Servo_Drive,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Drive_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Servo_Nobody_Tells, 0);
          when Linear_Servo.Bus_Failed =>
-            Drive_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Servo_Drive,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Drive_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Servo_Bus_Failed, 0);
          when Linear_Servo.Bus_Back =>
-            Drive_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Servo_Drive,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Drive_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Servo_Bus_Back, 0);
       end case;
@@ -155,12 +125,8 @@ is
                Elements.Servo_Order, 0);
             Offer (Linear_Servo.Told);
          when Linear_Servo.Order_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Servo_Order,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Servo_Order);
             Offer (Linear_Servo.Nobody_Tells);
       end case;
       Executed := Executed + Elements.Servo_Ports_Row;

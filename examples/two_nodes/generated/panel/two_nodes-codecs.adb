@@ -5,12 +5,8 @@
 package body Two_Nodes.Codecs
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Bits_Of_Type_Wish
-     (Item : Two_Nodes.Wish)
-     return Interfaces.Unsigned_8 is
+     (Item : Two_Nodes.Wish) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Two_Nodes.Wish'Pos (Item)))
    with
      Post =>
@@ -18,8 +14,7 @@ is
        and then Value_Of_Type_Wish (Bits_Of_Type_Wish'Result) = Item;
 
    function Bits_Of_Type_Position
-     (Item : Two_Nodes.Position)
-     return Interfaces.Unsigned_32
+     (Item : Two_Nodes.Position) return Interfaces.Unsigned_32
    with
      Post =>
        Bits_Of_Type_Position'Result <= 100_000
@@ -35,8 +30,7 @@ is
    end Bits_Of_Type_Position;
 
    function Bits_Of_Type_Condition
-     (Item : Two_Nodes.Condition)
-     return Interfaces.Unsigned_8 is
+     (Item : Two_Nodes.Condition) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Two_Nodes.Condition'Pos (Item)))
    with
      Post =>
@@ -128,8 +122,7 @@ is
           and then Raw_Of_Target (Word_Of'Result) = Local_Target;
 
       function Pack
-        (Item : Two_Nodes.Servo_Order)
-        return Interfaces.Unsigned_64 is
+        (Item : Two_Nodes.Servo_Order) return Interfaces.Unsigned_64 is
          Local_Wish : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Wish (Item.Wish);
          Local_Target : constant Interfaces.Unsigned_32 :=
@@ -260,8 +253,7 @@ is
           and then Raw_Of_Position (Word_Of'Result) = Local_Position;
 
       function Pack
-        (Item : Two_Nodes.Servo_Report)
-        return Interfaces.Unsigned_64 is
+        (Item : Two_Nodes.Servo_Report) return Interfaces.Unsigned_64 is
          Local_Condition : constant Interfaces.Unsigned_8 :=
            Bits_Of_Type_Condition (Item.Condition);
          Local_Position : constant Interfaces.Unsigned_32 :=

@@ -7,9 +7,6 @@ with Two_Nodes.Elements;
 package Two_Nodes.Link.Receiver
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    procedure Wait;
    --  [link.receive.release] suspend until a frame is there.
 

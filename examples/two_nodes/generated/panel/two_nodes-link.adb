@@ -11,9 +11,6 @@ with Two_Nodes.Trace;
 package body Two_Nodes.Link
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    function Frame_Of_Supervisor_Order
      (Item : Two_Nodes.Servo_Order)
      return Ravenchart.Can.Any_Frames.Any_Frame is
@@ -40,12 +37,8 @@ is
       Trace.Buffer.Note (Ravenchart.Traces.Sent,
          Elements.Supervisor_Order_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Counters.Record_Fault
-           (Ravenchart.Health.Queue_Overflow);
-         Trace.Buffer.Note (Ravenchart.Traces.Fault,
-            Elements.Supervisor_Order_Message,
-            Ravenchart.Health.Fault_Kind'Pos
-              (Ravenchart.Health.Queue_Overflow));
+         Health_Counts.Faults.Report (Ravenchart.Health.Queue_Overflow,
+            Elements.Supervisor_Order_Message);
       end if;
    end Send_Supervisor_Order;
 end Two_Nodes.Link;

@@ -4,6 +4,7 @@
 
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
+with Ravenchart.Offers;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
@@ -17,9 +18,6 @@ with Two_Nodes.Traveller.Mission;
 package body Two_Nodes.Supervisor
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  [supervisor.report]
    package Report_Mailbox is new Ravenchart.Queues
      (Element_Type => Two_Nodes.Servo_Report,
@@ -55,6 +53,13 @@ is
       Ceiling => System.Default_Priority + 1,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
+   package Mission_Offers is new Ravenchart.Offers
+     (Element_Type => Traveller.Event,
+      Put => Mission_Queue.Put,
+      Policy => Ravenchart.Queueing.Reject_Newest,
+      Element => Elements.Supervisor_Mission,
+      Report => Health_Counts.Faults.Report);
+
    procedure Put_Report (Item : Two_Nodes.Servo_Report) is
       Status : Ravenchart.Queueing.Put_Status;
       pragma Warnings (GNATprove, Off,
@@ -67,45 +72,18 @@ is
    end Put_Report;
 
    procedure Offer (Item : Traveller.Event) is
-      Status : Ravenchart.Queueing.Put_Status;
-
-      use type Ravenchart.Queueing.Put_Status;
    begin
       case Item is
          when Traveller.Servo_Lost =>
-            Mission_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Supervisor_Mission,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Mission_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Supervisor_Servo_Lost, 0);
          when Traveller.Bus_Failed =>
-            Mission_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Supervisor_Mission,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Mission_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Supervisor_Bus_Failed, 0);
          when Traveller.Bus_Back =>
-            Mission_Queue.Put (Item, Status);
-            if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Counters.Record_Fault
-                 (Ravenchart.Health.Queue_Overflow);
-               Trace.Buffer.Note (Ravenchart.Traces.Fault,
-                  Elements.Supervisor_Mission,
-                  Ravenchart.Health.Fault_Kind'Pos
-                    (Ravenchart.Health.Queue_Overflow));
-            end if;
+            Mission_Offers.Offer (Item);
             Trace.Buffer.Note (Ravenchart.Traces.Raised,
                Elements.Supervisor_Bus_Back, 0);
       end case;
@@ -141,12 +119,8 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Handled,
                Elements.Supervisor_Report, 0);
          when Traveller.Report_Port.Became_Stale =>
-            Health_Counts.Counters.Record_Fault
-              (Ravenchart.Health.Stale_Input);
-            Trace.Buffer.Note (Ravenchart.Traces.Fault,
-               Elements.Supervisor_Report,
-               Ravenchart.Health.Fault_Kind'Pos
-                 (Ravenchart.Health.Stale_Input));
+            Health_Counts.Faults.Report (Ravenchart.Health.Stale_Input,
+               Elements.Supervisor_Report);
             Offer (Traveller.Servo_Lost);
       end case;
       Executed := Executed + Elements.Supervisor_Ports_Row;

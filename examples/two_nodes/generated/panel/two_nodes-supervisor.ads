@@ -8,9 +8,6 @@ with Two_Nodes.Elements;
 package Two_Nodes.Supervisor
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Ravenchart.Element_Id;
 
    procedure Put_Report (Item : Two_Nodes.Servo_Report);

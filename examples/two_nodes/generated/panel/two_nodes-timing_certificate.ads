@@ -10,9 +10,6 @@ with Ravenchart.Response_Times;
 package Two_Nodes.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
      "5e36900fdff3c011b2622ecf67cf6c8302468247b5bcc356cc99991444eefc3b";
@@ -197,17 +194,21 @@ is
 
    function Panel_Probe_Up (W : Window) return Time is
      (Demand (W, Panel_Probe_J, Panel_Probe_T, Panel_Probe_C)) with Static;
+
    function Link_Driver_Tx_Supervisor_Order_Up (W : Window) return Time is
      (Demand (W, Link_Driver_Tx_Supervisor_Order_J,
          Link_Driver_Tx_Supervisor_Order_T,
          Link_Driver_Tx_Supervisor_Order_C, Panel_Probe_Up (W))) with Static;
+
    function Link_Driver_Rx_Servo_Report_Up (W : Window) return Time is
      (Demand (W, Link_Driver_Rx_Servo_Report_J,
          Link_Driver_Rx_Servo_Report_T, Link_Driver_Rx_Servo_Report_C,
          Link_Driver_Tx_Supervisor_Order_Up (W))) with Static;
+
    function Reception_Panel_Up (W : Window) return Time is
      (Demand (W, Reception_Panel_J, Reception_Panel_T, Reception_Panel_C,
          Link_Driver_Rx_Servo_Report_Up (W))) with Static;
+
    function Link_Driver_Rx_Servo_Report_Rest (W : Window) return Time is
      (Demand (W, Link_Driver_Rx_Servo_Report_J,
          Link_Driver_Rx_Servo_Report_T, Link_Driver_Rx_Servo_Report_C))
@@ -221,17 +222,21 @@ is
 
    function Drive_Probe_Up (W : Window) return Time is
      (Demand (W, Drive_Probe_J, Drive_Probe_T, Drive_Probe_C)) with Static;
+
    function Link_Driver_Rx_Supervisor_Order_Up (W : Window) return Time is
      (Demand (W, Link_Driver_Rx_Supervisor_Order_J,
          Link_Driver_Rx_Supervisor_Order_T,
          Link_Driver_Rx_Supervisor_Order_C, Drive_Probe_Up (W))) with Static;
+
    function Link_Driver_Tx_Servo_Report_Up (W : Window) return Time is
      (Demand (W, Link_Driver_Tx_Servo_Report_J,
          Link_Driver_Tx_Servo_Report_T, Link_Driver_Tx_Servo_Report_C,
          Link_Driver_Rx_Supervisor_Order_Up (W))) with Static;
+
    function Reception_Drive_Up (W : Window) return Time is
      (Demand (W, Reception_Drive_J, Reception_Drive_T, Reception_Drive_C,
          Link_Driver_Tx_Servo_Report_Up (W))) with Static;
+
    function Link_Driver_Tx_Servo_Report_Rest (W : Window) return Time is
      (Demand (W, Link_Driver_Tx_Servo_Report_J,
          Link_Driver_Tx_Servo_Report_T, Link_Driver_Tx_Servo_Report_C))
@@ -253,6 +258,7 @@ is
 
    function Link_Bits (Stuffed : Positive) return Time is
      (Time (Stuffed) + 13 + (Time (Stuffed) - 1) / 4) with Static;
+
    function Link_Time_Of (Stuffed : Positive) return Time is
      ((Link_Bits (Stuffed) * 10**9 + (Link_Bit_Rate - 1)) / Link_Bit_Rate)
    with Static;
@@ -491,13 +497,16 @@ is
    function Link_Supervisor_Order_Up_Drive (W : Window) return Time is
      (Demand (W, Link_Supervisor_Order_R - Link_Supervisor_Order_C,
          Link_Supervisor_Order_T, Link_Supervisor_Order_C)) with Static;
+
    function Link_Servo_Report_Up_Drive (W : Window) return Time is
      (Demand (W, Link_Servo_Report_J, Link_Servo_Report_T,
          Link_Servo_Report_C, Link_Supervisor_Order_Up_Drive (W)))
    with Static;
+
    function Link_Servo_Report_Up_Panel (W : Window) return Time is
      (Demand (W, Link_Servo_Report_R - Link_Servo_Report_C,
          Link_Servo_Report_T, Link_Servo_Report_C)) with Static;
+
    function Link_Supervisor_Order_Up_Panel (W : Window) return Time is
      (Demand (W, Link_Supervisor_Order_J, Link_Supervisor_Order_T,
          Link_Supervisor_Order_C, Link_Servo_Report_Up_Panel (W)))

@@ -12,5 +12,5 @@ is
       Order      : out Two_Nodes.Servo_Order;
       Send_Order : out Boolean)
    with Global => null;
-   --  [Traveller.plan] budget 150_000 ns, every 20_000_000 ns
+   --  [Traveller.plan] WCET 150_000 ns, every 20_000_000 ns
 end Two_Nodes.Traveller.Flows;

@@ -5,42 +5,21 @@
 package body Two_Nodes.Traveller.Mission
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
-   function Around_Travelling (Now : Occurrence) return Selection is
-     (if Now = On_Servo_Lost then Lost
-      elsif Now = On_Bus_Failed then Cut_Off
-      else None);
-
-   function Select_Transition
-     (Self : Region; Now : Occurrence; Ins : Inputs)
-     return Selection is
-     (case Self.Leaf is
-        when Mission_States.Waiting =>
-           (if Now = Conditions and then Ins.Report.State = Ravenchart.Fresh
-               then Go
-            elsif Now = On_Bus_Failed then Cut_Off_Early
-            else None),
-        when Mission_States.Outward =>
-           (if Now = Conditions and then Ins.Report.Value.Position = 20_000
-               then There
-            else Around_Travelling (Now)),
-        when Mission_States.Homeward =>
-           (if Now = Conditions and then Ins.Report.Value.Position = 0
-               then Home
-            else Around_Travelling (Now)),
-        when Mission_States.Safe =>
-           (if Now = On_Bus_Failed then Cut_Off_Besides
-            elsif Now = Conditions
-               and then Ins.Report.State = Ravenchart.Fresh
-               then Again
-            else None),
-        when Mission_States.Safe_Off_Bus =>
-           (if Now = On_Bus_Failed then Still_Cut_Off
-            elsif Now = On_Bus_Back then Connected
-            else None))
-   with Post => Is_Selection (Select_Transition'Result, Self, Now, Ins);
+   function Selected
+     (Self : Region; Now : Occurrence; Ins : Inputs) return Selection
+   with Post => Is_Selection (Selected'Result, Self, Now, Ins)
+   is
+   begin
+      for T in Transition loop
+         if Enabled (T, Self, Now, Ins) then
+            return T;
+         end if;
+         pragma Loop_Invariant
+           ((for all J in Transition'First .. T =>
+                not Enabled (J, Self, Now, Ins)));
+      end loop;
+      return None;
+   end Selected;
 
    package Chart
    with Ghost
@@ -72,8 +51,7 @@ is
    pragma Annotate (GNATprove, Inline_For_Proof, Is_Ready);
 
    function Is_Fired
-     (Before : Region; Self : Region; Chosen : Firing)
-     return Boolean is
+     (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started and then Self.Leaf = Target (Chosen, Before.Leaf))
    with Ghost;
    --  Is the region after it as declared?
@@ -88,36 +66,35 @@ is
       use type Chart.Node;
 
       Active : Chart.Node := Chart.Innermost (Self) with Ghost;
+      Active_At_First : constant Chart.Node := Active with Ghost;
+      Before : constant Mission_States.Leaf := Self.Leaf;
 
       function Moved
         (Active_Node : Chart.Node;
          From_Node   : Chart.Node;
          To_Node     : Chart.Node;
-         In_Order    : Boolean := True)
-        return Chart.Node is
+         In_Order    : Boolean := True) return Chart.Node is
         (if Self.Started and then Active_Node = From_Node and then In_Order
             then To_Node
          else Chart.Disorder) with Ghost;
 
       procedure Enter_Outward is
       begin
-         Self.Leaf := Mission_States.Outward;
          Active := Moved (Active, Chart.Travelling, Chart.Outward);
          Self.Data.Goal := 20_000;
       end Enter_Outward;
 
       procedure Enter_Homeward is
       begin
-         Self.Leaf := Mission_States.Homeward;
          Active := Moved (Active, Chart.Travelling, Chart.Homeward);
          Self.Data.Goal := 0;
       end Enter_Homeward;
    begin
+      Self.Started := True;
+      Self.Leaf := Target (Chosen, Before);
       case Chosen is
          when Initial_Entry =>
-            Self.Started := True;
             Active := Moved (Active, Chart.Nowhere, Chart.Waiting);
-            Self.Leaf := Mission_States.Waiting;
          when There =>
             Active := Moved (Active, Chart.Outward, Chart.Travelling);
             Enter_Homeward;
@@ -129,30 +106,22 @@ is
             Enter_Outward;
          when Lost =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Travelling,
-                 Self.Leaf in Mission_States.Travelling);
-            Active := Moved (Active, Chart.Travelling, Chart.Safe);
-            Self.Leaf := Mission_States.Safe;
+              Moved (Active, Active_At_First, Chart.Safe,
+                 Before in Mission_States.Travelling);
          when Cut_Off_Early =>
             Active := Moved (Active, Chart.Waiting, Chart.Safe_Off_Bus);
-            Self.Leaf := Mission_States.Safe_Off_Bus;
          when Cut_Off =>
             Active :=
-              Moved (Active, Chart.Innermost (Self), Chart.Travelling,
-                 Self.Leaf in Mission_States.Travelling);
-            Active := Moved (Active, Chart.Travelling, Chart.Safe_Off_Bus);
-            Self.Leaf := Mission_States.Safe_Off_Bus;
+              Moved (Active, Active_At_First, Chart.Safe_Off_Bus,
+                 Before in Mission_States.Travelling);
          when Cut_Off_Besides =>
             Active := Moved (Active, Chart.Safe, Chart.Safe_Off_Bus);
-            Self.Leaf := Mission_States.Safe_Off_Bus;
          when Still_Cut_Off =>
             null;
          when Connected =>
             Active := Moved (Active, Chart.Safe_Off_Bus, Chart.Safe);
-            Self.Leaf := Mission_States.Safe;
          when Again =>
             Active := Moved (Active, Chart.Safe, Chart.Waiting);
-            Self.Leaf := Mission_States.Waiting;
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
    end Fire;
@@ -166,7 +135,7 @@ is
       if Now = Start_Of_Region then
          Fired := Initial_Entry;
       else
-         Fired := Select_Transition (Self, Now, Ins);
+         Fired := Selected (Self, Now, Ins);
       end if;
       if Fired /= None then
          Fire (Self, Fired);

@@ -5,9 +5,6 @@
 package Two_Nodes.Traveller.Mission
 with SPARK_Mode
 is
-   pragma Warnings (Off, "*can only be *");
-   pragma Warnings (Off, "*can never be *");
-
    use type Mission_States.Leaf;
    use type Ravenchart.Freshness;
 
@@ -52,8 +49,7 @@ is
    end record;
 
    function In_Source
-     (T : Transition; Leaf : Mission_States.Leaf)
-     return Boolean is
+     (T : Transition; Leaf : Mission_States.Leaf) return Boolean is
      (case T is
         when There => Leaf = Mission_States.Outward,
         when Home => Leaf = Mission_States.Homeward,
@@ -65,7 +61,7 @@ is
    --  around it?
 
    function Enabled
-     (T    : Transition; Self : Region; Now  : Occurrence; Ins  : Inputs)
+     (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
@@ -86,8 +82,7 @@ is
    --  The trigger and the guard of each transition.
 
    function Target
-     (T : Firing; Leaf : Mission_States.Leaf)
-     return Mission_States.Leaf is
+     (T : Firing; Leaf : Mission_States.Leaf) return Mission_States.Leaf is
      (case T is
         when Initial_Entry | Again => Mission_States.Waiting,
         when There => Mission_States.Homeward,
@@ -99,10 +94,7 @@ is
    --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
-     (Chosen : Selection;
-      Self   : Region;
-      Now    : Occurrence;
-      Ins    : Inputs)
+     (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
      ((Chosen = None
        or else (Chosen in Transition

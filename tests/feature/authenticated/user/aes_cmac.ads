@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  AES-CMAC with 128 bits (RFC 4493), by libcrypto of OpenSSL 3: for tests.
 --
 --  Guarantees   none: the body is outside SPARK

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 package body Composites_Feature.Coordinator.Activities
 with SPARK_Mode
 is

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The user's activities of the feature: each keeps its contract.
 
 package body Contracts_Feature.Plant.Activities

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The user's activity of the feature: it decides when to send.
 
 package body May_Send_Feature.Gauge_Type.Activities

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 package body Devices_Feature.Servo.Estimate_Stand_In
 with SPARK_Mode
 is

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  Drives whose axes go on by a count for each positive step of the DAC, with
 --  a limit switch at 300 counts. Each change of a DAC or a control register
 --  is a line on standard error; the environment variable BROKEN_DRIVE names a

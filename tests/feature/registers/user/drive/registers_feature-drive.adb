@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  The driver of a drive: an encoder that counts in two's complement, and a
 --  DAC of 10 bits whose middle is no current.
 

@@ -1,3 +1,6 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
 --  What the driver remembers of a drive: where its axis was calibrated to, and
 --  whether its limit was told.
 

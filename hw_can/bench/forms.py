@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The parts of a scenario as they are written: drives, steps, what is expected.
+"""The forms of a scenario's parts but its steps: drives, events of the bus, what is checked.
 
 Quantities carry their unit (``430 mm``, ``1 mm/s``, ``8 s``); inside they are m, m/s and s.
 """
@@ -15,9 +15,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ravenchart.gen.language.names import LONGEST_REQUIREMENT, REQUIREMENT
 
-from .plant import Axis
-from .protection import Wrong
-from .quantities import Length, Scalar, Speed, Time
+from .axis import Axis
+from .quantities import Length, Scalar, Time
 
 Signal = Annotated[str, Field(pattern=r"^\w+\.\w+$")]
 """``message.field``"""
@@ -29,7 +28,7 @@ Requirement = Annotated[str, Field(pattern=REQUIREMENT, max_length=LONGEST_REQUI
 """The id of a requirement."""
 
 
-class _Form(BaseModel):
+class ScenarioForm(BaseModel):
     """Unknown keys are mistakes."""
 
     model_config = ConfigDict(
@@ -40,7 +39,7 @@ class _Form(BaseModel):
     """Ids of the requirements that this tests."""
 
 
-class DriveForm(_Form):
+class DriveForm(ScenarioForm):
     """One simulated drive: its two messages, its axis, and what belongs to it in plots."""
 
     set_point: str
@@ -68,158 +67,49 @@ class DriveForm(_Form):
         )
 
 
-class SendStep(_Form):
-    """Send one message to the controller."""
+class PlantForm(ScenarioForm):
+    """One plant that the user brings, and which values it shares with messages."""
 
-    send: str
-    fields: dict[str, Scalar] = Field(alias="with")
-    wrong: Wrong | None = None
-    """A fault of the frame, for a protected message."""
-
-    def __str__(self) -> str:
-        wrong = f", with {self.wrong.replace('_', ' ')}" if self.wrong else ""
-        return f"send {self.send}: {_values(self.fields)}{wrong}"
-
-
-class WaitFor(_Form):
-    """Wait until a message arrives with that value in a field."""
-
-    wait_for: Signal
-    value: Scalar = Field(alias="is")
-    within: Time
-
-    def __str__(self) -> str:
-        return f"wait for {self.wait_for} = {self.value}"
+    plant_class: Annotated[str, Field(pattern=r"^[^:]+\.py:[A-Za-z_]\w*$")] | None = Field(
+        None, alias="class"
+    )
+    """``FILE.py:CLASS``, from the folder of the scenario."""
+    fmu: Annotated[str, Field(pattern=r".+\.fmu$")] | None = None
+    """File of a Functional Mock-up Unit for co-simulation, from the folder of the scenario."""
+    parameters: dict[str, Scalar] = {}
+    """What the plant is made with."""
+    inputs: dict[str, Signal] = {}
+    """For inputs of the plant the fields of messages that the controller sends."""
+    outputs: dict[Signal, str] = {}
+    """For fields of messages that the plant sends the outputs of the plant."""
+    period: Time = 0.005
+    """Time between two frames of each message that it sends: whole multiples of 5 ms."""
+    step: Annotated[Time, Field(gt=0)] = 0.005
+    """Communication step of a Functional Mock-up Unit."""
 
 
-class Expect(_Form):
-    """The true positions, from the point where each axis left its low switch."""
-
-    expect: Annotated[dict[str, Length], Field(min_length=1)]
-    tolerance: Length
-    within: Time = 0.0
-
-    def __str__(self) -> str:
-        places = {name: f"{position * 1e3:g} mm" for name, position in self.expect.items()}
-        return f"expect {_values(places)}"
-
-
-class ExpectStop(_Form):
-    """The true speed of one axis falls, and stays, below a limit from then on."""
-
-    expect_stop: str
-    below: Speed
-    within: Time
-
-    def __str__(self) -> str:
-        return f"expect {self.expect_stop} to stop within {self.within:g} s"
-
-
-class Wait(_Form):
-    """Let time pass."""
-
-    wait: Time
-
-    def __str__(self) -> str:
-        return f"wait {self.wait:g} s"
-
-
-class Pull(_Form):
-    """Press a limit switch by hand."""
-
-    pull: str
-    switch: Literal["low", "high"]
-
-    def __str__(self) -> str:
-        return f"pull the {self.switch} limit switch of {self.pull}"
-
-
-class Release(_Form):
-    """Let go of the limit switches of one axis."""
-
-    release: str
-
-    def __str__(self) -> str:
-        return f"release the limit switch of {self.release}"
-
-
-class StopFeedback(_Form):
-    """One drive, or every drive (``all``), falls silent."""
-
-    stop_feedback: str
-
-    def __str__(self) -> str:
-        return f"stop the feedback of {self.stop_feedback}"
-
-
-class KillBench(_Form):
-    """The bench leaves the bus at once; the axes are only watched from then on."""
-
-    kill_bench: Literal[True]
-
-    def __str__(self) -> str:
-        return "kill the bench"
-
-
-class Replay(_Form):
-    """Send the frames of a log that come from outside, at the times that it gives."""
-
-    replay: str
-    """File, from the folder of the scenario: BLF, ASC or the format of candump."""
-
-    def __str__(self) -> str:
-        return f"replay {self.replay}"
-
-
-ScenarioStep = (
-    SendStep
-    | Replay
-    | WaitFor
-    | Expect
-    | ExpectStop
-    | Wait
-    | Pull
-    | Release
-    | StopFeedback
-    | KillBench
-)
-STEPS: Mapping[str, type[ScenarioStep]] = {
-    "send": SendStep,
-    "replay": Replay,
-    "wait_for": WaitFor,
-    "expect": Expect,
-    "expect_stop": ExpectStop,
-    "wait": Wait,
-    "pull": Pull,
-    "release": Release,
-    "stop_feedback": StopFeedback,
-    "kill_bench": KillBench,
-}
-"""Each step by the key that tells it from the others."""
-
-
-class Cut(_Form):
+class Cut(ScenarioForm):
     """A node, and those behind it in the model, are cut off the bus at that time."""
 
     at: Time
     cut: str
 
 
-class Mend(_Form):
+class Mend(ScenarioForm):
     """The bus is whole again from that time on."""
 
     at: Time
     mend: Literal[True]
 
 
-class Hold(_Form):
+class Hold(ScenarioForm):
     """The bus is shorted to one level from that time on: no other gets through."""
 
     at: Time
     hold: Literal["dominant", "recessive"]
 
 
-class LetGo(_Form):
+class LetGo(ScenarioForm):
     """The bus is held no more from that time on."""
 
     at: Time
@@ -237,7 +127,7 @@ BUS_EVENTS: Mapping[str, type[BusEvent]] = {
 """Each event of the bus by the key that tells it from the others."""
 
 
-class TraceCheck(_Form):
+class TraceCheck(ScenarioForm):
     """After the run, the controller's trace must show that a region reached a state.
 
     Of a bus with `watch`, `node.bus` stands for the controller of a node, and the states are
@@ -268,7 +158,7 @@ class TraceCheck(_Form):
         return f"trace: {self.region} in {self.reaches}{limit}{later}"
 
 
-class _Counted(_Form):
+class _Counted(ScenarioForm):
     """Something that a run counts, and how often it may: exactly ``times``, or ``at_most``."""
 
     times: Annotated[int, Field(ge=0)] | None = None
@@ -335,17 +225,13 @@ EXPECTED: Mapping[str, type[Expected]] = {
 """Each expected fault by the key that tells it from the others."""
 
 
-class WholeForm(_Form):
+class WholeForm(ScenarioForm):
     """The whole file; what is inside its lists and mappings is read item by item."""
 
     scenario: str
     drives: dict[str, Any] = {}
+    plants: dict[str, Any] = {}
     bus: list[Any] = []
     steps: Annotated[list[Any], Field(min_length=1)]
     expect_trace: list[Any] = []
     expect: list[Any] = []
-
-
-def _values(fields: Mapping[str, object]) -> str:
-    """``a 1, b 2``"""
-    return ", ".join(f"{name} {value}" for name, value in fields.items())

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ravenchart.hw_can.bench.plant import STEP, Axis, Condition, Drive, DriveMode, Limit, Push
+from ravenchart.hw_can.bench.axis import STEP, Axis, Condition, Drive, DriveMode, Limit, Push
 
 AXIS = Axis(stroke=0.4, start=0.05, low_switch=0.008, high_switch=0.39, count_at_start=-1234)
 

@@ -1,0 +1,113 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What puts values and events into the queues of an instance, and reports what these lose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ravenchart.gen.emit.ada.declarations import Decl, GenericInstance, Subprogram
+from ravenchart.gen.emit.ada.expressions import Expr, arguments
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.statements import Stmt, do
+from ravenchart.gen.emit.language.events import event_value
+from ravenchart.gen.emit.tables.trace_calls import FAULTS, element_constant
+from ravenchart.gen.language.terms import named
+from ravenchart.gen.model.component import Component, Event, Port
+from ravenchart.gen.model.statechart import Overflow, Region
+
+from .site import Site
+
+OFFERS = ref("Ravenchart.Offers")
+
+
+def offers_of_port(site: Site, port: Port, of_type: DottedName) -> GenericInstance:
+    """What puts values into the queue of a port."""
+    element = ref("Elements", element_constant(_element(site, port.name), "port"))
+    return _offering(port.name, "Mailbox", of_type, port.overflow, element)
+
+
+def offers_of_region(site: Site, region: Region, event: DottedName) -> list[Decl]:
+    """What puts events into the queue of a region, and tells of what it loses."""
+    element = ref("Elements", element_constant(_element(site, region.name), "region"))
+    given = region.name, "Queue", event, region.overflow, element
+    if not _tells(site.instance.component, region):
+        return [_offering(*given)]
+    lost = _lost_name(region)
+    return [Subprogram(lost), _offering(*given, On_Loss=ref(lost))]
+
+
+def _element(site: Site, name: str) -> str:
+    return f"{site.instance.name}.{name}"
+
+
+def _offering(
+    name: str,
+    queue: str,
+    of_type: DottedName,
+    policy: Overflow,
+    element: DottedName,
+    **more: Expr,
+) -> GenericInstance:
+    own = ada_case(name)
+    return GenericInstance(
+        _name(name),
+        OFFERS,
+        arguments(
+            Element_Type=of_type,
+            Put=ref(f"{own}_{queue}", "Put"),
+            Policy=_policy(policy),
+            Element=element,
+            Report=ref(FAULTS, "Report"),
+            **more,
+        ),
+    )
+
+
+def _name(queued: str) -> str:
+    return f"{ada_case(queued)}_Offers"
+
+
+def _lost_name(region: Region) -> str:
+    return f"{ada_case(region.name)}_Overflowed"
+
+
+def _policy(overflow: Overflow) -> DottedName:
+    return ref("Ravenchart.Queueing", ada_case(overflow.value))
+
+
+def put(queued: str, item: Expr) -> Stmt:
+    """Put a value into a queue."""
+    return do(ref(_name(queued), "Offer"), item)
+
+
+def enqueue(region: Region, event: Event, item: Expr, how: str = "Offer") -> Stmt:
+    """Put an event into a region's queue; ``how``: by which of the procedures."""
+    args = [item]
+    if event.overflow is not None and event.overflow is not region.overflow:
+        args.append(_policy(event.overflow))
+    return do(ref(_name(region.name), how), *args)
+
+
+def overflowed(component: Component) -> Iterator[Decl]:
+    """Raise the event that tells of a loss; what is lost by that is only reported."""
+    for region in component.regions:
+        name = region.on_overflow
+        if name is not None and region.events() and _tells(component, region):
+            event: Event = named(component.events, name)
+            item = event_value(component, name)
+            tell = [enqueue(r, event, item, "Tell") for r in _heard(component, name)]
+            yield Subprogram(_lost_name(region), body=tuple(tell))
+
+
+def _tells(component: Component, region: Region) -> bool:
+    """Is there an event that tells of a loss, and a region that it is for?"""
+    return region.on_overflow is not None and bool(_heard(component, region.on_overflow))
+
+
+def _heard(component: Component, event: str) -> list[Region]:
+    """The regions that an event is for."""
+    name = named(component.events, event).name
+    return [r for r in component.regions if name in r.events()]

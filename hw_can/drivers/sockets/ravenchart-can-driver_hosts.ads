@@ -1,0 +1,62 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
+--  What the drivers by sockets and serial lines ask of the host beside these:
+--  settings from the environment, and messages to whoever started the
+--  program.
+--
+--  Guarantees   nothing is raised
+--  Tasking      the two tasks of a driver; each call is independent
+--  Timing       that of the system
+
+package Ravenchart.Can.Driver_Hosts
+  with
+    SPARK_Mode,
+    Abstract_State =>
+      (Console with Synchronous,
+                    External => (Async_Readers, Async_Writers,
+                                 Effective_Reads, Effective_Writes)),
+    Initializes    => Console
+is
+   Text_Limit : constant := 1_024;
+   --  The most characters of a setting.
+
+   procedure Read_Setting
+     (Name : String; Text : out String; Last : out Natural)
+   with
+     Global => null,
+     Pre    => Text'First = 1 and then Text'Last in 1 .. Text_Limit,
+     Post   => Last <= Text'Last;
+   --  What the environment says, cut off where Text ends; nothing when it is
+   --  not set.
+
+   procedure Announce (Text : String; About : String)
+   with
+     Global => (In_Out => Console),
+     Pre    =>
+       Text'Length <= Text_Limit and then About'Length <= Text_Limit;
+   --  Print both to standard output.
+
+   procedure Announce (Text : String; Number : Natural)
+   with Global => (In_Out => Console), Pre => Text'Length <= Text_Limit;
+   --  The same of a number.
+
+   procedure Complain
+     (Reason : String; About : String := ""; Rest : String := "")
+   with
+     Global => (In_Out => Console),
+     Pre    =>
+       Reason'Length <= Text_Limit
+       and then About'Length <= Text_Limit
+       and then Rest'Length <= Text_Limit;
+   --  Say on standard error what is wrong, the three parts in a row: the
+   --  first time only, as most is tried again.
+
+   procedure Complain (Reason : String; Number : Natural; Rest : String)
+   with
+     Global => (In_Out => Console),
+     Pre    =>
+       Reason'Length <= Text_Limit and then Rest'Length <= Text_Limit;
+   --  The same about a number.
+
+end Ravenchart.Can.Driver_Hosts;

@@ -1,0 +1,29 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
+--  Numbers of TCP ports, as the environment gives them.
+--
+--  Guarantees   a setting that is no port is refused with a message
+--  Tasking      the tasks of a driver; each call is independent
+--  Timing       linear in the length of a setting
+
+with Interfaces;
+with Ravenchart.Can.Driver_Hosts;
+
+package Ravenchart.Can.Ports
+  with SPARK_Mode
+is
+   subtype Port is Interfaces.Unsigned_16;
+
+   procedure Read
+     (Variable : String;
+      Default  : Port;
+      Number   : out Port;
+      Is_Sound : out Boolean)
+   with
+     Global => (In_Out => Driver_Hosts.Console),
+     Pre    => Variable'Length <= Driver_Hosts.Text_Limit;
+   --  The port that Variable names; Default when it is not set. Not Is_Sound
+   --  when it names none, which is said on standard error.
+
+end Ravenchart.Can.Ports;

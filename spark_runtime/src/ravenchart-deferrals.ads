@@ -1,0 +1,138 @@
+--  SPDX-FileCopyrightText: Ravenchart contributors
+--  SPDX-License-Identifier: Apache-2.0
+
+--  The events that a region has deferred, and which of them comes next.
+--
+--  An event that is kept is due when no active state defers it, and also from
+--  the exit of a state that defers it: the exit frees it, though the state may
+--  be entered again.
+--
+--  Guarantees   order of arrival, no heap, total operations
+--  Tasking      none of its own: the region's activity owns its store
+--  Timing       linear in Capacity and in the number of event names
+
+with Ravenchart.Event_Lists;
+
+generic
+   type Event is private;
+   Null_Event : Event;
+   --  Fills the places that hold no event.
+   type Event_Name is (<>);
+   with function Name_Of (Item : Event) return Event_Name;
+   Capacity : Positive;
+   --  The most events that are kept; what is deferred beyond that is lost.
+   type Configuration is private;
+   with function Is_Deferred
+     (Name : Event_Name; Place : Configuration) return Boolean;
+   --  Does an active state defer it?
+   type Domain is (<>);
+   with function Is_Freed
+     (Name : Event_Name; D : Domain; Place : Configuration) return Boolean;
+   --  Is a state that defers it exited where a transition leaves D?
+package Ravenchart.Deferrals
+  with SPARK_Mode, Pure
+is
+   package Lists is new Event_Lists
+     (Event      => Event,
+      Null_Event => Null_Event,
+      Capacity   => Capacity);
+
+   use type Lists.List;
+
+   type Freed_Counts is array (Event_Name) of Lists.Length;
+
+   type Store is record
+      Kept  : Lists.List;
+      Freed : Freed_Counts := (others => 0);
+      Lost  : Boolean := False;
+   end record;
+   --  The events, the oldest first. Those of a name among the first Freed of
+   --  that name were there when an exit freed them. Lost says that there was
+   --  no room for one.
+
+   function Is_Due
+     (S : Store; Place : Configuration; Index : Lists.Length) return Boolean
+   is (not Is_Deferred (Name_Of (Lists.Element (S.Kept, Index)), Place)
+       or else Index <= S.Freed (Name_Of (Lists.Element (S.Kept, Index))))
+   with
+     Global => null,
+     Pre    => Index in 1 .. Lists.Count (S.Kept);
+   --  Does no active state defer it, or was one exited that does?
+
+   function Due (S : Store; Place : Configuration) return Lists.Length
+   with
+     Global => null,
+     Post   =>
+       Due'Result <= Lists.Count (S.Kept)
+       and then (if Due'Result > 0 then Is_Due (S, Place, Due'Result))
+       and then (for all I in 1 .. Lists.Count (S.Kept) =>
+                   (if Due'Result = 0 or else I < Due'Result
+                    then not Is_Due (S, Place, I)));
+   --  The place of the oldest event that is due; 0 when none is.
+
+   function Is_Taken
+     (Before : Store; Place : Configuration; Item : Event; After : Store)
+      return Boolean
+   is (Due (Before, Place) > 0
+       and then Item = Lists.Element (Before.Kept, Due (Before, Place))
+       and then Lists.Is_Removed
+                  (Before.Kept, Due (Before, Place), After.Kept)
+       and then (for all N in Event_Name =>
+                   After.Freed (N) =
+                     (if Due (Before, Place) <= Before.Freed (N)
+                      then Before.Freed (N) - 1
+                      else Before.Freed (N)))
+       and then After.Lost = Before.Lost)
+   with
+     Ghost,
+     Global => null;
+   --  Is Item the oldest event that was due, and only that taken out?
+
+   procedure Take_Due
+     (S     : in out Store;
+      Place : Configuration;
+      Item  : out Event;
+      Taken : out Boolean)
+   with
+     Global => null,
+     Post   =>
+       Taken = (Due (S'Old, Place) > 0)
+       and then (if Taken
+                 then Is_Taken (S'Old, Place, Item, S)
+                 else S = S'Old);
+   --  Take the oldest event that is due out of S; Null_Event when none is.
+
+   function Is_Changed
+     (Before, After : Store;
+      Is_Deferral   : Boolean;
+      Item          : Event;
+      D             : Domain;
+      Place         : Configuration) return Boolean
+   is ((if Is_Deferral
+        then Lists.Is_Appended (Before.Kept, Item, After.Kept)
+             and then After.Lost =
+               (Before.Lost or else Lists.Count (Before.Kept) = Capacity)
+        else After.Kept = Before.Kept and then After.Lost = Before.Lost)
+       and then (for all N in Event_Name =>
+                   After.Freed (N) =
+                     (if Is_Freed (N, D, Place)
+                      then Lists.Count (Before.Kept)
+                      else Before.Freed (N))))
+   with
+     Ghost,
+     Global => null;
+   --  Is After what a transition that leaves D in Place makes of Before?
+
+   procedure Change
+     (S           : in out Store;
+      Is_Deferral : Boolean;
+      Item        : Event;
+      D           : Domain;
+      Place       : Configuration)
+   with
+     Global => null,
+     Post   => Is_Changed (S'Old, S, Is_Deferral, Item, D, Place);
+   --  What a transition does: a deferral keeps Item, the exits in D free what
+   --  their states defer.
+
+end Ravenchart.Deferrals;

@@ -1,0 +1,62 @@
+"""Each warning that generated Ada switches off is one that the compiler gives there."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.files.load import deployments_of
+from ravenchart.gen.model.claims import Claims
+from ravenchart.gen.pipeline import load
+from ravenchart.paths import ROOT
+from tests.house import EXAMPLES, MODELS
+
+pytestmark = pytest.mark.slow
+
+OFF = re.compile(r"^ *pragma Warnings \(Off, .*\n", re.M)
+FOLDERS = {name: ROOT / "examples" / name for name in EXAMPLES} | MODELS
+RUNTIME = (
+    *(ROOT / "spark_runtime" / name for name in ("src", "native")),
+    *(ROOT / "hw_can" / name for name in ("hal", "protocol", "simulator", "drivers/loopback")),
+)
+
+
+def _written(folder: Path, home: Path) -> Iterator[Path]:
+    """The files of the programs of the models in a folder, each in its place."""
+    for number, path in enumerate(deployments_of(folder / "model.yaml")):
+        system = load(path).system
+        assert system is not None
+        for name, text in generate(system, Claims()).items():
+            file = home / str(number) / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, encoding="utf-8")
+            yield file
+
+
+def _said(unit: Path, users: list[Path]) -> str:
+    """What the compiler says of a unit and of the spec that it completes."""
+    body = unit.with_suffix(".adb")
+    searched = [f"-I{folder}" for folder in (unit.parent, unit.parent.parent, *users, *RUNTIME)]
+    command = ["gcc", "-c", "-gnat2012", "-gnatwa", "-gnata", *searched]
+    made = body if body.exists() else unit
+    done = subprocess.run([*command, made], cwd=unit.parent, capture_output=True, text=True)
+    return done.stderr
+
+
+@pytest.mark.parametrize("name", FOLDERS)
+def test_without_the_line_the_compiler_warns(name: str, tmp_path: Path) -> None:
+    users = [path.parent for path in FOLDERS[name].glob("user/**/*.ad[sb]")]
+    for file in list(_written(FOLDERS[name], tmp_path)):
+        text = file.read_text(encoding="utf-8")
+        for line in OFF.finditer(text):
+            without = text[: line.start()] + text[line.end() :]
+            file.write_text(without, encoding="utf-8")
+            said = _said(file, users)
+            warned = re.search(rf"^{re.escape(file.name)}:\d+:\d+: warning:", said, re.M)
+            assert warned, f"{file.name}: {line[0]}{said}"
+            file.write_text(text, encoding="utf-8")
