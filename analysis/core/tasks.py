@@ -125,6 +125,6 @@ class Task:
         return Fraction(total, self.period * self.frame_count)
 
 
-def plain(task: Task) -> Task:
+def with_full_jobs(task: Task) -> Task:
     """The same task with every row in every job, at any time: as one reckons by hand."""
     return replace(task.at_any_time(), wcet=task.plain_wcet, rows=())

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ravenchart.gen.language.names import identifier
+from ravenchart.gen.language.names import path_name
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Slot, System, Work
 
@@ -71,7 +71,7 @@ def function_of(slot: Slot, system: System) -> str:
         Work.BUS_RECEIVE: (f"{slot.owner}__receiver", "receive"),
         Work.BUS_WATCH: (f"{slot.owner}__watch", "watch"),
     }.get(slot.work, (slot.owner, slot.name))
-    return f"{system.name}__{identifier(package)}__run_{name}".lower()
+    return f"{system.name}__{path_name(package)}__run_{name}".lower()
 
 
 def _wcet(one: RowValues, reading: ReadFile) -> Ns | None:

@@ -14,7 +14,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from markupsafe import Markup
 
 from ravenchart.analysis import units
-from ravenchart.analysis.core.tasks import plain
+from ravenchart.analysis.core.tasks import with_full_jobs
 
 PLACE = "<!-- contents -->"
 """Where the page has its contents."""
@@ -38,7 +38,7 @@ def page(template: str, context: Mapping[str, Any]) -> str:
         "duration": units.duration,
         "percent": units.percent,
         "seconds": units.seconds,
-        "plain_load": lambda task: plain(task).utilisation,
+        "plain_load": lambda task: with_full_jobs(task).utilisation,
     }
     return _with_contents(environment.get_template(template).render(context))
 

@@ -17,7 +17,7 @@ from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.responses import Level, Response, RowResponse
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling
-from ravenchart.analysis.core.tasks import plain
+from ravenchart.analysis.core.tasks import with_full_jobs
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.system import Chain, Stop, System
 from ravenchart.gen.model.system import Task as ModelTask
@@ -231,5 +231,5 @@ class Analysis:
 def analyse(system: System) -> Analysis:
     """The timing of ``system``."""
     network = network_of(system)
-    summed = replace(network, tasks=tuple(plain(task) for task in network.tasks))
+    summed = replace(network, tasks=tuple(with_full_jobs(task) for task in network.tasks))
     return Analysis(system, network, holistic.analyse(network), holistic.analyse(summed))

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from ravenchart.gen.language.names import identifier, problem_of
+from ravenchart.gen.language.names import path_name, problem_of
 from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.commands import Remote, RemoteRead
@@ -81,7 +81,7 @@ class Carrier:
         """A message with the value of the connection's source, laid out as small as it is."""
         end = connection.source
         component = self.instances[end.instance].component
-        name, type_ = f"{identifier(end.instance)}_{end.port}", component.port(end.port).type
+        name, type_ = f"{path_name(end.instance)}_{end.port}", component.port(end.port).type
         period = component.send_period(end.port)
         if self.bus is None or period is None or problem_of(name) is not None:
             return None

@@ -19,7 +19,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ravenchart.gen.language.names import identifier, problem_of
+from ravenchart.gen.language.names import path_name, problem_of
 from ravenchart.gen.language.terms import (
     BUILT_IN,
     NO_TIME,
@@ -116,7 +116,7 @@ _RENAME = "give the instance, the command, or what is called so another name"
 
 def _called(binding: Binding) -> str:
     """A command of an instance as one name."""
-    return f"{identifier(binding.instance)}_{binding.need.name}"
+    return f"{path_name(binding.instance)}_{binding.need.name}"
 
 
 def _names(binding: Binding) -> Iterator[str]:
@@ -204,7 +204,7 @@ def _call(system: System, binding: Binding) -> _Call | None:
 def _published_as(binding: Binding) -> str:
     """The message that carries what is read."""
     assert isinstance(binding.provider, Server)
-    return f"{identifier(binding.provider.instance)}_{binding.need.name}"
+    return f"{path_name(binding.provider.instance)}_{binding.need.name}"
 
 
 def _writer(system: System, binding: Binding) -> Region | Activity | None:

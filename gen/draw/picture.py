@@ -180,5 +180,5 @@ def label(transition: Transition) -> Label:
     """What a transition has to say."""
     guard = "else" if transition.otherwise else ""
     if transition.guard is not None:
-        guard = words.expression(transition.guard)
+        guard = words.shown_expression(transition.guard)
     return Label(words.trigger(transition.trigger), guard, words.actions(transition.effect))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.language.names import identifier
+from ravenchart.gen.language.names import path_name
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.component import Direction
 from ravenchart.gen.model.instances import End, Instance
@@ -33,8 +33,8 @@ def plantuml(system: System) -> str:
         source, target = wire.source, wire.target
         lines.append(f"{_port(source)} --> {_port(target)}")
     for link in device_links(system):
-        provider = identifier(link.provider) if link.interface else f"device_{link.provider}"
-        lines.append(f"{identifier(link.instance)} ..> {provider} : {link.required}")
+        provider = path_name(link.provider) if link.interface else f"device_{link.provider}"
+        lines.append(f"{path_name(link.instance)} ..> {provider} : {link.required}")
     for device in system.devices:
         lines += [f"device_{device.name} o-- device_{one.name}" for one in device.members]
     for message in system.messages:
@@ -52,11 +52,11 @@ def _end(system: System, end: End) -> str:
     """A port, or the instance where a call or reply ends at none."""
     component = system.instance(end.instance).component
     ports = {port.name for port in component.ports if not port.is_command}
-    return _port(end) if end.port in ports else identifier(end.instance)
+    return _port(end) if end.port in ports else path_name(end.instance)
 
 
 def _port(end: End) -> str:
-    return f"{identifier(end.instance)}_{end.port}"
+    return f"{path_name(end.instance)}_{end.port}"
 
 
 def _boxed(box: Instance | Box) -> Iterator[str]:
@@ -64,14 +64,14 @@ def _boxed(box: Instance | Box) -> Iterator[str]:
     if isinstance(box, Instance):
         yield from _component(box)
         return
-    yield f'component "{box.name} : {box.component}" as {identifier(box.name)} {{'
+    yield f'component "{box.name} : {box.component}" as {path_name(box.name)} {{'
     for one in box.inside:
         yield from (f"  {line}" for line in _boxed(one))
     yield "}"
 
 
 def _component(instance: Instance) -> Iterator[str]:
-    own = identifier(instance.name)
+    own = path_name(instance.name)
     yield f'component "{instance.name} : {instance.component.name}" as {own} {{'
     for port in instance.component.ports:
         if port.is_command:
@@ -119,7 +119,7 @@ def mermaid(system: System) -> str:
 
 def _shape(instance: str) -> str:
     """An instance as the chart knows it."""
-    return f"instance_{identifier(instance)}"
+    return f"instance_{path_name(instance)}"
 
 
 def _subgraph(box: Instance | Box) -> Iterator[str]:

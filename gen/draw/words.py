@@ -48,7 +48,7 @@ _BINARY = {
 """How tightly each operator binds, loosest first."""
 
 
-def expression(item: Expression) -> str:
+def shown_expression(item: Expression) -> str:
     """The expression, with no more parentheses than it needs."""
     return _bound(item)[1]
 
@@ -87,7 +87,7 @@ def _operation(operator: str, operands: tuple[Expression, ...]) -> tuple[int, st
         left, *right = operands
         words = (_at_least(first, left), *(_at_least(binding + 1, o) for o in right))
         return binding, f" {operator} ".join(words)
-    return _ATOM, f"{operator}({', '.join(map(expression, operands))})"
+    return _ATOM, f"{operator}({', '.join(map(shown_expression, operands))})"
 
 
 def _at_least(binding: int, item: Expression) -> str:
@@ -101,18 +101,18 @@ def action(item: Action) -> str:
     match item:
         case Set(_, data, field, value):
             target = f"{data}.{field}" if field else data
-            return f"set: {target}, to: {expression(value)}"
+            return f"set: {target}, to: {shown_expression(value)}"
         case Send(_, port, values):
             return f"send: {port}{_with(values)}"
         case Raise(_, event, values):
             return f"raise: {event}{_with(values)}"
         case If(_, condition, then, otherwise):
-            text = f"if: {expression(condition)}, then: {_list(then)}"
+            text = f"if: {shown_expression(condition)}, then: {_list(then)}"
             return f"{text}, else: {_list(otherwise)}" if otherwise else text
 
 
 def _with(values: Iterable[tuple[str | None, Expression]]) -> str:
-    parts = [(field, expression(value)) for field, value in values]
+    parts = [(field, shown_expression(value)) for field, value in values]
     if not parts:
         return ""
     if parts[0][0] is None:
@@ -139,6 +139,6 @@ def trigger(item: Trigger) -> str:
         case Every(delay):
             return f"every {shown(delay)}"
         case When(condition):
-            return f"when {expression(condition)}"
+            return f"when {shown_expression(condition)}"
         case Completion() | Segment():
             return ""

@@ -21,9 +21,9 @@ from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.emit.ada.named import DottedName
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.text import WIDTH, print_unit
-from ravenchart.gen.emit.commands.devices import states_package
+from ravenchart.gen.emit.commands.devices import device_states_package
 from ravenchart.gen.emit.commands.registers import registers_package, units_package
-from ravenchart.gen.language.names import LONG_NAME, identifier
+from ravenchart.gen.language.names import LONG_NAME, path_name
 from ravenchart.gen.language.terms import EnumerationType
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.component import Component
@@ -66,7 +66,7 @@ class _Element:
     @property
     def unit(self) -> str:
         """Its name as a part of those of the program, in lower case."""
-        return identifier(self.name).lower()
+        return path_name(self.name).lower()
 
 
 def _elements(system: System) -> Iterator[_Element]:
@@ -129,10 +129,10 @@ def _culprits(system: System, text: str, unit: DottedName) -> list[_Element]:
     """The elements that gave a name: it is theirs, or theirs is part of it."""
     words = f"_{text.lower()}_"
     near = [e for e in _elements(system) if f"_{e.unit}_" in words]
-    kinds = {identifier(i.name).lower(): i.component.name.lower() for i in system.instances}
+    kinds = {path_name(i.name).lower(): i.component.name.lower() for i in system.instances}
     kinds |= {d.name.lower(): d.type.name.lower() for d in system.devices if d.type is not None}
     for kind in device_types(system):
-        own = states_package(system, kind).last, units_package(kind), registers_package(kind)
+        own = device_states_package(system, kind).last, units_package(kind), registers_package(kind)
         kinds |= {package.lower(): kind.name.lower() for package in own}
     owners = {kinds.get(part, part) for part in map(str.lower, unit.parts)}
     apt = [e for e in near if e.owner.lower() in owners or not e.owner]

@@ -49,8 +49,8 @@ from ravenchart.gen.emit.language.quiet import (
     done_in,
     promised_in,
     quiet,
-    words_of,
-    words_of_idle,
+    warnings_of,
+    warnings_of_idle,
     worked_in,
 )
 from ravenchart.gen.emit.language.types import emit_root
@@ -123,14 +123,14 @@ class _Maker:
 
     def _of_component(self, component: Component) -> list[MadeUnit]:
         system, header = self.system, self.header
-        promised = [*words_of(promised_in(component), by_name=True)]
-        worked = [*words_of(worked_in(component), by_name=True)]
+        promised = [*warnings_of(promised_in(component), by_name=True)]
+        worked = [*warnings_of(worked_in(component), by_name=True)]
         found = [self._quiet(emit_component(system, component, header), component, promised)]
         for region in component.regions:
             spec, body = emit_region(system, component, region, header, noted=self.noted)
-            declared = chain(words_of(declared_in(component, region)), words_of_idle(region))
+            declared = chain(warnings_of(declared_in(component, region)), warnings_of_idle(region))
             found.append(self._quiet(spec, component, declared))
-            found.append(self._quiet(body, component, words_of(done_in(region))))
+            found.append(self._quiet(body, component, warnings_of(done_in(region))))
         for unit in emit_activities(system, component, header):
             is_body = isinstance(unit.item, Package) and unit.item.is_body
             found.append(self._quiet(unit, component, worked if is_body else promised))

@@ -89,7 +89,7 @@ def problem_of(name: str) -> tuple[str, str] | None:
     return None
 
 
-def identifier(path: str) -> str:
+def path_name(path: str) -> str:
     """The path of an instance as one name: ``arm.shoulder`` as ``arm_shoulder``."""
     return path.replace(".", "_")
 

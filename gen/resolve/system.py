@@ -26,7 +26,7 @@ from ravenchart.gen.language.names import (
     PREDEFINED_TYPES,
     Findings,
     NameScope,
-    identifier,
+    path_name,
 )
 from ravenchart.gen.language.terms import BOOLEAN, EnumerationType, Type
 from ravenchart.gen.model.buses import Bus, Message
@@ -227,7 +227,7 @@ class _Units:
 
     def claim(self, kind: str, name: str, origin: Origin) -> None:
         """Report an element whose unit is named like that of another, or of every system."""
-        unit, other = identifier(name).lower(), None
+        unit, other = path_name(name).lower(), None
         if unit == self.system.lower():
             other = f"the system {self.system}"
         elif unit in CHILDREN:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from itertools import product
 
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
-from ravenchart.gen.language.names import identifier
+from ravenchart.gen.language.names import path_name
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import EnumerationType
 from ravenchart.gen.model.buses import Bus, Message
@@ -70,9 +70,7 @@ def types_do_not_hide_units(resolved: Resolved) -> Iterator[Diagnostic]:
         ("processor", system.processors),
     )
     units = {
-        identifier(item.name).lower(): (kind, item.origin)
-        for kind, items in kinds
-        for item in items
+        path_name(item.name).lower(): (kind, item.origin) for kind, items in kinds for item in items
     }
     types = {type_.name.lower(): type_ for type_ in system.types}
     for type_ in system.types:

@@ -28,7 +28,7 @@ from ravenchart.gen.derive.sharing import too_long
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Processor, Slot, System
 
-from .search import SET, Judged, Rank, Ranked, rank, searched
+from .search import SET, Judged, Rank, Ranked, rank_of_tables, searched
 
 STRATEGIES = {
     "period": Strategy.BY_PERIOD,
@@ -104,7 +104,7 @@ RankOf = Callable[[list[Table]], Rank]
 
 
 def _rank(judge: Judge, strategy: Strategy, tables: list[Table]) -> Rank:
-    return rank(judge(tables), strategy)
+    return rank_of_tables(judge(tables), strategy)
 
 
 def propose(

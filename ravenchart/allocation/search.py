@@ -64,13 +64,13 @@ def searched(
     """
 
     def here(many: Sequence[list[Table]]) -> Iterator[Rank]:
-        return (rank(judge(tables), strategy) for tables in many)
+        return (rank_of_tables(judge(tables), strategy) for tables in many)
 
     ranks = ranked or here
     rows = sum(map(len, starts[0]))
     left = TRIALS // max(1, rows)
-    best = max((judge(tables) for tables in starts), key=lambda one: rank(one, strategy))
-    found = rank(best, strategy)
+    best = max((judge(tables) for tables in starts), key=lambda one: rank_of_tables(one, strategy))
+    found = rank_of_tables(best, strategy)
     better(best)
     while left > 0 and not (found[0] and strategy in SET):
         near = list(islice(neighbours(best.tables), left))
@@ -85,7 +85,7 @@ def searched(
     return best
 
 
-def rank(judged: Judged, strategy: Strategy) -> Rank:
+def rank_of_tables(judged: Judged, strategy: Strategy) -> Rank:
     """How good tables are: the larger, the better."""
     if judged.analysis is None:
         return False, -LOST * LOST * judged.short, Fraction(0), Fraction(0)

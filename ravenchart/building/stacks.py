@@ -18,7 +18,7 @@ from pydantic import TypeAdapter, ValidationError
 from ravenchart.failures import Refused, ToolFailed, Unusable
 from ravenchart.gen.diagnostics import Diagnostic, error, render_all
 from ravenchart.gen.emit.ada.naming import root_package
-from ravenchart.gen.language.names import identifier
+from ravenchart.gen.language.names import path_name
 from ravenchart.gen.model.statechart import After, Every
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
@@ -470,7 +470,7 @@ def _owners(system: System) -> dict[str, str]:
     found |= {f"{root}__": "the rest of the generated program", f"{root}_main": "main program"}
     found |= {f"{root}__{one.name.lower()}__": f"charts and activities of {one.name}"
               for one in system.components}  # fmt: skip
-    found |= {f"{root}__{identifier(one.name).lower()}__":
+    found |= {f"{root}__{path_name(one.name).lower()}__":
               f"{one.name}: protected objects, state, glue"
               for one in system.instances}  # fmt: skip
     found |= {f"{root}__{one.name.lower()}__": f"{one.name}: task and table"

@@ -9,7 +9,7 @@ import argparse
 from collections.abc import Iterator
 
 from ravenchart.failures import OK, Refused, Unusable
-from ravenchart.gen.draw.words import expression
+from ravenchart.gen.draw.words import shown_expression
 from ravenchart.gen.files.load import deployments_of
 from ravenchart.gen.model.safety import SafeRegion
 from ravenchart.gen.model.system import System
@@ -95,4 +95,4 @@ def _facts(system: System, safe: SafeRegion) -> Iterator[str]:
     """What the proof of a region's invariants says of data, leaf by leaf."""
     component = next(c for c in system.components if c.name == safe.component)
     for fact in safe.facts:
-        yield f"in {fact.vertex}, {expression(fact.condition(component))}"
+        yield f"in {fact.vertex}, {shown_expression(fact.condition(component))}"

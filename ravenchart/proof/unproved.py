@@ -16,7 +16,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravenchart.gen.language.names import identifier
+from ravenchart.gen.language.names import path_name
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
@@ -158,6 +158,6 @@ def element_of(system: System, entity: str) -> tuple[str, Origin | None]:
                     return f"{component.name}.{name}", origin
             return component.name, component.origin
     for name, origin in owners.items():
-        if identifier(name).lower() == words[0]:
+        if path_name(name).lower() == words[0]:
             return name, origin
     return "", None

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.gen.derive.kept import kept_of
-from ravenchart.gen.draw.words import expression
+from ravenchart.gen.draw.words import shown_expression
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.language.names import LONG_NAME
 from ravenchart.gen.language.terms import named
@@ -104,7 +104,7 @@ def activity(found: Component, name: str) -> Activity:
 def test_a_condition_and_a_list_of_conditions_are_the_same() -> None:
     one = activity(component("requires: tank.level < limit"), "user")
     several = activity(component("requires: [tank.level < limit]"), "user")
-    assert [expression(c.condition) for c in one.requires] == ["tank.level < limit"]
+    assert [shown_expression(c.condition) for c in one.requires] == ["tank.level < limit"]
     assert [c.condition for c in several.requires] == [c.condition for c in one.requires]
 
 
@@ -118,7 +118,7 @@ def test_a_condition_knows_its_line() -> None:
 
 def test_old_is_the_value_before() -> None:
     found = activity(component("ensures: tank.level >= old(tank.level)"), "user")
-    assert expression(found.ensures[0].condition) == "tank.level >= old(tank.level)"
+    assert shown_expression(found.ensures[0].condition) == "tank.level >= old(tank.level)"
 
 
 @pytest.mark.parametrize(
@@ -330,7 +330,7 @@ def test_what_is_known_of_a_data_item(ensured: str, known: list[str]) -> None:
     assert result.system is not None, result.diagnostics
     (found,) = result.system.components
     kept = kept_of(result.system, found, named(found.data, "tank"))
-    assert [expression(one) for one in kept] == known
+    assert [shown_expression(one) for one in kept] == known
 
 
 # --- what gnatprove leaves

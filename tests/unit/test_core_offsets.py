@@ -22,7 +22,7 @@ from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.core.sensitivity import network_scaling
-from ravenchart.analysis.core.tasks import TableRow, Task, plain
+from ravenchart.analysis.core.tasks import TableRow, Task, with_full_jobs
 
 
 def task(name: str, priority: int, wcet: int, period: int, offset: int | None) -> Task:
@@ -102,7 +102,7 @@ def test_rows_count_in_their_own_release() -> None:
     assert {r.row.name: r.bound for r in found(a, b)["b"].rows} == {"short": 5 + 1, "long": 1 + 5}
     assert found(a, replace(b, offset=10))["b"].bound == 5 + 5
     assert found(replace(a, offset=None), b)["b"].bound == 5 + 5
-    assert found(plain(a), plain(b))["b"].bound == 5 + 5
+    assert found(with_full_jobs(a), with_full_jobs(b))["b"].bound == 5 + 5
 
 
 def test_jitter_brings_jobs_together_that_offsets_keep_apart() -> None:

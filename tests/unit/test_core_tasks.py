@@ -18,7 +18,7 @@ from ravenchart.analysis.core.fixed_priority import analyse_tasks, response_unde
 from ravenchart.analysis.core.multiframe import Demand
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Reason, Response
-from ravenchart.analysis.core.tasks import TableRow, Task, plain
+from ravenchart.analysis.core.tasks import TableRow, Task, with_full_jobs
 from tests.support.core_cases import cases, sections_of, tasks_of
 
 
@@ -154,7 +154,7 @@ def test_a_table_runs_as_it_is_and_beside_it_the_plain_sum() -> None:
         "slow": (6, 1),
         "other": (7, 3),
     }
-    assert [r.bound for r in analyse_tasks([plain(table), below])] == [10, 14 + 2 * 10]
+    assert [r.bound for r in analyse_tasks([with_full_jobs(table), below])] == [10, 14 + 2 * 10]
     assert (exact[1].interference[0].frame, exact[1].interference[0].releases) == (2, 2)
 
 
@@ -162,7 +162,7 @@ def test_a_table_that_hardly_repeats_counts_in_full() -> None:
     rows = tuple(TableRow(f"r{n}", 1, n) for n in (7, 11, 13, 17))
     long = task("long", 1, 1, 100, rows=rows)
     assert long.frame_count == 1
-    assert analyse_tasks([long])[0].bound == analyse_tasks([plain(long)])[0].bound == 5
+    assert analyse_tasks([long])[0].bound == analyse_tasks([with_full_jobs(long)])[0].bound == 5
 
 
 # --- Limits ----------------------------------------------------------------------------
@@ -277,7 +277,7 @@ def test_no_bound_falls_when_load_grows(
     elif what == "platform":
         worse = replace(platform, context_switch=platform.context_switch + 1)
     else:
-        grown = [plain(t) for t in tasks]
+        grown = [with_full_jobs(t) for t in tasks]
     before = analyse_tasks(tasks, sections, {"": platform})
     after = analyse_tasks(grown, held, {"": worse})
     for old, new in zip(before, after, strict=False):

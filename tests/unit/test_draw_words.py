@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravenchart.gen.draw.words import action, expression, trigger
+from ravenchart.gen.draw.words import action, shown_expression, trigger
 from ravenchart.gen.language.expressions import Term, parse
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -108,8 +108,8 @@ def _of_term(term: Term) -> object:
 
 @given(st.recursive(leaves, _operations, max_leaves=12))
 def test_what_is_printed_parses_as_the_same(item: Expression) -> None:
-    term = parse(expression(item))
-    assert isinstance(term, Term), expression(item)
+    term = parse(shown_expression(item))
+    assert isinstance(term, Term), shown_expression(item)
     assert _of_term(term) == _of_expression(item)
 
 
@@ -118,7 +118,7 @@ def test_no_more_parentheses_than_needed() -> None:
     small = Operation("<", (total, Literal(-1, None)), BOOLEAN)
     fresh = PortTest("order", "fresh")
     both = Operation("and", (small, Operation("not", (fresh,), BOOLEAN)), BOOLEAN)
-    assert expression(both) == "level + level * 2 < -1 and not fresh(order)"
+    assert shown_expression(both) == "level + level * 2 < -1 and not fresh(order)"
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from ravenchart.behaviour.rules import inductive, moves
 from ravenchart.behaviour.rules.inductive import contracts
 from ravenchart.building import checking
 from ravenchart.command_line import main
-from ravenchart.gen.draw.words import expression
+from ravenchart.gen.draw.words import shown_expression
 from ravenchart.gen.model.safety import Fact
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
@@ -41,7 +41,7 @@ LANES = region(
 def facts_of(system: System) -> list[str]:
     """The facts of every region, as `check` prints them."""
     return [
-        f"{fact.vertex}: {expression(fact.condition(system.components[0]))}"
+        f"{fact.vertex}: {shown_expression(fact.condition(system.components[0]))}"
         for safe in contracts(system).regions
         for fact in safe.facts
     ]
@@ -168,7 +168,7 @@ def test_facts_name_ranges_as_a_model_writes_them() -> None:
     component = system.components[0]
 
     def words(*spans: tuple[int, int], data: str = "count") -> str:
-        return expression(Fact("A", data, None, spans).condition(component))
+        return shown_expression(Fact("A", data, None, spans).condition(component))
 
     assert words((3, 3)) == "count = 3"
     assert words((0, 4)) == "count <= 4"

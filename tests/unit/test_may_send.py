@@ -18,7 +18,7 @@ from ravenchart.analysis.system.journeys import journeys
 from ravenchart.analysis.system.observed import read_map, read_trace
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.gen.diagnostics import Diagnostic
-from ravenchart.gen.draw.words import expression
+from ravenchart.gen.draw.words import shown_expression
 from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.emit.program import generate
@@ -218,7 +218,7 @@ def test_a_contract_says_when_a_value_is_sent() -> None:
     spec = " ".join(files()["may_send_feature-gauge_type-activities.ads"].split())
     assert "Post => Level = Count and then (if Count = Limit then Send_Alarm else True)" in spec
     assert "(if Count > Limit then not Send_Report else True)" in spec
-    ensured = [expression(clause.condition) for clause in measure(system_of()).ensures]
+    ensured = [shown_expression(clause.condition) for clause in measure(system_of()).ensures]
     assert ensured[1] == "if count = limit then sent(alarm) else true"
 
 

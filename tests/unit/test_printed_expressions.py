@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from ravenchart.gen.emit.ada.expression_text import expression
+from ravenchart.gen.emit.ada.expression_text import expr_layout
 from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, Prefix, Range, call, member
 from ravenchart.gen.emit.ada.layout import laid_out
 from ravenchart.gen.emit.ada.named import ref
@@ -41,14 +41,14 @@ def _both(operator: str, left: Expr, right: Expr) -> OperatorChain:
     ],
 )
 def test_parentheses_stand_where_the_precedence_asks_for_them(made: Expr, text: str) -> None:
-    assert laid_out(expression(made), 76) == text
+    assert laid_out(expr_layout(made), 76) == text
 
 
 def test_operands_and_positional_arguments_fill_lines() -> None:
     names = [ref(f"Name_{n}") for n in range(8)]
-    assert laid_out(expression(OperatorChain("+", tuple(names))), 40) == (
+    assert laid_out(expr_layout(OperatorChain("+", tuple(names))), 40) == (
         "Name_0 + Name_1 + Name_2 + Name_3\n+ Name_4 + Name_5 + Name_6 + Name_7"
     )
-    assert laid_out(expression(call("Sum_Of", *names)), 40) == (
+    assert laid_out(expr_layout(call("Sum_Of", *names)), 40) == (
         "Sum_Of (Name_0, Name_1, Name_2, Name_3,\n   Name_4, Name_5, Name_6, Name_7)"
     )

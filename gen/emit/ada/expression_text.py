@@ -44,23 +44,23 @@ LONG_REFERENCE = 56
 """Longer names do not fit where they stand deep in other constructs."""
 
 
-def listed(docs: Sequence[Doc]) -> Doc:
+def argument_layout(docs: Sequence[Doc]) -> Doc:
     """Arguments on one line; else named ones have a line each, and positional ones fill lines."""
     return group("(", nest(*joined(docs, ","), by=1), ")")
 
 
-def given(head: str, args: Sequence[Arg], end: str = "") -> Doc:
+def with_arguments(head: str, args: Sequence[Arg], end: str = "") -> Doc:
     """A name and its arguments; positional ones begin behind it."""
     docs = [argument(a) for a in args]
     if any(a.name is not None for a in args):
-        return group(head, nest(SOFT, listed(docs), by=2), end)
+        return group(head, nest(SOFT, argument_layout(docs), by=2), end)
     return behind_name(head, docs, end)
 
 
 def behind_name(head: str, docs: Sequence[Doc], end: str) -> Doc:
     """A name and what fills the lines behind it."""
     if len(docs) < 2:
-        return group(head, nest(SOFT, listed(docs), by=2), end)
+        return group(head, nest(SOFT, argument_layout(docs), by=2), end)
     first, *rest = docs
     behind = [group(SOFT, doc, "," if n < len(rest) else ")") for n, doc in enumerate(rest, 1)]
     begin = group(SOFT, "(", nest(first, by=1), ",")
@@ -68,7 +68,7 @@ def behind_name(head: str, docs: Sequence[Doc], end: str) -> Doc:
 
 
 def argument(arg: Arg) -> Doc:
-    value = expression(arg.value)
+    value = expr_layout(arg.value)
     return value if arg.name is None else group(selector_of(arg), " =>", nest(SOFT, value, by=2))
 
 
@@ -94,7 +94,7 @@ def _operand(expr: Expr, operator: str = "", first: bool = False) -> Doc:
 
     The first one of an arithmetic operator needs none where it has an operator of the same level.
     """
-    doc = expression(expr)
+    doc = expr_layout(expr)
     if isinstance(expr, OperatorChain | Membership):
         own = _CLOSENESS["in" if isinstance(expr, Membership) else expr.operator]
         around = _CLOSENESS.get(operator, len(_LEVELS))
@@ -107,7 +107,7 @@ def _operand(expr: Expr, operator: str = "", first: bool = False) -> Doc:
 def _signed(expr: Expr, operator: str = "", first: bool = False) -> Doc:
     """An operand after an operator: there Ada has no sign, ``abs`` or ``not`` of its own."""
     nested = isinstance(expr, Prefix) and (expr.operator == "-" or not operator)
-    return parenthesized(expression(expr)) if nested else _operand(expr, operator, first)
+    return parenthesized(expr_layout(expr)) if nested else _operand(expr, operator, first)
 
 
 def choices_text(choices: ChoiceList, end: str = "") -> Doc:
@@ -145,7 +145,7 @@ def flat(expr: Expr) -> str:
     """An expression on one line."""
     if isinstance(expr, DottedName):
         return expr.text
-    doc = expression(expr)
+    doc = expr_layout(expr)
     return doc if isinstance(doc, str) else doc.flat
 
 
@@ -205,7 +205,7 @@ def _word(expr: Expr) -> Doc:
 
 
 @lru_cache(maxsize=8192)
-def expression(expr: Expr) -> Doc:
+def expr_layout(expr: Expr) -> Doc:
     """The layout of one expression; a program has few that it does not repeat."""
     match expr:
         case OperatorChain(operator, operands):
@@ -218,41 +218,45 @@ def expression(expr: Expr) -> Doc:
         case Prefix(operator, operand):
             return cat(operator if operator == "-" else f"{operator} ", _signed(operand))
         case Parenthesized(operand):
-            return cat("(", nest(expression(operand), by=1), ")")
+            return cat("(", nest(expr_layout(operand), by=1), ")")
         case Membership(item, among):
             head = _operand(item, "in", first=True)
             gap = " " if _is_named(item) else SOFT
             return group(head, gap, "in ", nest(_among(among), by=2))
         case Call(name, args):
-            return given(flat(name), args)
+            return with_arguments(flat(name), args)
         case Aggregate(args, of_type, base):
             docs = [argument(a) for a in args]
             if base is not None:
                 return parenthesized(
                     f"{flat(base)} with delta", nest(SOFT, *joined(docs, ","), by=2)
                 )
-            return group(f"{of_type.text}'" if of_type else "", listed(docs))
+            return group(f"{of_type.text}'" if of_type else "", argument_layout(docs))
         case IfExpr(branches, otherwise):
             parts: list[Doc] = [
                 group(
                     "if " if i == 0 else "elsif ",
-                    nest(expression(c)),
-                    nest(SOFT, "then ", nest(expression(v))),
+                    nest(expr_layout(c)),
+                    nest(SOFT, "then ", nest(expr_layout(v))),
                 )
                 for i, (c, v) in enumerate(branches)
             ]
             if otherwise is not None:
-                parts.append(cat("else ", nest(expression(otherwise))))
+                parts.append(cat("else ", nest(expr_layout(otherwise))))
             return parenthesized(*joined(parts))
         case CaseExpr(selector, branches):
             rows = [
-                group("when ", nest(choices_text(choices, " =>")), nest(SOFT, expression(value)))
+                group(
+                    "when ",
+                    nest(choices_text(choices, " =>")),
+                    nest(SOFT, expr_layout(value)),
+                )
                 for choices, value in branches
             ]
             body = nest(SOFT, *joined(rows, ","), by=2)
-            return upright("(", nest("case ", expression(selector), " is", body, by=1), ")")
+            return upright("(", nest("case ", expr_layout(selector), " is", body, by=1), ")")
         case ForAll(variable, domain, condition) | ForSome(variable, domain, condition):
             word = "all" if isinstance(expr, ForAll) else "some"
             head = f"for {word} {variable} in {choice_text(domain)} =>"
-            return parenthesized(head, nest(SOFT, expression(condition)))
+            return parenthesized(head, nest(SOFT, expr_layout(condition)))
     return _word(expr)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import lru_cache
 
-from ravenchart.gen.language.names import identifier
+from ravenchart.gen.language.names import path_name
 from ravenchart.gen.language.terms import (
     BOOLEAN,
     EnumerationType,
@@ -42,7 +42,7 @@ from .statements import Comment
 @lru_cache(maxsize=65_536)
 def ada_case(name: str) -> str:
     """``joint_x`` as ``Joint_X``, and so ``joint.x``; capitals already there stay."""
-    return "_".join(word[:1].upper() + word[1:] for word in identifier(name).split("_"))
+    return "_".join(word[:1].upper() + word[1:] for word in path_name(name).split("_"))
 
 
 _IN_LETTERS = {

@@ -40,14 +40,14 @@ from .declarations import (
 )
 from .expression_text import (
     argument,
+    argument_layout,
     behind_name,
     choice_text,
     choices_text,
-    expression,
+    expr_layout,
     flat,
-    given,
-    listed,
     selector_of,
+    with_arguments,
 )
 from .expressions import (
     Aggregate,
@@ -121,14 +121,17 @@ def statement(stmt: Stmt) -> Doc:
     """The layout of one statement."""
     match stmt:
         case Assign(target, value):
-            return group(f"{flat(target)} :=", nest(SOFT, expression(value), by=2), ";")
+            return group(f"{flat(target)} :=", nest(SOFT, expr_layout(value), by=2), ";")
         case Do(name, args):
-            return given(name.text, args, ";") if args else f"{name.text};"
+            return with_arguments(name.text, args, ";") if args else f"{name.text};"
         case IfStatement(branches, otherwise):
             parts: list[Doc] = []
             for index, (condition, body) in enumerate(branches):
                 head = group(
-                    "if " if index == 0 else "elsif ", nest(expression(condition)), SOFT, "then"
+                    "if " if index == 0 else "elsif ",
+                    nest(expr_layout(condition)),
+                    SOFT,
+                    "then",
                 )
                 parts += [head, _block(body), SOFT]
             if otherwise:
@@ -139,11 +142,11 @@ def statement(stmt: Stmt) -> Doc:
                 upright(group("when ", nest(choices_text(choices, " =>"))), _block(body))
                 for choices, body in branches
             ]
-            return upright("case ", expression(selector), " is", stacked(rows), SOFT, "end case;")
+            return upright("case ", expr_layout(selector), " is", stacked(rows), SOFT, "end case;")
         case Loop(head, body):
             return upright(f"{_head(head)}loop", _block(body), SOFT, "end loop;")
         case Return(value):
-            return group("return", nest(SOFT, expression(value), by=2), ";")
+            return group("return", nest(SOFT, expr_layout(value), by=2), ";")
         case Pragma(name, args):
             return _pragma(name, args)
         case Comment(text):
@@ -172,7 +175,7 @@ def _pragma(name: str, args: Sequence[Expr | Arg]) -> Doc:
     if not args:
         return f"pragma {name};"
     docs = [
-        f"{selector_of(a)} => {flat(a.value)}" if isinstance(a, Arg) else expression(a)
+        f"{selector_of(a)} => {flat(a.value)}" if isinstance(a, Arg) else expr_layout(a)
         for a in args
     ]
     return behind_name(f"pragma {name}", docs, ";")
@@ -190,7 +193,7 @@ def _aspects(aspects: Sequence[Aspect]) -> Doc:
 def _given_to(value: Expr | AbstractState) -> Doc:
     if isinstance(value, AbstractState):
         return f"({value.name} with {', '.join(value.options)})"
-    return expression(value)
+    return expr_layout(value)
 
 
 @lru_cache(maxsize=8192)
@@ -215,7 +218,7 @@ def _subprogram(sub: Subprogram) -> Doc:
     head = group(f"{keyword} {sub.name}", _profile(profile))
     aspects = _aspects(sub.aspects) if sub.aspects else ""
     if sub.expression is not None:
-        inner = expression(sub.expression)
+        inner = expr_layout(sub.expression)
         if not isinstance(sub.expression, (IfExpr, CaseExpr, ForAll, ForSome)):
             inner = parenthesized(inner)
         if not any(aspect.value for aspect in sub.aspects):
@@ -253,7 +256,7 @@ def _object(decl: Object) -> Doc:
     if len(f"{decl.name} : {words} :=") > WIDTH - STEP:
         start = [upright(f"{decl.name} :", nest(SOFT, words, by=2))]
     if decl.value is not None:
-        start += [" :=", nest(SOFT, expression(decl.value), by=2)]
+        start += [" :=", nest(SOFT, expr_layout(decl.value), by=2)]
     return group(*start, _aspects(decl.aspects) if decl.aspects else "", ";")
 
 
@@ -280,7 +283,7 @@ def _declaration(decl: Decl) -> Doc:
             return _subprogram(decl)
         case GenericInstance(name, generic, args, kind):
             head = f"{kind} {name} is new {generic.text}"
-            return group(head, nest(SOFT, listed([argument(a) for a in args]), by=2), ";")
+            return group(head, nest(SOFT, argument_layout([argument(a) for a in args]), by=2), ";")
         case Package():
             return _package(decl)
         case Protected():
@@ -319,7 +322,7 @@ def _annotated(literals: Sequence[str], notes: Sequence[Comment]) -> Iterator[Do
 def _component(head: str, initial: Expr | None) -> Doc:
     if initial is None:
         return f"{head};"
-    return group(f"{head} :=", nest(SOFT, expression(initial), by=2), ";")
+    return group(f"{head} :=", nest(SOFT, expr_layout(initial), by=2), ";")
 
 
 def _subtype(decl: Subtype | Definition) -> list[str]:

@@ -64,7 +64,7 @@ from .protection import (
 )
 from .transmission import (
     TRANSMISSIONS,
-    given,
+    keep_value,
     mode_of,
     recorded,
     transmit_body,
@@ -78,6 +78,7 @@ from .transport import (
     body_units,
     is_plain,
     noticed,
+    received_value,
     receiver_bodies,
     receiver_objects,
     receiver_spec,
@@ -85,8 +86,7 @@ from .transport import (
     sender_bodies,
     sender_objects,
     sender_spec,
-    units_of,
-    value_of,
+    transport_units,
 )
 from .transport import taken as segment_taken
 from .watch import emit_watch, offer
@@ -278,7 +278,7 @@ def _spec_withs(root: str, sent: Sequence[Message], received: Sequence[Message])
     if any(m.transmission for m in sent):
         withs |= {TRANSMISSIONS}
     for message in (*sent, *received):
-        withs |= units_of(message)
+        withs |= transport_units(message)
     return withs
 
 
@@ -342,7 +342,7 @@ def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
     ends: Stmt = IfStatement(((full, lost),), (recorded(message),) if message.transmission else ())
     if message.transmission is not None:
         body = transmit_body(message, _frame_name(message), (statuses,), (*handed, ends))
-        return (Subprogram(name, params, body=given(message)), body)
+        return (Subprogram(name, params, body=keep_value(message)), body)
     own = message.authentication
     sending: tuple[Stmt, ...] = (*handed, ends)
     if own is not None:
@@ -486,7 +486,7 @@ def _refused(system: System, message: Message) -> tuple[Stmt, ...]:
 def _data(message: Message) -> Expr:
     """The data of a frame, as the codec of a message takes them."""
     if message.transport is not None:
-        return value_of()
+        return received_value()
     if not message.fd:
         return call(ref(ANY, "Payload"), ref("Frame"))
     words = call(ref(ANY, "Words"), ref("Frame"))

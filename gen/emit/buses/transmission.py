@@ -76,7 +76,7 @@ def values_of(system: System, message: Message) -> tuple[Decl, ...]:
     )
 
 
-def given(message: Message) -> tuple[Stmt, ...]:
+def keep_value(message: Message) -> tuple[Stmt, ...]:
     """Keep a value until the end of the execution."""
     return (
         Assign(_value(message), ref("Item")),

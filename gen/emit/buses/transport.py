@@ -68,7 +68,7 @@ def is_plain(message: Message) -> bool:
     return message.transport is None and not message.controls
 
 
-def units_of(message: Message) -> set[DottedName]:
+def transport_units(message: Message) -> set[DottedName]:
     """The units that the spec of a bus needs for a message, which it sends or receives."""
     sends = message.source is not None
     if message.transport is None:
@@ -352,7 +352,7 @@ def taken(
     )
 
 
-def value_of() -> Expr:
+def received_value() -> Expr:
     """The value that has come, as its codec takes it."""
     return call(ref(ISO_TP, "Words_Of"), ref("Value"))
 

@@ -30,7 +30,7 @@ from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System
 
 from .frames import explained, length_terms, rate_terms, span
-from .interference import Interferer, Ladder, W, asked
+from .interference import Interferer, Ladder, W, demand_within
 from .terms import (
     LATE,
     ONE,
@@ -39,7 +39,7 @@ from .terms import (
     exact,
     less_periods,
     name_of,
-    named,
+    named_number,
     none_of,
     plus,
     refuse,
@@ -117,7 +117,7 @@ def _terms(message: Message, bus: Bus) -> list[Decl]:
         words += f", sent {mode.words}, T apart at least"
     items: list[Decl] = [
         Comment(words),
-        named(f"{own}_Id", bits(message.identifier)),
+        named_number(f"{own}_Id", bits(message.identifier)),
         stated(f"{own}_Length", message.length),
         stated(f"{own}_T", message.period),
         stated(f"{own}_D", message.limit),
@@ -126,7 +126,7 @@ def _terms(message: Message, bus: Bus) -> list[Decl]:
     if message.source is None:
         items.append(stated(f"{own}_J", 0))
     else:
-        items.append(named(f"{own}_J", ref(f"{name_of(message.sending)}_R")))
+        items.append(named_number(f"{own}_J", ref(f"{name_of(message.sending)}_R")))
     if mode is not None and mode.longest is not None:
         items += [
             Comment(f"[{message.element}] the longest time from one frame to the next"),
@@ -166,7 +166,7 @@ class _Level:
         bits = times(ref(f"{line}_Error_Bits"), ref(f"{line}_Bit"))
         hit = plus(bits, ref(f"{longest}_C"))
         burst = OperatorChain("-", (ref(f"{line}_Error_Burst"), ONE))
-        return [times(burst, hit), asked(window, number(0), ref(f"{line}_Error_T"), hit)]
+        return [times(burst, hit), demand_within(window, number(0), ref(f"{line}_Error_T"), hit)]
 
 
 def _ladders(system: System, bus: Bus, order: list[Message], claims: Claims) -> dict[str, Ladder]:
@@ -198,7 +198,7 @@ def _ladders(system: System, bus: Bus, order: list[Message], claims: Claims) -> 
 
 
 def _sent(own: str, late: Expr) -> Expr:
-    return asked(W, late, ref(f"{own}_T"), ref(f"{own}_C"))
+    return demand_within(W, late, ref(f"{own}_T"), ref(f"{own}_C"))
 
 
 def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> list[Decl]:
@@ -234,7 +234,7 @@ def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> li
         Comment(f"[{bus.name}] how long it is ever busy, and who waits no longer in a queue"),
         *ladder.functions(),
         stated(f"{line}_Busiest", claims.busiest[bus.name]),
-        named(f"{line}_Busiest_Needs", plus(*ladder.whole(own[-1], busiest), *lost)),
+        named_number(f"{line}_Busiest_Needs", plus(*ladder.whole(own[-1], busiest), *lost)),
         exact(busiest, [ref(f"{line}_Busiest_Needs")], bus.name, BUSY, least=1),
     ]
     for message in order:
@@ -285,7 +285,7 @@ def _busy(own: str, label: str, claim: ResponseClaim, demand: Expr) -> list[Decl
     busy, needs = ref(f"{own}_Busy"), ref(f"{own}_Busy_Needs")
     return [
         stated(busy, claim.busy),
-        named(needs, demand),
+        named_number(needs, demand),
         exact(busy, [needs], label, BUSY, least=1),
     ]
 
@@ -309,8 +309,8 @@ def _windows(
         tail = _tail(claim, instance)
         window, needs = ref(f"{own}_{prefix}W{tail}"), ref(f"{own}_{prefix}Needs{tail}")
         items += [
-            named(window, number(length) if last is None else last),
-            named(needs, waiting(instance, window)),
+            named_number(window, number(length) if last is None else last),
+            named_number(needs, waiting(instance, window)),
             exact(window, [needs], label, RESPONSE),
         ]
     return items
@@ -328,7 +328,9 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
     steps = []
     for one in received:
         late, period = (ref(f"{name_of(one.driver)}_R"), ref(f"{name_of(one.message.element)}_T"))
-        steps.append(Interferer(name_of(one.element), (asked(W, late, period, separation),), 0))
+        steps.append(
+            Interferer(name_of(one.element), (demand_within(W, late, period, separation),), 0)
+        )
     ladder = Ladder(tuple(steps), "Turn_Up", "Turn_Rest")
     line = name_of(processor.name)
     busy = ref(f"{line}_Busy")
@@ -351,8 +353,8 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
         words = f"[{label}] its turn in {processor.name}, and when it is handed over"
         items.append(Comment(words))
         if one.several:
-            items.append(named(f"{own}_T", ref(f"{name_of(one.message.element)}_T")))
-        items.append(named(jitter, ref(f"{name_of(one.driver)}_R")))
+            items.append(named_number(f"{own}_T", ref(f"{name_of(one.message.element)}_T")))
+        items.append(named_number(jitter, ref(f"{name_of(one.driver)}_R")))
         items += _windows(own, label, claim, waiting, (busy, jitter), "Turn_")
         ends = [
             less_periods(plus(jitter, ref(f"{own}_Turn_W{_tail(claim, n)}")), own, n)
@@ -361,6 +363,6 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
         items += [
             stated(turn, claim.response),
             exact(turn, ends, label, RESPONSE),
-            named(f"{own}_Handed", plus(turn, times(number(2), reply))),
+            named_number(f"{own}_Handed", plus(turn, times(number(2), reply))),
         ]
     return items

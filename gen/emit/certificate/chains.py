@@ -17,7 +17,7 @@ from ravenchart.gen.model.claims import ChainClaim
 from ravenchart.gen.model.system import Chain, Processor, System
 
 from .hops import ClaimedHop, hops_of
-from .terms import assured, exact, name_of, named, plus, refuse, stated, times
+from .terms import assured, exact, name_of, named_number, plus, refuse, stated, times
 
 SUFFIX = {"row": "Done", "item": "R", "handed": "Handed", "transfer": "Transfer"}
 """What the response of a step is called."""
@@ -85,7 +85,7 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
         items += [
             stated(f"{own}_{what}", bound),
             stated(f"{own}_{what}_Limit", limit),
-            named(f"{own}_{what}_Needs", plus(*terms)),
+            named_number(f"{own}_{what}_Needs", plus(*terms)),
         ]
         label, low = f"chain {chain.name}", what.lower()
         needs, claimed = ref(f"{own}_{what}_Needs"), ref(f"{own}_{what}")
@@ -154,7 +154,7 @@ def _queue(
     full = plus(times(plus(ref(burst), number(1)), many, cycle), late)
     following = OperatorChain("-", (full, times(ref(burst), period)))
     return [
-        named(burst, plus(OperatorChain("/", (late, period)), number(1))),
+        named_number(burst, plus(OperatorChain("/", (late, period)), number(1))),
         stated(wait, claimed),
         refuse(times(many, cycle), period, label, "can fill a queue"),
         exact(ref(wait), [last, following], label, "wait in a queue"),

@@ -29,7 +29,7 @@ def sums(task: Task) -> dict[str, Expr]:
     return found
 
 
-def work(task: Task, jobs: int) -> Expr:
+def work_of_jobs(task: Task, jobs: int) -> Expr:
     """What so many jobs in a row execute, from one that executes all rows on."""
     return plus(*(times(number(-(-jobs // n)), ref(c)) for n, c in costs(task).items()))
 

@@ -19,7 +19,7 @@ from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.model.buses import Bus, Message
 
-from .terms import ONE, ceiling, name_of, named, plus, stated, times
+from .terms import ONE, ceiling, name_of, named_number, plus, stated, times
 
 SECOND = Power(10, 9)
 """In nanoseconds."""
@@ -82,7 +82,7 @@ def length_terms(message: Message, bus: Bus) -> list[Decl]:
     own, line = name_of(message.element), ada_case(bus.name)
     if not message.fd:
         stuffed: Expr = plus(plain(_head(message)), _data_bits(own))
-        return [named(f"{own}_C", call(f"{line}_Time_Of", stuffed))]
+        return [named_number(f"{own}_C", call(f"{line}_Time_Of", stuffed))]
     stuffed, bits, rate = ref(f"{own}_Stuffed"), ref(f"{own}_Bits"), ref(f"{line}_Bit_Rate")
     head, early, body = (ref(f"{own}_{part}") for part in ("Head", "Early", "Body"))
     behind = _less(stuffed, head), _less(_quarter(stuffed), early)
@@ -92,11 +92,11 @@ def length_terms(message: Message, bus: Bus) -> list[Decl]:
         cost = ceiling(times(plus(times(bits, fast), times(body, rate)), SECOND), times(rate, fast))
     return [
         stated(head, _head(message)),
-        named(early, _quarter(head)),
-        named(stuffed, plus(head, plain(CONTROL), _data_bits(own))),
-        named(body, plus(*behind, number(_checks(message)))),
-        named(bits, plus(head, early, number(UNSTUFFED))),
-        named(f"{own}_C", cost),
+        named_number(early, _quarter(head)),
+        named_number(stuffed, plus(head, plain(CONTROL), _data_bits(own))),
+        named_number(body, plus(*behind, number(_checks(message)))),
+        named_number(bits, plus(head, early, number(UNSTUFFED))),
+        named_number(f"{own}_C", cost),
     ]
 
 
@@ -118,7 +118,7 @@ def rate_terms(bus: Bus, messages: Sequence[Message]) -> list[Decl]:
     line = ada_case(bus.name)
     rate = f"{line}_Bit_Rate"
     switched = [] if bus.data_rate is None else [stated(f"{line}_Data_Rate", bus.data_rate)]
-    bit = named(f"{line}_Bit", ceiling(number(10**9), ref(rate)))
+    bit = named_number(f"{line}_Bit", ceiling(number(10**9), ref(rate)))
     return [stated(rate, bus.bit_rate), *switched, *_time_functions(bus, messages), bit]
 
 

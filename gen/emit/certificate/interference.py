@@ -29,7 +29,7 @@ W = ref("W")
 """The parameter of each function."""
 
 
-def asked(window: Expr, jitter: Expr, period: Expr, cost: Expr) -> Expr:
+def demand_within(window: Expr, jitter: Expr, period: Expr, cost: Expr) -> Expr:
     """What releases within a window execute, the first as late as can be."""
     return call("Demand", window, jitter, period, cost)
 
@@ -118,7 +118,7 @@ def costs(task: Task) -> dict[int, str]:
 
 def _released(task: Task, divisor: int, cost: Expr) -> Expr:
     own = name_of(task.element)
-    return asked(W, ref(f"{own}_J"), times(number(divisor), ref(f"{own}_T")), cost)
+    return demand_within(W, ref(f"{own}_J"), times(number(divisor), ref(f"{own}_T")), cost)
 
 
 def by_priority(system: System, node: Node) -> list[Task]:
@@ -137,7 +137,7 @@ def platform(
             ready = times(number(1 + task.sporadic), ref(f"{own}_Release"))
             found.append(term(task, 1, ready))
     if node.tick is not None and node.tick.wcet:
-        found.append(asked(window, number(0), ref(f"{own}_Tick_T"), ref(f"{own}_Tick_C")))
+        found.append(demand_within(window, number(0), ref(f"{own}_Tick_T"), ref(f"{own}_Tick_C")))
     return found
 
 

@@ -22,7 +22,7 @@ from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.claims import ResponseClaim
 from ravenchart.gen.model.system import System, Task
 
-from .interference import asked, costs, platform
+from .interference import costs, demand_within, platform
 from .terms import (
     LATE,
     ONE,
@@ -32,7 +32,7 @@ from .terms import (
     ceiling,
     exact,
     name_of,
-    named,
+    named_number,
     plus,
     refuse,
     stated,
@@ -73,7 +73,7 @@ def offset_claims(system: System, task: Task, claim: ResponseClaim) -> list[Decl
         items += [
             stated(names[0], instant.time),
             stated(names[1], length),
-            named(names[2], plus(*work, *_delay(system, task, at, window))),
+            named_number(names[2], plus(*work, *_delay(system, task, at, window))),
             exact(window, [needs], label, RESPONSE, least=1),
             refuse(plus(at, window), plus(due, deadline), label, LATE),
             refuse(plus(due, jitter, ONE), plus(at, period), label, UNLISTED),
@@ -125,7 +125,7 @@ def _all_between(
             )
         )
     return [
-        named(f"{own}_Since_{place}", before if last >= due - reach else reached),
+        named_number(f"{own}_Since_{place}", before if last >= due - reach else reached),
         refuse(before, since, label, UNLISTED),
         refuse(plus(since, ONE), at, label, UNLISTED),
         refuse(plus(*missed), number(0), label, UNLISTED),
@@ -142,7 +142,7 @@ def _delay(system: System, task: Task, at: Expr, window: Expr) -> list[Expr]:
         own = name_of(other.element)
         period = times(number(divisor), ref(f"{own}_T"))
         if other.element not in known:
-            return asked(window, ref(f"{own}_J"), period, cost)
+            return demand_within(window, ref(f"{own}_J"), period, cost)
         offset = ref(f"{own}_O")
         end = OperatorChain("-", (plus(at, window), offset))
         begin = OperatorChain("-", (at, ref(f"{own}_J"), offset))

@@ -45,11 +45,11 @@ from ravenchart.gen.model.system import SharedObject, System, Task
 from .buses import bus_claims, bus_terms
 from .certified import CERTIFICATE
 from .chains import chain_claims
-from .demand import demand, sums, switches, work
+from .demand import demand, sums, switches, work_of_jobs
 from .hops import hops_of
 from .interference import UNIT, task_functions
 from .offsets import offset_claims
-from .protection import protection_claims, watched
+from .protection import age_limited_ports, protection_claims
 from .tables import driver_levels, order, table_terms
 from .terms import (
     LATE,
@@ -59,7 +59,7 @@ from .terms import (
     exact,
     less_periods,
     name_of,
-    named,
+    named_number,
     plus,
     refuse,
     stated,
@@ -112,7 +112,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     hops = {hop for chain in system.chains for hop in hops_of(system, chain)}
     rows = {hop.element for hop in hops if hop.kind == "row"}
     handed = {hop.element for hop in hops if hop.kind == "handed"}
-    for message, end in watched(system):
+    for message, end in age_limited_ports(system):
         received = system.reception(message, str(end))
         handed |= set() if received is None else {received.element}
     for _, _, there, back in transferred(system):
@@ -186,9 +186,9 @@ def _silences(system: System, node: Node) -> list[Decl]:
     for processor in system.processors:
         if processor.node == node.name:
             name = name_of(processor.name)
-            items.append(named(f"{name}_L", plus(ref(f"{name}_D"), ref(f"{own}_Margin"))))
+            items.append(named_number(f"{name}_L", plus(ref(f"{name}_D"), ref(f"{own}_Margin"))))
             found = plus(ref(f"{name}_L"), ref(f"{task}_T"), ref(f"{task}_R"))
-            items.append(named(f"{name}_S", found))
+            items.append(named_number(f"{name}_S", found))
     return items
 
 
@@ -202,7 +202,7 @@ def _terms(system: System, task: Task) -> list[Decl]:
     blocking = _section(system, held[0]) if held else number(0)
     items: list[Decl] = [Comment(_words(system, task, held))]
     if task.driver_of is None:
-        items.append(named(f"{own}_Priority", priority(task.priority)))
+        items.append(named_number(f"{own}_Priority", priority(task.priority)))
     for slot in task.slots:
         items.append(stated(f"{name_of(slot.element)}_Budget", slot.timing.wcet))
     if not task.slots:
@@ -211,9 +211,9 @@ def _terms(system: System, task: Task) -> list[Decl]:
     if has_offset(system, task):
         items.append(stated(f"{own}_O", task.offset))
     items += table_terms(task)
-    items.append(named(f"{own}_J", _jitter(system, task)))
-    items += [named(name, value) for name, value in sums(task).items()]
-    items.append(named(f"{own}_B", blocking))
+    items.append(named_number(f"{own}_J", _jitter(system, task)))
+    items += [named_number(name, value) for name, value in sums(task).items()]
+    items.append(named_number(f"{own}_B", blocking))
     return items
 
 
@@ -264,10 +264,10 @@ def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[
         tail = "" if len(windows) == 1 else f"_{job + 1}"
         last, needs = ref(f"{own}_W{tail}"), f"{own}_Needs{tail}"
         if len(windows) == 1:
-            items.append(named(f"{own}_W", OperatorChain("-", (bound, jitter))))
+            items.append(named_number(f"{own}_W", OperatorChain("-", (bound, jitter))))
         else:
             items.append(stated(f"{own}_W{tail}", window))
-        items.append(named(needs, demand(system, task, last, work(task, job + 1))))
+        items.append(named_number(needs, demand(system, task, last, work_of_jobs(task, job + 1))))
         items.append(exact(last, [ref(needs)], label, RESPONSE))
         ends.append(less_periods(plus(jitter, last), own, job))
     if len(windows) > 1:
@@ -303,7 +303,7 @@ def _row(system: System, task: Task, place: int, bound: int) -> list[Decl]:
     return [
         Comment(f"[{row}] done, from the event of its processor"),
         stated(f"{done}_Done", bound),
-        named(f"{done}_W", OperatorChain("-", (ref(f"{done}_Done"), ref(f"{own}_J")))),
-        named(f"{done}_Needs", demand(system, task, window, needed)),
+        named_number(f"{done}_W", OperatorChain("-", (ref(f"{done}_Done"), ref(f"{own}_J")))),
+        named_number(f"{done}_Needs", demand(system, task, window, needed)),
         exact(window, [ref(f"{done}_Needs")], row, RESPONSE),
     ]

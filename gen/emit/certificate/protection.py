@@ -23,7 +23,7 @@ from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.protection import Protection
 from ravenchart.gen.model.system import System
 
-from .terms import ceiling, exact, name_of, named, plus, stated, times
+from .terms import ceiling, exact, name_of, named_number, plus, stated, times
 
 HOUR = 3_600 * 10**9
 """In nanoseconds."""
@@ -35,7 +35,7 @@ RESIDUAL = (
 )
 
 
-def watched(system: System) -> tuple[tuple[Message, End], ...]:
+def age_limited_ports(system: System) -> tuple[tuple[Message, End], ...]:
     """The ports whose `max_age` finds that usable frames of a checked message no longer come."""
     found: list[tuple[Message, End]] = []
     for message in system.messages:
@@ -55,7 +55,7 @@ def protection_claims(system: System, claims: Claims) -> list[Decl]:
         if message.protection is not None:
             items += [] if items else [Comment(RESIDUAL)]
             items += _residual(message, message.protection, claims.residual.get(message.name, 0))
-    for message, end in watched(system):
+    for message, end in age_limited_ports(system):
         items += _stale(system, message, end, claims.stale.get(str(end), 0))
     return items
 
@@ -77,12 +77,12 @@ def _residual(message: Message, own: Protection, claimed: int) -> list[Decl]:
     missed = OperatorChain("-", (whole, few))
     return [
         Comment(f"[{message.element}] what its {own.name} finds"),
-        named(bits, times(number(8), ref(f"{element}_Length"))),
-        named(few, plus(*patterns)),
+        named_number(bits, times(number(8), ref(f"{element}_Length"))),
+        named_number(few, plus(*patterns)),
         stated(right, claimed),
-        named(needs, ceiling(times(missed, number(10**18)), times(checks, whole))),
+        named_number(needs, ceiling(times(missed, number(10**18)), times(checks, whole))),
         exact(right, [needs], message.element, "residual error"),
-        named(
+        named_number(
             f"{residual}_Per_Hour",
             ceiling(times(right, number(HOUR)), times(number(10**9), ref(f"{element}_T"))),
         ),
@@ -113,6 +113,6 @@ def _stale(system: System, message: Message, end: End, claimed: int) -> list[Dec
         stated(limit, age),
         stated(period, component.port_region.period),
         stated(f"{own}_Stale", claimed),
-        named(f"{own}_Stale_Needs", needs),
+        named_number(f"{own}_Stale_Needs", needs),
         exact(ref(f"{own}_Stale"), [ref(f"{own}_Stale_Needs")], str(end), "time until it is stale"),
     ]

@@ -21,7 +21,7 @@ from ravenchart.gen.model.system import System, Task
 
 from .certified import driver_element, timed_by
 from .interference import by_priority
-from .terms import name_of, named, none_of, stated
+from .terms import name_of, named_number, none_of, stated
 
 
 def driver_levels(system: System) -> list[Decl]:
@@ -30,7 +30,7 @@ def driver_levels(system: System) -> list[Decl]:
     items: list[Decl] = []
     for bus, level in found.items():
         items.append(Comment(f"[{bus}] the priority of its driver, whatever that works at"))
-        items.append(named(f"{name_of(driver_element(bus))}_Priority", priority(level)))
+        items.append(named_number(f"{name_of(driver_element(bus))}_Priority", priority(level)))
     return items
 
 

@@ -38,14 +38,14 @@ LONG = 69
 """A message of more columns is broken behind the name of its element."""
 
 
-def named(name: Named, value: Expr) -> Decl:
+def named_number(name: Named, value: Expr) -> Decl:
     """``name : constant := value;``"""
     return Object(name, None, value, constant=True)
 
 
 def stated(name: Named, value: int) -> Decl:
     """A number as it is given."""
-    return named(name, number(value))
+    return named_number(name, number(value))
 
 
 def plus(*terms: Expr) -> Expr:

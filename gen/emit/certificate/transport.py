@@ -20,7 +20,7 @@ from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.system import System
 from ravenchart.gen.model.transport import Transport
 
-from .terms import assured, ceiling, exact, name_of, named, plus, refuse, stated, times
+from .terms import assured, ceiling, exact, name_of, named_number, plus, refuse, stated, times
 
 
 def transferred(system: System) -> Iterator[tuple[Message, Transport, Reception, Reception]]:
@@ -59,7 +59,7 @@ def transfer_claims(system: System, claims: Claims) -> list[Decl]:
             exact(trip, [apart, times(ceiling(heard, row), row)], label, "round trip"),
             stated(f"{own}_Transfer", claim[1]),
             exact(bound, [plus(*last, segment)], label, "transfer"),
-            named(f"{own}_Renewal", plus(*last, apart)),
+            named_number(f"{own}_Renewal", plus(*last, apart)),
             stated(f"{own}_Timeout", transport.timeout),
             refuse(plus(trip, segment), ref(f"{own}_Timeout"), label, "can be given up in time"),
             assured((plus(trip, segment), ref(f"{own}_Timeout"))),

@@ -38,7 +38,7 @@ from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.language.compound import PASSED, Firing, FiringKind
-from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.places import conjuncts
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
@@ -161,7 +161,7 @@ def _selections(shape: RegionShape) -> list[Decl]:
             (Param("C", "in", "Choice"), *shape.situation),
             "Boolean",
             aspects=(Aspect("Ghost"),),
-            expression=both(*flat(lines)),
+            expression=both(*conjuncts(lines)),
         ),
         Comment("Each lane's first; none where a lane inside it has one."),
     ]

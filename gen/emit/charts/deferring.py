@@ -32,7 +32,7 @@ from ravenchart.gen.emit.ada.naming import component_name
 from ravenchart.gen.emit.ada.statements import Comment, Stmt, do
 from ravenchart.gen.emit.language.compound import FiringKind
 from ravenchart.gen.emit.language.events import carries, name_of, null_event
-from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.places import conjuncts
 
 from .shape import ITEM, RegionShape
 
@@ -58,7 +58,7 @@ def deferral_types(shape: RegionShape, spans: Mapping[str, Expr]) -> list[Decl]:
     for event in kept_events(shape):
         states = [s.name for s in shape.region.states if event in s.defers]
         inside = [shape.in_state(shape.place, s) for s in states]
-        left = [both(*flat([spans[s], shape.in_state(shape.place, s)])) for s in states]
+        left = [both(*conjuncts([spans[s], shape.in_state(shape.place, s)])) for s in states]
         deferred.append((shape.event(event), chain("or else", inside)))
         freed.append((shape.event(event), chain("or else", left)))
     if len(deferred) < len(shape.component.events):

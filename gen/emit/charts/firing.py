@@ -57,9 +57,9 @@ from ravenchart.gen.model.statechart import PseudoKind
 
 from .deferring import STORE
 from .history import Restoring
-from .lasting import Lasting, asked, in_one_word, of_before, terminates
+from .lasting import Lasting, called_with, in_one_word, of_before, terminates
 from .moving import BEFORE, Moving
-from .nodes import NODE, NODES, Nodes, joined
+from .nodes import NODE, NODES, Nodes, as_one_move
 from .safety import Safety, used
 from .shape import START, RegionShape
 
@@ -123,7 +123,7 @@ class Moves:
 
     def fire(self) -> Subprogram:
         """What is declared, then exits, effects and entries of one transition."""
-        start = joined(self._steps(self.shape.start)) or (NULL,)
+        start = as_one_move(self._steps(self.shape.start)) or (NULL,)
         each = [(f.literal, self._row(f)) for f in self.shape.firings] or [("None", (NULL,))]
         rows: list[tuple[Choice | str, tuple[Stmt, ...]]] = [*each]
         moving = self.moving.procedures()
@@ -198,7 +198,7 @@ class Moves:
 
         `Is_Safe` stands beside `Is_Fired`: gnatprove then names it where an invariant breaks.
         """
-        fired = asked(self._fired, Before=old("Self"))
+        fired = called_with(self._fired, Before=old("Self"))
         return (
             Aspect("Pre", self.ready("Chosen")),
             Aspect("Post", both(fired, *self.safety.holds())),
@@ -216,7 +216,7 @@ class Moves:
         """What holds when such a procedure begins; nothing has acted yet."""
         shape = self.shape
         goal = self._goal({p.name: ref(_WAS, p.name) for p in shape.target_params()})
-        ready = asked(self._ready("Chosen"), Self=ref(_WAS))
+        ready = called_with(self._ready("Chosen"), Self=ref(_WAS))
         facts = [ready, ref("Self.Started"), equal(self.held, goal)]
         facts += [equal(ref("Self.Data"), ref(_WAS, "Data"))] if self.safety else []
         for one in constants:
@@ -237,7 +237,7 @@ class Moves:
 
     def ready(self, chosen: str) -> Expr:
         """That a transition may be fired."""
-        return asked(self._ready(chosen))
+        return called_with(self._ready(chosen))
 
     def _ready(self, chosen: str) -> Subprogram:
         first, later = self.safety.ready(chosen)
@@ -253,7 +253,7 @@ class Moves:
         done = both(
             ref("Self.Started"),
             of_before(equal(self.held, self.shape.target("Chosen"))),
-            *([] if self._lasts is None else [asked(self._lasts)]),
+            *([] if self._lasts is None else [called_with(self._lasts)]),
         )
         return self._claim_of("Is_Fired", done, _CHOSEN, _BEFORE)
 
@@ -320,14 +320,14 @@ class Moves:
         effect = _between(self.nodes.empty(firing.domain), effect)
         if terminates(self.shape, firing):
             entered = self._steps(firing.entries[:-1])
-            return joined((*out, *effect, *entered, *self._stop(firing)))
+            return as_one_move((*out, *effect, *entered, *self._stop(firing)))
         if firing.kind is FiringKind.RESTORE:
             pseudo = self.region.pseudostate(firing.sources[0])
             assert pseudo is not None
             deep = pseudo.kind is PseudoKind.DEEP_HISTORY
             restored = Restoring(self.shape, self._steps).statements(firing.domain, deep)
-            return joined((*out, *restored))
-        return joined((*out, *effect, *self._steps(firing.entries)))
+            return as_one_move((*out, *restored))
+        return as_one_move((*out, *effect, *self._steps(firing.entries)))
 
     def _stop(self, firing: Firing) -> tuple[Stmt, ...]:
         """The region stops: nothing is active any more, and nothing more is left."""

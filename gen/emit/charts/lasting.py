@@ -37,7 +37,7 @@ from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Assign, Comment, Pragma, Stmt
 from ravenchart.gen.emit.ada.walking import rewritten
 from ravenchart.gen.emit.language.compound import TOP, Firing
-from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.places import conjuncts
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import After, Every
 
@@ -56,7 +56,7 @@ def in_one_word(fact: Subprogram, told: str) -> list[Decl]:
     return [fact, Comment(told), Pragma("Annotate", inlined)]
 
 
-def asked(fact: Subprogram, **given: Expr) -> Expr:
+def called_with(fact: Subprogram, **given: Expr) -> Expr:
     """A call of it where its parameters' names are those of what is given."""
     return call(fact.name, *(given.get(p.name, ref(p.name)) for p in fact.params))
 
@@ -152,7 +152,7 @@ def _timers_after(shape: RegionShape, ends: bool) -> list[Decl]:
     for i, timed in enumerate(shape.timers, 1):
         places = shape.compounds.places(timed.source)
         active = both(
-            *flat(
+            *conjuncts(
                 [
                     OperatorChain("/=", (ref("D"), ref("Beginning"))),
                     shape.in_state("Before", timed.source),
@@ -186,7 +186,7 @@ def _remembered(shape: RegionShape) -> list[Decl]:
     rows: list[Arg] = []
     for memory in shape.memories:
         leaf = shape.at(shape.place, shape.lane_of(memory.place))
-        left = flat([_left(shape, memory), _active(shape, memory)])
+        left = conjuncts([_left(shape, memory), _active(shape, memory)])
         children = shape.region.children(memory.place.owner, memory.place.region)
         goes_on = [OperatorChain("/=", (leaf, shape.literal(s.name))) for s in children if s.final]
         last = IfExpr(((both(*left, *goes_on), leaf),), ref("Past", memory.last))
@@ -234,7 +234,7 @@ def _active(shape: RegionShape, memory: HistoryMemory) -> Expr:
         for v in shape.literals_in(memory.place)
         if v in passed
     ]
-    return both(*flat([shape.in_state(shape.place, memory.place.owner), *not_left]))
+    return both(*conjuncts([shape.in_state(shape.place, memory.place.owner), *not_left]))
 
 
 # --- The contract of firings --------------------------------------------------

@@ -29,7 +29,7 @@ from ravenchart.gen.emit.language.terms import emit_flow
 from ravenchart.gen.language.terms import Flow
 from ravenchart.gen.model.chart.tree import Place
 
-from .nodes import Nodes, joined
+from .nodes import Nodes, as_one_move
 from .shape import RegionShape
 
 BEFORE = "Before"
@@ -183,7 +183,7 @@ class Moving:
         rows: list[tuple[Choice, tuple[Stmt, ...]]] = []
         for child in self.region.children(place.owner, place.region):
             inner = [self.leave(Place(child.name, r.name)) for r in child.regions]
-            rows.append((shape.literal(child.name), joined((*inner, *self.exit(child.name)))))
+            rows.append((shape.literal(child.name), as_one_move((*inner, *self.exit(child.name)))))
         rows += [(shape.literal(p), self.exit(p)) for p in shape.compounds.passed(place)]
         lane = shape.lane_of(place)
         leaf: Expr = shape.at(BEFORE, lane)

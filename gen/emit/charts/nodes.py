@@ -45,7 +45,7 @@ from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.statements import Assign, Stmt
 from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.emit.language.own_names import node_literal
-from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.places import conjuncts
 from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import Lane
 
@@ -67,7 +67,7 @@ _MOVED = "Moved"
 _IN_ORDER = "In_Order"
 
 
-def joined(statements: Sequence[Stmt]) -> tuple[Stmt, ...]:
+def as_one_move(statements: Sequence[Stmt]) -> tuple[Stmt, ...]:
     """Exits, entries and claims that do nothing, one after the other, as one move.
 
     What one of them asks for is about other lanes, which the others do not change.
@@ -80,7 +80,7 @@ def joined(statements: Sequence[Stmt]) -> tuple[Stmt, ...]:
                 Assign(other, Call(DottedName(("Moved",)), (_, then, goal, *more))),
             ) if one == other and via == then:
                 asked = dict.fromkeys(arg.value for arg in (*first, *more))
-                all_asked = (Arg(None, both(*flat([*asked]))),) if asked else ()
+                all_asked = (Arg(None, both(*conjuncts([*asked]))),) if asked else ()
                 found[-1] = Assign(one, Call(_MOVED, (active, start, goal, *all_asked)))
             case _:
                 found.append(statement)
@@ -145,7 +145,7 @@ class Nodes:
             leaf = call(Attribute(of_lane, "Pos"), shape.at(held, lane))
             found: Expr = call(Attribute("Node", "Val"), OperatorChain("+", (leaf, number(before))))
             active: list[Expr] = [ref("Self.Started")]
-            active += [] if lane.owner is None else flat([shape.in_state(held, lane.owner)])
+            active += [] if lane.owner is None else conjuncts([shape.in_state(held, lane.owner)])
             found = IfExpr(((both(*active), found),), ref(_NOWHERE))
             rows.append(Arg(shape.lane_name(lane), found))
             before += len(shape.literals(lane))

@@ -42,7 +42,7 @@ from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Comment, Pragma
 from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.emit.language.compound import Firing
-from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.places import conjuncts
 from ravenchart.gen.emit.language.terms import Scope, emit_expression, operators_in
 from ravenchart.gen.language import terms as m
 from ravenchart.gen.model.component import Invariant
@@ -123,7 +123,10 @@ class Safety:
         if not by_vertex:
             return None
         rows = [
-            IfExpr(((self.shape.in_state(self.shape.place, vertex), both(*flat(said))),), None)
+            IfExpr(
+                ((self.shape.in_state(self.shape.place, vertex), both(*conjuncts(said))),),
+                None,
+            )
             for vertex, said in by_vertex.items()
         ]
         known = both(*rows)
@@ -158,7 +161,7 @@ class Safety:
         rows = [(f.literal, said) for f in self.shape.firings if (said := self._guard(f))]
         if not rows:
             return None
-        choice = CaseExpr(ref("T"), (*((name, both(*flat(s))) for name, s in rows), _OTHERS))
+        choice = CaseExpr(ref("T"), (*((name, both(*conjuncts(s))) for name, s in rows), _OTHERS))
         params = used([DATA, Param("Ins", "in", "Inputs"), ITEM], choice)
         return Subprogram(
             "Guards_Hold", (Param("T", "in", "Firing"), *params), "Boolean", expression=choice

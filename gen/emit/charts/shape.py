@@ -27,14 +27,14 @@ from ravenchart.gen.emit.ada.statements import Stmt, do
 from ravenchart.gen.emit.language.compound import PASSED, TOP, EntryStep, Firing, FiringKind
 from ravenchart.gen.emit.language.events import carries, event_value
 from ravenchart.gen.emit.language.own_names import event_literal, lane_name
-from ravenchart.gen.emit.language.places import Places, flat
+from ravenchart.gen.emit.language.places import Places, conjuncts
 from ravenchart.gen.emit.language.terms import (
     Scope,
     asks_event,
     compared_states,
     emit_expression,
     expressions_in,
-    names_in,
+    names_read,
     raise_in_list,
 )
 from ravenchart.gen.language import terms as m
@@ -119,7 +119,7 @@ class RegionShape(Places):
 
     def in_sources(self, firing: Firing) -> Expr:
         """Are all its sources active?"""
-        return both(*flat([self.in_state(self.place, s) for s in firing.sources]))
+        return both(*conjuncts([self.in_state(self.place, s) for s in firing.sources]))
 
     def leads_to(self, firing: Firing) -> dict[Lane, str]:
         """The leaves that a move leads to."""
@@ -234,7 +234,7 @@ class RegionShape(Places):
         """Has an active state completed? None: always."""
         parts = self.finals(state, self.held)
         parts += [ref("Self", self.done(state))] if state in self.working else []
-        return both(*flat(parts)) if parts else None
+        return both(*conjuncts(parts)) if parts else None
 
     def finals(self, state: str, holder: Named) -> list[Expr]:
         """For each region of a state: is it in a final state?"""
@@ -388,7 +388,7 @@ class RegionShape(Places):
         parts += [emit_expression(scope, guard) for guard in firing.guards]
         if len(firing.sources) > 1:
             parts += [p for s in firing.sources if (p := self.is_complete(s)) is not None]
-        return both(*flat(parts))
+        return both(*conjuncts(parts))
 
     def event(self, event: str) -> DottedName:
         """The event as the region's package names it."""
@@ -426,7 +426,7 @@ class RegionShape(Places):
     def situation(self) -> tuple[Param, ...]:
         """What decides whether a transition is enabled: the region, the occurrence, and what
         guards read besides."""
-        named = {name for guard in guards_of(self.region) for name in names_in(guard)}
+        named = {name for guard in guards_of(self.region) for name in names_read(guard)}
         params = [SELF, Param("Now", "in", "Occurrence")]
         if named & set(self.inputs):
             params.append(Param("Ins", "in", "Inputs"))

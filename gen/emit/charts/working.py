@@ -22,7 +22,7 @@ from ravenchart.gen.emit.ada.expressions import FALSE, TRUE, Expr, Prefix, both,
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Stmt
-from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.places import conjuncts
 
 from .shape import RegionShape
 
@@ -68,7 +68,7 @@ def notice_bodies(shape: RegionShape) -> list[Decl]:
         done = ref("Self", shape.done(state))
         held = shape.held
         news = both(
-            *flat(
+            *conjuncts(
                 [
                     ref("Self.Started"),
                     equal(ref("Visit"), ref("Self", shape.visits(state))),
@@ -81,7 +81,7 @@ def notice_bodies(shape: RegionShape) -> list[Decl]:
         if state in shape.completing:
             completes = (Assign(ref("Self", shape.completed(state)), TRUE),)
             if ends := shape.finals(state, held):
-                completes = (IfStatement(((both(*flat(ends)), completes),)),)
+                completes = (IfStatement(((both(*conjuncts(ends)), completes),)),)
         body = IfStatement(((news, (Assign(done, TRUE), *completes)),))
         items.append(Subprogram(f"Notice_{ada_case(state)}", _PARAMS, body=(body,)))
     return items

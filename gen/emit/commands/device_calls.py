@@ -327,7 +327,7 @@ def put_body(instance: Instance, provided: Provided, lost: tuple[Stmt, ...]) -> 
     return Subprogram(spec.name, spec.params, declarations=(UseType(STATUS),), body=body)
 
 
-def asked(system: System, instance: Instance, provided: Provided) -> list[Decl]:
+def request_objects(system: System, instance: Instance, provided: Provided) -> list[Decl]:
     """What the row that serves an interface declares: a request, and room for replies."""
     package = ref(component_name(instance.component), requests_package(provided))
     found: list[Decl] = [

@@ -78,7 +78,7 @@ def emit_devices(system: System, header: str) -> tuple[Unit, ...]:
     return tuple(units)
 
 
-def states_package(system: System, kind: DeviceType) -> DottedName:
+def device_states_package(system: System, kind: DeviceType) -> DottedName:
     """The package of what a device of a type remembers, which the driver's author writes."""
     return ref(root_package(system), f"{ada_case(kind.name)}_States")
 
@@ -119,7 +119,7 @@ def _driver(system: System, kind: DeviceType, header: str) -> Unit:
         items.append(Subprogram(operation.name, operation.params, aspects=uses))
         items.append(Comment(f"[{kind.name}{what}] WCET {wcet:_} ns"))
     root = root_package(system)
-    withs = {states_package(system, kind)}
+    withs = {device_states_package(system, kind)}
     withs |= {ref(root, units_package(kind))} if kind.tells_apart else set()
     withs |= {ref(root, registers_package(kind))} if kind.registers else set()
     name = ref(root, ada_case(kind.name))
@@ -182,7 +182,7 @@ def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Uni
         Comment("Arguments as they were given last, and replies as they will be given."),
         RecordDeclaration("State", tuple(kept)),
     )
-    spec = Package(states_package(system, kind), items, (SPARK,))
+    spec = Package(device_states_package(system, kind), items, (SPARK,))
     driver = ref(root_package(system), ada_case(kind.name))
     uses = UseType(ref(f"{ada_case(kind.name)}_States", "Call_Count"))
     body = Package(driver, (uses, *bodies), (SPARK,), is_body=True)
@@ -216,7 +216,7 @@ def _piece(system: System, device: Device, kind: DeviceType, header: str) -> lis
         *(_work(system, kind, one, to_driver) for one in called(system, device)),
     ]
     items: list[Decl] = [Comment(f"[{device.name}] called by {', '.join(callers(system, device))}")]
-    withs = [ref(root_package(system), driver), states_package(system, kind)]
+    withs = [ref(root_package(system), driver), device_states_package(system, kind)]
     if kind.tells_apart:
         withs.append(ref(root_package(system), units_package(kind)))
     if system.has_object(device.name):

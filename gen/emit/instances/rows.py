@@ -39,7 +39,7 @@ from ravenchart.gen.emit.ada.statements import (
 )
 from ravenchart.gen.emit.charts.lanes import LIST
 from ravenchart.gen.emit.charts.shape import RegionShape
-from ravenchart.gen.emit.commands.device_calls import asked, asked_args, served
+from ravenchart.gen.emit.commands.device_calls import asked_args, request_objects, served
 from ravenchart.gen.emit.commands.remote_calls import watched
 from ravenchart.gen.emit.commands.remote_reads import copy_name, publishes
 from ravenchart.gen.emit.components.packages import (
@@ -54,13 +54,13 @@ from ravenchart.gen.emit.components.packages import (
 )
 from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.places import Places
-from ravenchart.gen.emit.language.terms import names_in
+from ravenchart.gen.emit.language.terms import names_read
 from ravenchart.gen.model.commands import Binding, Device, Poll, RemoteRead, Server
 from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
 
 from .site import Site
-from .transmission import answers, transmits
+from .transmission import flow_control, transmits
 
 
 class Rows(Site):
@@ -111,7 +111,7 @@ class Rows(Site):
                 declarations.append(Object(f"{name}_Losses", "Ravenchart.Event_Count"))
                 body += self._watch_losses(port, port.on_overflow)
             body.append(self._react(port))
-        body += answers(self.system, self.instance)
+        body += flow_control(self.system, self.instance)
         return Subprogram("Run_Ports", declarations=tuple(declarations), body=tuple(body))
 
     def _asked_for(self, poll: Poll, told: str) -> list[Stmt]:
@@ -337,7 +337,7 @@ class Rows(Site):
         reads = [n for n in activity.reads if n not in activity.writes]
         provided = component.served_by(activity.name)
         if provided is not None:
-            declarations += asked(self.system, self.instance, provided)
+            declarations += request_objects(self.system, self.instance, provided)
             args += asked_args(self.system, self.instance, provided)
         guard: Expr | None = None
         if activity.while_in is not None:
@@ -450,5 +450,5 @@ def _told(activity: Activity) -> dict[str, str]:
     if activity.while_in is None:
         return {}
     region = activity.while_in.region
-    required = {name for clause in activity.requires for name in names_in(clause.condition)}
+    required = {name for clause in activity.requires for name in names_read(clause.condition)}
     return {region: f"{ada_case(region)}_Now"} if region in required else {}

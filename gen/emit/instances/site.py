@@ -13,7 +13,7 @@ from ravenchart.gen.emit.ada.naming import component_name, priority
 from ravenchart.gen.emit.ada.statements import Stmt, do
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.trace_calls import fault, note
-from ravenchart.gen.emit.tables.value_calls import record
+from ravenchart.gen.emit.tables.value_calls import record_values
 from ravenchart.gen.model.component import Activity, Data, Port
 from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.statechart import Region
@@ -79,7 +79,7 @@ class Site:
 
     def _record(self, name: str, holder: Named) -> tuple[Stmt, ...]:
         """Record the values of a port or data item, which the Ada object ``holder`` has."""
-        return record(self.system, self.instance.name, name, holder, simulated=self.noted)
+        return record_values(self.system, self.instance.name, name, holder, simulated=self.noted)
 
     def _fault(self, kind: str, name: str, element_kind: str) -> Stmt:
         return fault(kind, self._element(name), element_kind)

@@ -25,7 +25,7 @@ def transmits(system: System, instance: Instance, row: Region | Activity) -> tup
     )
 
 
-def answers(system: System, instance: Instance) -> tuple[Do, ...]:
+def flow_control(system: System, instance: Instance) -> tuple[Do, ...]:
     """Send the flow control that the segments of a port of the instance ask for."""
     return tuple(
         do(ref(ada_case(message.bus), f"Answer_{ada_case(message.controls)}"))
@@ -38,5 +38,5 @@ def answers(system: System, instance: Instance) -> tuple[Do, ...]:
 
 def answering(system: System, instance: Instance) -> set[DottedName]:
     """The units that the body of the instance needs for that."""
-    calls = answers(system, instance)
+    calls = flow_control(system, instance)
     return {ref(ada_case(system.name), one.name.first) for one in calls}

@@ -128,7 +128,7 @@ class Places:
         here = equal(leaf, name) if self.is_literal(vertex) else member(leaf, name)
         if lane.owner is None:
             return here
-        return both(*flat([self.in_state(holder, lane.owner, component), here]))
+        return both(*conjuncts([self.in_state(holder, lane.owner, component), here]))
 
     def traced(self, lane: Lane) -> str:
         """The name under which traces know a lane."""
@@ -223,12 +223,12 @@ class Places:
         return self.configuration({n: self.default_leaf(n) for n in self.lanes}, None, component)
 
 
-def flat(parts: list[Expr]) -> list[Expr]:
+def conjuncts(parts: list[Expr]) -> list[Expr]:
     """One conjunction instead of nested ones."""
     found: list[Expr] = []
     for part in parts:
         if isinstance(part, OperatorChain) and part.operator == "and then":
-            found += flat(list(part.operands))
+            found += conjuncts(list(part.operands))
         else:
             found.append(part)
     return found

@@ -90,7 +90,7 @@ def quiet(unit: Unit, words: Iterator[str]) -> Unit:
     return replace(unit, item=replace(unit.item, items=(*pragmas, *unit.item.items)))
 
 
-def words_of(expressions: Iterable[m.Expression], *, by_name: bool = False) -> Iterator[str]:
+def warnings_of(expressions: Iterable[m.Expression], *, by_name: bool = False) -> Iterator[str]:
     """What the compiler says of these terms of the model.
 
     With ``by_name`` the names in them are parameters of their own, of which it knows that
@@ -98,12 +98,12 @@ def words_of(expressions: Iterable[m.Expression], *, by_name: bool = False) -> I
     """
     for expression in expressions:
         if isinstance(expression, m.Operation):
-            yield from words_of(expression.operands, by_name=by_name)
+            yield from warnings_of(expression.operands, by_name=by_name)
             if expression.operator in COMPARISONS:
                 yield from _words(expression, by_name)
 
 
-def words_of_idle(region: Region) -> Iterator[str]:
+def warnings_of_idle(region: Region) -> Iterator[str]:
     """What the compiler says in the spec of a region that never fires."""
     if not Places(region).compounds.firings:
         yield from (_DECIDED, _COMPUTED, _IDLE)

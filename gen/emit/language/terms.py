@@ -71,7 +71,7 @@ def unit_of(expression: m.Expression) -> str | None:
             return None
 
 
-def names_in(expression: m.Expression) -> set[str]:
+def names_read(expression: m.Expression) -> set[str]:
     """The data, parameters, ports and regions that an expression reads."""
     found: set[str] = set()
     for leaf in m.leaves(expression):
@@ -185,7 +185,7 @@ def flow_operators(flow: m.Flow) -> set[DottedName]:
 
 def flow_names(flow: m.Flow) -> set[str]:
     """The data, parameters, ports and regions that a flow reads."""
-    return {name for expression in expressions_in(flow) for name in names_in(expression)}
+    return {name for expression in expressions_in(flow) for name in names_read(expression)}
 
 
 def certain_sends(flow: m.Flow) -> set[str]:

@@ -66,7 +66,7 @@ from ravenchart.gen.model.recording import OBJECT
 from ravenchart.gen.model.system import Processor, Slot, System, Work
 
 from .reports import emit_main, emit_reports
-from .supervision import emit_supervision, offer
+from .supervision import emit_supervision, offer_from_outside
 
 BUFFERS = ref("Ravenchart.Value_Buffers")
 
@@ -359,5 +359,5 @@ def _fault(
     """Count and note a fault of a processor, and raise its events."""
     return (
         fault(kind, processor.name, "processor"),
-        *(offer(system, instance, event) for instance, event in events),
+        *(offer_from_outside(system, instance, event) for instance, event in events),
     )

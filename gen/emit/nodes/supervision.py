@@ -185,12 +185,12 @@ def _silence(system: System, processor: Processor) -> tuple[Stmt, ...]:
     """Report the silence of a processor, raise its events, and let the program stop."""
     return (
         fault("Silence", processor.name, "processor"),
-        *(offer(system, instance, event) for instance, event in processor.on_silence),
+        *(offer_from_outside(system, instance, event) for instance, event in processor.on_silence),
         do("Ravenchart.Failures.Note_Silence", StringLiteral(processor.name)),
     )
 
 
-def offer(system: System, instance: str, event: str) -> Stmt:
+def offer_from_outside(system: System, instance: str, event: str) -> Stmt:
     """Raise an event of an instance from outside it."""
     component = component_name(system.instance(instance).component)
     return do(ref(ada_case(instance), "Offer"), ref(component, event_literal(event)))

@@ -22,7 +22,7 @@ def recording(system: System) -> bool:
     return bool(system.recorded_values)
 
 
-def record(
+def record_values(
     system: System, instance: str, item: str, holder: Named, *, simulated: bool
 ) -> tuple[Stmt, ...]:
     """One call for each value of an item that the Ada object ``holder`` has."""

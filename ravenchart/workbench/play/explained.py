@@ -12,7 +12,7 @@ from ravenchart.behaviour.interpreter.observed import (
     ObservedStep,
 )
 from ravenchart.behaviour.interpreter.region import Completed, Happened, TimeOut
-from ravenchart.gen.draw.words import expression, trigger
+from ravenchart.gen.draw.words import shown_expression, trigger
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns, Value
 from ravenchart.gen.model.statechart import After, Completion, Every, OnEvent, When
@@ -82,8 +82,10 @@ def reason(verdict: Judgement, period: Ns) -> str:
 
 def _false(found: FalseGuard) -> str:
     """A condition that is false, with what it read."""
-    values = ", ".join(f"{expression(one)} = {value_text(value)}" for one, value in found.reads)
-    return f"`{expression(found.expression)}` is false{': ' if values else ''}{values}"
+    values = ", ".join(
+        f"{shown_expression(one)} = {value_text(value)}" for one, value in found.reads
+    )
+    return f"`{shown_expression(found.expression)}` is false{': ' if values else ''}{values}"
 
 
 def _another(verdict: Judgement) -> str:
