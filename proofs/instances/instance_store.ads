@@ -5,11 +5,14 @@
 --  that has no task.
 
 with System;
+with Ravenchart.Answered_Offers;
 with Ravenchart.Blackboards;
 with Ravenchart.Bounded_Fifos;
 with Ravenchart.Event_Lists;
+with Ravenchart.Fault_Reports;
 with Ravenchart.Health_Counters;
 with Ravenchart.Monitors;
+with Ravenchart.Offers;
 with Ravenchart.Port_Regions;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
@@ -85,6 +88,24 @@ is
    package Trace is new Ravenchart.Trace_Buffers
      (Capacity => 64,
       Ceiling  => Ceiling);
+
+   package Faults is new Ravenchart.Fault_Reports
+     (Record_Fault => Counters.Record_Fault,
+      Note         => Trace.Note);
+
+   package Dropping_Offers is new Ravenchart.Offers
+     (Element_Type => Signal,
+      Put          => Dropping_Queue.Put,
+      Policy       => Ravenchart.Queueing.Drop_Oldest,
+      Element      => 1,
+      Report       => Faults.Report);
+
+   procedure Answer;
+   --  Stands for what a model does about a loss.
+
+   package Dropping_Answered_Offers is new Ravenchart.Answered_Offers
+     (Offers  => Dropping_Offers,
+      On_Loss => Answer);
 
    package Observed is new Ravenchart.Monitors
      (Activity_Id => Job,

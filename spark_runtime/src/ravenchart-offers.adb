@@ -19,24 +19,25 @@ is
       Put (Item, Status, When_Full);
       if Status /= Queueing.Queued then
          Report (Health.Queue_Overflow, Element);
-         On_Loss;
       end if;
    end Offer;
 
-   ----------
-   -- Tell --
-   ----------
+   --------------------
+   -- Offer_And_Tell --
+   --------------------
 
-   procedure Tell
+   procedure Offer_And_Tell
      (Item      : Element_Type;
+      Lost      : out Boolean;
       When_Full : Queueing.Overflow_Policy := Policy)
    is
       Status : Queueing.Put_Status;
    begin
       Put (Item, Status, When_Full);
-      if Status /= Queueing.Queued then
+      Lost := Status /= Queueing.Queued;
+      if Lost then
          Report (Health.Queue_Overflow, Element);
       end if;
-   end Tell;
+   end Offer_And_Tell;
 
 end Ravenchart.Offers;

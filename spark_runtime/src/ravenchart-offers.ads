@@ -5,7 +5,7 @@
 --
 --  Guarantees   each loss is reported once, about Element
 --  Tasking      any task that may call the actual procedures
---  Timing       that of the queue, and with a loss that of both reports
+--  Timing       that of the queue, and with a loss that of the report
 
 with Ravenchart.Health;
 with Ravenchart.Queueing;
@@ -22,19 +22,18 @@ generic
    Element : Element_Id;
    --  What the queue belongs to.
    with procedure Report (Kind : Health.Fault_Kind; Element : Element_Id);
-   with procedure On_Loss is null;
-   --  What the model does about a loss.
 package Ravenchart.Offers
   with SPARK_Mode
 is
    procedure Offer
      (Item      : Element_Type;
       When_Full : Queueing.Overflow_Policy := Policy);
-   --  Queue Item; report what the queue gives up for it, and call On_Loss.
+   --  Queue Item; report what the queue gives up for it.
 
-   procedure Tell
+   procedure Offer_And_Tell
      (Item      : Element_Type;
+      Lost      : out Boolean;
       When_Full : Queueing.Overflow_Policy := Policy);
-   --  The same of an event that tells of a loss: no On_Loss again.
+   --  The same; Lost: has the queue given up something?
 
 end Ravenchart.Offers;

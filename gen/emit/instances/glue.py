@@ -76,7 +76,7 @@ from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import System, Work
 
-from .offers import OFFERS, enqueue, offers_of_port, offers_of_region, overflowed, put
+from .offers import ANSWERED, OFFERS, enqueue, offers_of_port, offers_of_region, overflowed, put
 from .releasing import releases, wait_body, wait_spec
 from .rows import Rows
 from .site import Site
@@ -109,7 +109,7 @@ class Glue(Site):
         names = {ref("System")}
         queued = bool(component.inputs()) or any(r.events() for r in component.regions)
         if queued or self._served():
-            names |= {ref("Ravenchart.Queueing"), OFFERS, *fault_units(root)}
+            names |= {ref("Ravenchart.Queueing"), OFFERS, ANSWERED, *fault_units(root)}
         if not component.events and not self._served():
             names.add(ref(root, self.component))
         if any(n.trace_depth for n in self.system.nodes):
@@ -402,7 +402,7 @@ class Glue(Site):
             steps: list[Stmt] = []
             for region in regions:
                 if event.name in region.events():
-                    steps.append(enqueue(region, event, ref("Item")))
+                    steps.append(enqueue(component, region, event, ref("Item")))
             for bus in self._asked(event.name):
                 steps.append(do(ref(ada_case(bus), "Controller.Request_Recovery")))
             steps += self._note("Raised", event.name, "event") if steps else ()

@@ -20,7 +20,7 @@ from ravenchart.gen.model.statechart import Overflow, Region
 
 from .site import Site
 
-OFFERS = ref("Ravenchart.Offers")
+OFFERS, ANSWERED = ref("Ravenchart.Offers"), ref("Ravenchart.Answered_Offers")
 
 
 def offers_of_port(site: Site, port: Port, of_type: DottedName) -> GenericInstance:
@@ -30,13 +30,19 @@ def offers_of_port(site: Site, port: Port, of_type: DottedName) -> GenericInstan
 
 
 def offers_of_region(site: Site, region: Region, event: DottedName) -> list[Decl]:
-    """What puts events into the queue of a region, and tells of what it loses."""
+    """What puts events into the queue of a region, and answers what it loses."""
     element = ref("Elements", element_constant(_element(site, region.name), "region"))
     given = region.name, "Queue", event, region.overflow, element
-    if not _tells(site.instance.component, region):
-        return [_offering(*given)]
-    lost = _lost_name(region)
-    return [Subprogram(lost), _offering(*given, On_Loss=ref(lost))]
+    offering = _offering(*given)
+    if not _answers(site.instance.component, region):
+        return [offering]
+    answer = _answer_name(region)
+    actual = arguments(Offers=ref(offering.name), On_Loss=ref(answer))
+    return [
+        offering,
+        Subprogram(answer),
+        GenericInstance(_name(region.name, ANSWERED), ANSWERED, actual),
+    ]
 
 
 def _element(site: Site, name: str) -> str:
@@ -49,7 +55,6 @@ def _offering(
     of_type: DottedName,
     policy: Overflow,
     element: DottedName,
-    **more: Expr,
 ) -> GenericInstance:
     own = ada_case(name)
     return GenericInstance(
@@ -61,16 +66,15 @@ def _offering(
             Policy=_policy(policy),
             Element=element,
             Report=ref(FAULTS, "Report"),
-            **more,
         ),
     )
 
 
-def _name(queued: str) -> str:
-    return f"{ada_case(queued)}_Offers"
+def _name(queued: str, generic: DottedName = OFFERS) -> str:
+    return f"{ada_case(queued)}_{generic.last}"
 
 
-def _lost_name(region: Region) -> str:
+def _answer_name(region: Region) -> str:
     return f"{ada_case(region.name)}_Overflowed"
 
 
@@ -83,26 +87,30 @@ def put(queued: str, item: Expr) -> Stmt:
     return do(ref(_name(queued), "Offer"), item)
 
 
-def enqueue(region: Region, event: Event, item: Expr, how: str = "Offer") -> Stmt:
-    """Put an event into a region's queue; ``how``: by which of the procedures."""
+def enqueue(component: Component, region: Region, event: Event, item: Expr) -> Stmt:
+    """Put an event into a region's queue, and answer a loss where the model does."""
+    return _enqueue(region, event, item, ANSWERED if _answers(component, region) else OFFERS)
+
+
+def _enqueue(region: Region, event: Event, item: Expr, by: DottedName) -> Stmt:
     args = [item]
     if event.overflow is not None and event.overflow is not region.overflow:
         args.append(_policy(event.overflow))
-    return do(ref(_name(region.name), how), *args)
+    return do(ref(_name(region.name, by), "Offer"), *args)
 
 
 def overflowed(component: Component) -> Iterator[Decl]:
     """Raise the event that tells of a loss; what is lost by that is only reported."""
     for region in component.regions:
         name = region.on_overflow
-        if name is not None and region.events() and _tells(component, region):
+        if name is not None and region.events() and _answers(component, region):
             event: Event = named(component.events, name)
             item = event_value(component, name)
-            tell = [enqueue(r, event, item, "Tell") for r in _heard(component, name)]
-            yield Subprogram(_lost_name(region), body=tuple(tell))
+            tell = [_enqueue(r, event, item, OFFERS) for r in _heard(component, name)]
+            yield Subprogram(_answer_name(region), body=tuple(tell))
 
 
-def _tells(component: Component, region: Region) -> bool:
+def _answers(component: Component, region: Region) -> bool:
     """Is there an event that tells of a loss, and a region that it is for?"""
     return region.on_overflow is not None and bool(_heard(component, region.on_overflow))
 
