@@ -48,6 +48,7 @@ from .nodes import (
     following,
     is_within,
     lists_in,
+    moved_behind,
     names_of,
     put,
     statements,
@@ -189,7 +190,7 @@ def order(file: str, units: Units) -> Iterator[Broken]:
         for first, second in pairwise(row):
             called = _moved(second.node) or ""
             if called.startswith("Enter_") and _uses(entered[called], _assigned(first.node)):
-                yield place, "late", exchanged(first, second)
+                yield place, "late", moved_behind(first, second)
             elif _ordered(first.node, second.node):
                 yield place, "exchange", exchanged(first, second)
     fire = body_of(unit, "Fire")

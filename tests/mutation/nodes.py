@@ -13,7 +13,7 @@ from typing import Any, Generic, TypeVar
 from ravenchart.gen.emit.ada.declarations import Subprogram, Unit
 from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain
 from ravenchart.gen.emit.ada.named import DottedName
-from ravenchart.gen.emit.ada.statements import Case, IfStatement, Loop, Stmt
+from ravenchart.gen.emit.ada.statements import NULL, Case, IfStatement, Loop, Stmt
 
 Step = int | str
 """A position in a tuple, or a field of a node."""
@@ -75,6 +75,17 @@ def exchanged(one: Spot[object], other: Spot[object]) -> tuple[Put, ...]:
     return Put(one.path, other.node), Put(other.path, one.node)
 
 
+class Together(tuple[object, ...]):
+    """Nodes that stand where one stood."""
+
+    __slots__ = ()
+
+
+def moved_behind(one: Spot[object], other: Spot[object]) -> tuple[Put, ...]:
+    """The first of two statements behind the second; what stands between them stays."""
+    return Put(one.path, NULL), Put(other.path, Together((other.node, one.node)))
+
+
 def written(node: T, puts: Sequence[Put]) -> T:
     """The node with others in these places, which are not in each other."""
     changed: Any = node
@@ -89,7 +100,9 @@ def written(node: T, puts: Sequence[Put]) -> T:
 def _with(node: Any, step: Step, puts: Sequence[Put]) -> object:
     if isinstance(step, str):
         return replace(node, **{step: written(getattr(node, step), puts)})
-    parts = [*node[:step], written(node[step], puts), *node[step + 1 :]]
+    made = written(node[step], puts)
+    here = made if isinstance(made, Together) else (made,)
+    parts = [*node[:step], *here, *node[step + 1 :]]
     return tuple(parts) if type(node) is tuple else type(node)(*parts)
 
 

@@ -33,12 +33,14 @@ from tests.mutation.catalogue import KINDS, mutants_of
 from tests.mutation.firing_rules import NOTE
 from tests.mutation.mutants import Mutant, Units, sampled
 from tests.mutation.nodes import (
+    Spot,
     bodies,
     body_of,
     conjuncts,
     exchanged,
     following,
     lists_in,
+    moved_behind,
     put,
     statements,
     whole,
@@ -98,6 +100,12 @@ def test_each_node_has_a_place_at_which_another_can_stand() -> None:
     assert _inner(changed, "Fire") is _inner(UNIT, "Fire")
     assert written(changed, (*put(first.at(1), T1), *put(second.at(1), T2))) == UNIT
     assert written(UNIT, ()) is UNIT
+
+
+def test_what_moves_behind_another_passes_what_stands_between() -> None:
+    row: tuple[object, ...] = (do("Set"), do("Claim"), do("Enter"))
+    places = [Spot((place,), one) for place, one in enumerate(row)]
+    assert written(row, moved_behind(places[0], places[2])) == (NULL, row[1], row[2], row[0])
 
 
 def _inner(unit: Unit, name: str) -> Any:
