@@ -44,7 +44,7 @@ class BusEnd:
         return told
 
 
-def opened(interface: BusEnd, *, echo: bool = False) -> can.BusABC:
+def opened_bus(interface: BusEnd, *, echo: bool = False) -> can.BusABC:
     """One bus object, which receives its own frames with ``echo``; BenchError when there is none.
 
     Drivers raise what they like.
@@ -71,6 +71,6 @@ def fault_text(fault: BaseException) -> str:
 
 def joined_peer(interface: BusEnd, codec: Codec, record: OnFrame = unrecorded) -> Peer:
     """A peer at that end of a bus; BenchError when there is none."""
-    bus = opened(interface)
+    bus = opened_bus(interface)
     link = link_of(bus) if interface.name == "slcan" and "socket://" in interface.channel else None
     return Peer(bus, codec, link, record, gone=str(interface))

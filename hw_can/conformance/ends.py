@@ -109,7 +109,7 @@ def open_ends(setup: Setup, patience: float = PATIENCE) -> Ends:
 
 def opened(interface: str, channel: str, setup: Setup, *, echo: bool = False) -> can.BusABC:
     """One bus object; BenchError when that is impossible."""
-    return interfaces.opened(BusEnd(interface, channel, setup.bitrate, fd=setup.fd), echo=echo)
+    return interfaces.opened_bus(BusEnd(interface, channel, setup.bitrate, fd=setup.fd), echo=echo)
 
 
 def is_faulty(bus: can.BusABC) -> bool:

@@ -69,12 +69,15 @@ def board(options: argparse.Namespace, found: Checked) -> Board | None:
     return made
 
 
-def add_interface(sub: argparse.ArgumentParser, use: str) -> None:
-    """The end of a bus on which a controller runs already; ``use`` says what is done there."""
+def add_interface(sub: argparse.ArgumentParser, use: str, *, builds: bool = True) -> None:
+    """The end of a bus on which a controller runs already; ``use`` says what is done there.
+
+    ``builds``: without it the command builds and starts something.
+    """
     sub.add_argument(
         "--interface", metavar="NAME",
         help=f"{use} on an interface of python-can, such as socketcan, slcan or ravenchart, at "
-        "the bit rate of the model; nothing is built or started",
+        f"the bit rate of the model{'; nothing is built or started' if builds else ''}",
     )  # fmt: skip
     sub.add_argument(
         "--channel", help="its channel, such as can0, /dev/ttyACM0 or socket://HOST:PORT"

@@ -20,7 +20,8 @@ from rich.segment import Segment
 from ravenchart import terminal
 from ravenchart.building.checking import Checked
 from ravenchart.failures import OK, WRONG, Unusable
-from ravenchart.running import monitor_text, monitoring
+from ravenchart.running import bus_text, monitor_text, monitoring
+from ravenchart.running.bus_watch import WINDOW, BusWatch
 from ravenchart.running.monitoring import WatchedController
 from ravenchart.running.snapshots import VARIABLE
 
@@ -36,6 +37,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
     sub.add_argument("--once", action="store_true", help="show one snapshot, and end")
+    common.add_interface(sub, "watch the bus", builds=False)
     sub.add_argument(
         "--file", action="append", default=[], metavar="[NODE=]FILE",
         help=f"the file that {VARIABLE} named to a controller (default: those of `run`, `shell` "
@@ -46,59 +48,99 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Watch it until it ends; the exit status."""
     checked = common.checked(options, deadlines=False)
+    interface = common.interface(options, checked.system)
     if options.file:
         files = monitoring.given(checked, options.file)
     else:
         files = monitoring.found(checked, lambda text: say(options.answer, text))
-        if not files:
+        if not files and interface is None:
             raise Unusable(
-                f"{monitoring.none_runs(checked)}; start one, or name with --file the file that "
-                f"{VARIABLE} gave it"
+                f"{monitoring.none_runs(checked)}; start one, name with --file the file that "
+                f"{VARIABLE} gave it, or name with --interface its bus"
             )
-    with monitoring.watching(checked, files) as watched, ExitStack() as stack:
+    with ExitStack() as stack:
+        seen = _Seen(
+            checked,
+            stack.enter_context(monitoring.watching(checked, files)),
+            [BusWatch(checked.analysis, interface)] if interface else [],
+        )
+        for bus in seen.buses:
+            stack.callback(bus.close)
         if options.once:
-            options.answer.result = _result(checked, watched)
-            terminal.console().print(_tables(checked, watched))
-            return _status(options, watched)
-        show = _way_to_show(options, checked, watched, stack)
+            if seen.buses:
+                time.sleep(WINDOW)  # until then the load is that of a part of it
+                seen.look()
+            options.answer.result = seen.result()
+            terminal.console().print(seen.tables())
+            return _status(options, seen)
+        show = _way_to_show(options, seen, stack)
         while True:
             show()
-            if all(one.node.process is None for one in watched):
+            if seen.is_over():
                 break
             time.sleep(monitoring.PERIOD)
-            for one in watched:
-                one.look()
+            seen.look()
     if options.json:
         options.answer.write = None  # there was a line for each snapshot
-    return _status(options, watched)
+    return _status(options, seen)
 
 
-def _result(checked: Checked, watched: Sequence[WatchedController]) -> MonitorResult:
-    return MonitorResult(checked.system.name, [one.node for one in watched])
+class _Seen:
+    """The controllers and buses that are watched."""
+
+    def __init__(
+        self,
+        checked: Checked,
+        controllers: Sequence[WatchedController],
+        buses: Sequence[BusWatch],
+    ) -> None:
+        self._name = checked.system.name
+        self.controllers, self.buses = controllers, buses
+        self.on_buses = [bus.look() for bus in buses]
+
+    def look(self) -> None:
+        """Everything as it is now."""
+        for one in self.controllers:
+            one.look()
+        self.on_buses = [bus.look() for bus in self.buses]
+
+    def is_over(self) -> bool:
+        """Will nothing come any more?"""
+        ended = all(one.node.process is None for one in self.controllers)
+        gone = all(bus.gone is not None for bus in self.on_buses)
+        return ended and (gone or bool(self.controllers))
+
+    def result(self) -> MonitorResult:
+        """For programs."""
+        return MonitorResult(self._name, [one.node for one in self.controllers], self.on_buses)
+
+    def tables(self) -> RenderableType:
+        """For a terminal."""
+        nodes = [
+            monitor_text.tables(f"{self._name} on {one.name}", one.node, tuple(one.last), one.age)
+            for one in self.controllers
+        ]
+        return Group(*nodes, *map(bus_text.tables, self.on_buses))
 
 
-def _way_to_show(
-    options: argparse.Namespace,
-    checked: Checked,
-    watched: Sequence[WatchedController],
-    stack: ExitStack,
-) -> Callable[[], None]:
+def _way_to_show(options: argparse.Namespace, seen: _Seen, stack: ExitStack) -> Callable[[], None]:
     """What shows the nodes as they are now: objects or lines for a pipe, tables in a terminal."""
     if options.json:
         write = options.answer.write
 
         def objects() -> None:
-            if any(one.is_new or one.node.process is None for one in watched):
-                write(json.dumps(asdict(_result(checked, watched))) + "\n")
+            news = any(one.is_new or one.node.process is None for one in seen.controllers)
+            if news or not seen.controllers:
+                write(json.dumps(asdict(seen.result())) + "\n")
 
         return objects
     out = terminal.console()
     if not out.is_terminal or out.is_dumb_terminal:
-        return _Lines(watched).show
+        return _Lines(seen).show
     live = stack.enter_context(Live(console=out, auto_refresh=False))
 
     def picture() -> None:
-        live.update(Cropped(_tables(checked, watched)), refresh=True)
+        live.update(Cropped(seen.tables()), refresh=True)
 
     return picture
 
@@ -106,8 +148,8 @@ def _way_to_show(
 class _Lines:
     """Lines of text: events as they come, counts once in a second and at the end."""
 
-    def __init__(self, watched: Sequence[WatchedController]) -> None:
-        self._watched = watched
+    def __init__(self, seen: _Seen) -> None:
+        self._seen = seen
         self._next = 0.0
 
     def show(self) -> None:
@@ -116,10 +158,13 @@ class _Lines:
         due = now >= self._next
         if due:
             self._next = now + SECOND
-        for one in self._watched:
-            name = one.name if len(self._watched) > 1 else ""
+        for one in self._seen.controllers:
+            name = one.name if len(self._seen.controllers) > 1 else ""
             ended = one.node.process is None
             for line in monitor_text.lines(one.node, name, counts=due or ended):
+                print(line)
+        for bus in self._seen.on_buses:
+            for line in bus_text.lines(bus) if due or bus.gone else ():
                 print(line)
         sys.stdout.flush()
 
@@ -142,21 +187,18 @@ class Cropped:
             yield Segment.line()
 
 
-def _tables(checked: Checked, watched: Sequence[WatchedController]) -> RenderableType:
-    return Group(
-        *(
-            monitor_text.tables(
-                f"{checked.system.name} on {one.name}", one.node, tuple(one.last), one.age
-            )
-            for one in watched
-        )
-    )
-
-
-def _status(options: argparse.Namespace, watched: Sequence[WatchedController]) -> int:
-    """WRONG where a controller has ended without its report."""
-    killed = [one for one in watched if one.node.process is None and not one.node.ended]
-    for one in killed:
-        text = f"the controller of {one.name} has ended without its report"
+def _status(options: argparse.Namespace, seen: _Seen) -> int:
+    """WRONG where a controller has ended without its report, or the bus is gone."""
+    wrong = [
+        f"the controller of {one.name} has ended without its report"
+        for one in seen.controllers
+        if one.node.process is None and not one.node.ended
+    ]
+    wrong += [
+        f"nothing comes from {bus.interface} any more: {bus.gone}"
+        for bus in seen.on_buses
+        if bus.gone is not None
+    ]
+    for text in wrong:
         say(options.answer, f"ravenchart: error: {text}")
-    return WRONG if killed else OK
+    return WRONG if wrong else OK

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ravenchart.described import Described, Result
+from ravenchart.running.bus_watch import WatchedBus
 from ravenchart.running.monitored import WatchedNode
 
 
@@ -83,3 +84,5 @@ class MonitorResult(Result):
     """The name of the system."""
     nodes: list[WatchedNode]
     """The controllers that are watched."""
+    buses: list[WatchedBus]
+    """The bus that is watched, with `--interface`; else none."""

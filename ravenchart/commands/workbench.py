@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ravenchart.failures import OK
+from ravenchart.failures import OK, Unusable
 from ravenchart.terminal import progress
 
 from . import common
@@ -23,6 +23,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         help="show a recorded run in place of running controllers: trace.txt; once for each of "
         "several nodes, trace-NODE.txt",
     )  # fmt: skip
+    common.add_interface(sub, "show in Live the bus", builds=False)
     common.add_scheduler(sub)
     sub.add_argument("--no-open", action="store_true", help="print the address, open no browser")
 
@@ -34,11 +35,17 @@ def execute(options: argparse.Namespace) -> int:
     from ravenchart.workbench.server import WorkbenchPages
     from ravenchart.workbench.session import Session
 
+    if (options.interface is None) != (options.channel is None):
+        raise Unusable("--interface and --channel go together")
+    if options.interface is not None and options.replay:
+        raise Unusable("--replay shows a recorded run: leave --interface out")
+    bus = None if options.interface is None else (options.interface, options.channel)
+
     def made() -> WorkbenchPages:
         with progress(f"read and analyse {options.model}"):
             session = Session(options.model)
         if not options.replay:
-            return WorkbenchPages(Hub(session, scheduler=options.scheduler))
+            return WorkbenchPages(Hub(session, bus=bus, scheduler=options.scheduler))
         with progress("read the trace"):
             return WorkbenchPages(Hub(session, ReplayView(options.model, options.replay)))
 

@@ -16,6 +16,7 @@ from ravenchart.editing.evaluation import Evaluation
 from . import pictures
 from .aside import Aside
 from .changes import ChangeRefusedError
+from .live import LiveView
 from .publishing import Publisher
 from .replay import ReplayView
 from .requests import (
@@ -50,15 +51,22 @@ class Hub(Publisher):
     """Publishes a session, looks at its files; processes aside find advice and tables."""
 
     def __init__(
-        self, session: Session, replay: ReplayView | None = None, *, scheduler: str | None = None
+        self,
+        session: Session,
+        replay: ReplayView | None = None,
+        *,
+        bus: tuple[str, str] | None = None,
+        scheduler: str | None = None,
     ) -> None:
         """For one session; to be made before the event loop runs.
 
-        ``scheduler``: the address of a Dask scheduler whose workers rank tables.
+        ``bus``: as of `LiveView`, where there is no replay. ``scheduler``: the address of a Dask
+        scheduler whose workers rank tables.
         """
         self._scheduler = scheduler
         self.session = session
         self.replay = replay
+        self.live = LiveView(session.path, bus) if replay is None else replay
         self._room: tuple[int, list[str]] = (-1, [])
         self._search: Search | None = None
         super().__init__(session)
@@ -73,8 +81,10 @@ class Hub(Publisher):
         self._spawn(self._advise(self.session.number))
 
     async def close(self) -> None:
-        """End all pages' streams, and the processes aside."""
+        """End all pages' streams, and the processes aside; leave the bus."""
         await super().close()
+        if isinstance(self.live, LiveView):
+            await asyncio.to_thread(self.live.close)
         self._advice.stop()
         self._growth.stop()
         if self._tables is not None:

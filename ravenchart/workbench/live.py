@@ -1,12 +1,13 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The running controllers of the model, for the page: as `ravenchart monitor` shows them."""
+"""The running controllers of the model and its bus, as `ravenchart monitor` shows them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import ExitStack
+from dataclasses import asdict
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -15,26 +16,31 @@ from ravenchart.building import checking
 from ravenchart.building.checking import Checked
 from ravenchart.failures import Failure
 from ravenchart.running import monitoring
+from ravenchart.running.attaching import interface_of
+from ravenchart.running.bus_watch import BusWatch
 from ravenchart.running.monitoring import WatchedController
 
 from .motion import LastValues, shown_node
 
 
 class LiveView:
-    """What pages see of the controllers; any thread may look."""
+    """What pages see of the controllers and of the bus; any thread may look."""
 
-    def __init__(self, path: Path) -> None:
-        """For the model at ``path``."""
+    def __init__(self, path: Path, bus: tuple[str, str] | None = None) -> None:
+        """For the model at ``path``; ``bus`` is an interface of python-can and its channel."""
         self._path = path
+        self._named = bus
+        self._bus: BusWatch | None = None
+        self._bus_text = ""
         self._lock = Lock()
         self._checked: Checked | None = None
         self._digest: str | None = None
-        self._stack = ExitStack()
+        self._stack, self._on_bus = ExitStack(), ExitStack()
         self._watched: list[WatchedController] = []
         self._values: list[LastValues] = []
 
     def look(self, digest: str | None) -> dict[str, Any]:
-        """The nodes as they are now; ``text`` says why there is none, or no other.
+        """The nodes and the bus as they are now; ``text`` says why there is none, or no other.
 
         ``digest`` is that of the saved model, None where it has errors.
         """
@@ -46,7 +52,19 @@ class LiveView:
                 text = "The saved model has errors: its controllers are not looked for."
             elif all(one.node.process is None for one in self._watched) or digest != self._digest:
                 text = self._attached(digest)
-            return {"text": text, "nodes": list(self._nodes())}
+            buses = [] if self._bus is None else [asdict(self._bus.look())]
+            text = " ".join(part for part in (text, self._bus_text) if part)
+            return {"text": text, "nodes": list(self._nodes()), "buses": buses}
+
+    def close(self) -> None:
+        """Leave controllers and bus."""
+        with self._lock:
+            self._leave()
+
+    def _leave(self) -> None:
+        self._watched, self._values, self._bus = [], [], None
+        self._stack.close()
+        self._on_bus.close()
 
     def _nodes(self) -> Iterator[dict[str, Any]]:
         for one, values in zip(self._watched, self._values, strict=True):
@@ -54,14 +72,27 @@ class LiveView:
             lines = values.look(one.node)
             yield shown_node(self._checked.system, one.node, one.last, lines) | {"age": one.age}
 
+    def _join(self) -> None:
+        """Watch the bus; say why not where that cannot be."""
+        self._bus_text = ""
+        if self._named is None:
+            return
+        assert self._checked is not None
+        try:
+            interface = interface_of(self._checked.system, *self._named)
+            self._bus = BusWatch(self._checked.analysis, interface)
+            self._on_bus.callback(self._bus.close)
+        except Failure as problem:
+            self._bus_text = str(problem).removeprefix("ravenchart: error: ")
+
     def _attached(self, digest: str) -> str:
         """Watch what runs now, in place of what has ended; why there is nothing to watch."""
         try:
             if self._checked is None or digest != self._digest:
                 self._checked, self._digest = None, digest
-                self._watched, self._values = [], []
-                self._stack.close()
+                self._leave()
                 self._checked = checking.check(self._path, deadlines=False)
+                self._join()
             files = monitoring.found(self._checked, lambda text: None)
             if not files:
                 text = monitoring.none_runs(self._checked)

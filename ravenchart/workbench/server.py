@@ -13,9 +13,7 @@ from starlette.routing import Route
 
 from . import requests
 from .hub import Hub
-from .live import LiveView
 from .pages import Pages, refusal
-from .replay import ReplayView
 from .view import source_text
 
 
@@ -28,7 +26,6 @@ class WorkbenchPages(Pages):
         """For one session."""
         super().__init__(hub)
         self.hub = hub
-        self.live_view: LiveView | ReplayView = hub.replay or LiveView(hub.session.path)
 
     def read(self, body: bytes) -> requests.PageRequest:
         """The message of a request, or `MalformedError`."""
@@ -46,7 +43,7 @@ class WorkbenchPages(Pages):
     async def live(self, request: Request) -> Response:
         """The controllers of the saved model that run now, or those of the replay."""
         digest = await self.hub.ask(lambda session: session.saved_digest)
-        return JSONResponse(await asyncio.to_thread(self.live_view.look, digest))
+        return JSONResponse(await asyncio.to_thread(self.hub.live.look, digest))
 
     async def diff(self, request: Request) -> Response:
         """What a save would change."""

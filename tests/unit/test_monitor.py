@@ -263,7 +263,7 @@ def test_an_object_of_a_stream_is_the_result_of_one_snapshot(analysis: Analysis)
     from ravenchart.commands.run_results import MonitorResult
 
     node = seen(NodeMonitor(analysis, "board"), *processors(40))
-    text = json.dumps(asdict(MonitorResult("Infusion_System", [node])))
+    text = json.dumps(asdict(MonitorResult("Infusion_System", [node], [])))
     assert json.loads(text)["nodes"][0]["now"] == 2_000_000_000
 
 

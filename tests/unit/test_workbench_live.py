@@ -86,6 +86,7 @@ def test_the_controllers_of_a_model_with_errors_are_not_looked_for(model: Path) 
     found = LiveView(model).look(None)
     assert found == {
         "text": "The saved model has errors: its controllers are not looked for.", "nodes": [],
+        "buses": [],
     }  # fmt: skip
 
 

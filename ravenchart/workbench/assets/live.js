@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Ravenchart contributors
 // SPDX-License-Identifier: Apache-2.0
 
-// The running controllers, as `ravenchart monitor` shows them, or those of a replay: ten times a second
+// The running controllers and the bus, as `ravenchart monitor` shows them, or those of a replay: ten times a second
 // while this tab is open.
 
 import { html, useEffect, useRef, useState } from "./preact.js";
@@ -36,7 +36,7 @@ export function Live() {
         const charts = live.nodes.flatMap((node) => node.drawn);
         if (JSON.stringify(charts) !== shown) setRunning(charts);
         shown = JSON.stringify(charts);
-        if (live.replay ? live.replay.playing : live.nodes.some((node) => node.process !== null)) pause = PERIOD;
+        if (live.replay ? live.replay.playing : live.nodes.some((node) => node.process !== null) || live.buses.length) pause = PERIOD;
       } catch (error) {
         if (wanted) setProblem(error.message);
       }
@@ -49,7 +49,21 @@ export function Live() {
   if (!found) return html`<p role="status">Running controllers are being looked for …</p>`;
   return html`${found.replay && html`<${Player} of=${found.replay} nodes=${found.nodes.length} look=${() => look.current()} />`}
     ${found.text && html`<p>${found.text}</p>`}
-    ${found.nodes.map((node) => html`<${Node} key=${node.node} of=${node} replay=${found.replay} nodes=${found.nodes.length} />`)}`;
+    ${found.nodes.map((node) => html`<${Node} key=${node.node} of=${node} replay=${found.replay} nodes=${found.nodes.length} />`)}
+    ${(found.buses ?? []).map((bus) => html`<${Bus} key=${bus.bus} of=${bus} />`)}`;
+}
+
+/** A bus: its load beside that of the analysis, and its messages with their last values. */
+function Bus({ of }) {
+  const faults = [["unknown", of.unknown], ["malformed", of.malformed], ["error frames", of.errors]].filter(([, count]) => count);
+  return html`<section class="live" aria-label="Bus ${of.bus}">
+    <h3>${of.bus}: ${of.interface}, ${seconds(of.now)} s ${of.gone && html`<span class="error">gone: ${of.gone}</span>`}</h3>
+    <p class=${of.bound !== null && of.load > of.bound ? "error" : ""}>load of the last second: at most ${percent(of.load)}; in the analysis: ${of.bound === null ? "-" : percent(of.bound)};
+      frames: ${of.frames}${faults.map(([what, count]) => `, ${what} ${count}`).join("")}</p>
+    <${Table} names=${["message", "identifier", "frames>", "last>", "shortest>", "period>", "last values"]} rows=${of.messages.map((one) => [
+      one.name, one.identifier, one.frames, one.last === null ? "-" : `${((of.now - one.last) / 1e9).toFixed(1)} s ago`,
+      one.shortest === null ? "-" : time(one.shortest), one.period === null ? "-" : time(one.period),
+      Object.entries(one.fields).map(([name, value]) => `${name} ${value} ${one.units[name] ?? ""}`.trim()).join(", ")])} /></section>`;
 }
 
 function Node({ of, replay, nodes }) {
@@ -124,5 +138,6 @@ function Table({ names, rows }) {
       key=${index} class=${side(index)}>${cell}</td>`)}</tr>`)}</tbody></table>`;
 }
 
+const percent = (share) => `${(100 * share).toFixed(1)} %`;
 const any = (found) => Object.keys(found).length > 0;
 const counts = (found) => Object.entries(found).map(([what, number]) => `${what} ${number}`).join(", ") || "none";

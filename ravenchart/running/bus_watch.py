@@ -1,0 +1,233 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A bus while controllers use it: its load, and its messages with their last values.
+
+Who watches sends nothing: it is one more node that only receives. An adapter that takes part
+in the bus still acknowledges frames, unless its driver was told to listen only.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+import can
+
+from ravenchart.analysis.core.frames import FD_SIZES, classic_bits, fd_bits
+from ravenchart.analysis.system.timing import Analysis
+from ravenchart.described import Described
+from ravenchart.failures import Unusable
+from ravenchart.gen.model.buses import Bus
+from ravenchart.hw_can.bench.interfaces import BusEnd, fault_text, opened_bus
+from ravenchart.hw_can.bench.peer import BenchError, MalformedFrameError, Value
+
+from .vocabulary import BusVocabulary
+
+WINDOW = 1.0
+"""Over so many seconds the load is counted."""
+
+SECOND = 10**9
+"""In ns."""
+
+WAIT = 0.05
+"""Seconds after which the thread sees that it is to end."""
+
+
+@dataclass(slots=True)
+class WatchedMessage(Described):
+    """A message of the bus, from the begin of the watch."""
+
+    name: str
+    """Its name."""
+    identifier: str
+    """Its identifier, hexadecimal; with 8 digits where it is extended."""
+    frames: int
+    """How many frames came."""
+    last: int | None
+    """When the last one came, in ns; null before the first."""
+    shortest: int | None
+    """The shortest time between two frames, in ns; null before the second."""
+    period: int | None
+    """The least time between two by the model, in ns; null where it says nothing."""
+    fields: dict[str, Value]
+    """The values of the last frame, by the names of the model."""
+    units: dict[str, str]
+    """The units of those fields that have one."""
+
+
+@dataclass(slots=True)
+class WatchedBus(Described):
+    """A bus. Times count from the begin of the watch."""
+
+    bus: str
+    """Its name in the model."""
+    interface: str
+    """Interface and channel of python-can."""
+    now: int
+    """The time, in ns."""
+    load: float
+    """The share of the last second that its frames took: each counts with its most stuff bits."""
+    bound: float | None
+    """The most that it can be by the analysis; null where a message has no bound."""
+    frames: int
+    """How many frames came."""
+    unknown: int
+    """Those of them that are no message of the model."""
+    malformed: int
+    """Those whose data are no value of their message."""
+    errors: int
+    """How many error frames the interface has reported."""
+    messages: list[WatchedMessage]
+    """In the order of the model."""
+    gone: str | None
+    """Why nothing comes any more; null while the interface works."""
+
+
+@dataclass(slots=True)
+class _Seen:
+    """What is known of a message."""
+
+    frames: int = 0
+    last: float | None = None
+    stamp: float = 0.0
+    """The time of the last frame, by the clock of the interface."""
+    shortest: float | None = None
+    fields: Mapping[str, Value] = field(default_factory=dict)
+
+
+class BusWatch:
+    """Takes the frames of a bus in a thread of its own; anybody may look."""
+
+    def __init__(self, analysis: Analysis, interface: BusEnd) -> None:
+        """The first bus of the model, at that interface; Unusable where there is none."""
+        self._words = BusVocabulary.of(analysis.system)
+        self._interface = interface
+        self._bound = most_in_a_second(analysis, self._words.bus)
+        self._seen = {name: _Seen() for name in self._words.messages}
+        self._frames = self._unknown = self._malformed = self._errors = 0
+        self._gone: str | None = None
+        self._taken: deque[tuple[float, int]] = deque()
+        self._lock = threading.Lock()
+        self._ends = threading.Event()
+        try:
+            self._can = opened_bus(interface)
+        except BenchError as fault:
+            raise Unusable(f"ravenchart: error: {fault}") from None
+        self._begin = time.monotonic()
+        self._thread = threading.Thread(target=self._receive, daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Leave the bus."""
+        self._ends.set()
+        self._thread.join()
+        with suppress(can.CanError, OSError):
+            self._can.shutdown()
+
+    def look(self) -> WatchedBus:
+        """The bus as it is now."""
+        with self._lock:
+            now = time.monotonic()
+            self._forget(now)
+            span = min(WINDOW, max(now - self._begin, WAIT))
+            return WatchedBus(
+                bus=self._words.bus.name,
+                interface=str(self._interface),
+                now=self._since(now),
+                load=sum(length for _, length in self._taken) / (span * SECOND),
+                bound=self._bound,
+                frames=self._frames,
+                unknown=self._unknown,
+                malformed=self._malformed,
+                errors=self._errors,
+                messages=[self._message(name, one) for name, one in self._seen.items()],
+                gone=self._gone,
+            )
+
+    def _message(self, name: str, seen: _Seen) -> WatchedMessage:
+        known = {message.name: message for message in self._words.system.messages}
+        message, dbc = known.get(name), self._words.messages[name]
+        signals = self._words.fields(name)
+        return WatchedMessage(
+            name=name,
+            identifier=f"0x{dbc.frame_id:0{8 if dbc.is_extended_frame else 3}X}",
+            frames=seen.frames,
+            last=None if seen.last is None else self._since(seen.last),
+            shortest=None if seen.shortest is None else round(seen.shortest * SECOND),
+            period=None if message is None else message.period or None,
+            fields=dict(seen.fields),
+            units={one: s.unit for one, s in signals.items() if s.unit and one in seen.fields},
+        )
+
+    def _since(self, instant: float) -> int:
+        return round((instant - self._begin) * SECOND)
+
+    def _forget(self, now: float) -> None:
+        while self._taken and self._taken[0][0] < now - WINDOW:
+            self._taken.popleft()
+
+    def _receive(self) -> None:
+        try:
+            while not self._ends.is_set():
+                frame = self._can.recv(timeout=WAIT)
+                if frame is not None:
+                    with self._lock:
+                        self._take(frame, time.monotonic())
+        except Exception as fault:  # drivers raise what they like
+            with self._lock:
+                self._gone = fault_text(fault)
+
+    def _take(self, frame: can.Message, now: float) -> None:
+        if frame.is_error_frame:
+            self._errors += 1
+            return
+        self._frames += 1
+        self._taken.append((now, duration(frame, self._words.bus)))
+        self._forget(now)
+        try:
+            found = self._words.codec.decode(frame)
+        except MalformedFrameError:
+            self._malformed += 1
+            return
+        if found is None or found[0] not in self._seen:
+            self._unknown += 1
+            return
+        name, values = found
+        seen, signals = self._seen[name], self._words.fields(name)
+        stamp = frame.timestamp or now
+        if seen.frames and seen.stamp <= stamp:
+            gap = stamp - seen.stamp
+            seen.shortest = gap if seen.shortest is None else min(gap, seen.shortest)
+        seen.frames, seen.last, seen.stamp = seen.frames + 1, now, stamp
+        seen.fields = {one: value for one, value in values.items() if one in signals}
+
+
+def most_in_a_second(analysis: Analysis, bus: Bus) -> float | None:
+    """The largest share of any second that frames of the model take; errors are not counted.
+
+    A frame goes over the bus at most its bound after its event, so as many of one message fall
+    into a second as events into a second and that time. None where one has no bound.
+    """
+    taken = 0
+    for found in analysis.frames(bus):
+        if found.bound is None:
+            return None
+        frame = found.frame
+        taken += -(-(SECOND + found.bound) // frame.period) * frame.cost
+    return taken / SECOND
+
+
+def duration(frame: can.Message, bus: Bus) -> int:
+    """The longest that a frame takes on the bus, in ns: with the most stuff bits."""
+    if not frame.is_fd:
+        length = 0 if frame.is_remote_frame else min(frame.dlc, 8)
+        return classic_bits(length, extended=frame.is_extended_id).time(bus.bit_rate)
+    length = next(size for size in FD_SIZES if size >= len(frame.data))
+    switched = frame.bitrate_switch and bool(bus.data_rate)
+    bits = fd_bits(length, extended=frame.is_extended_id, switched=switched)
+    return bits.time(bus.bit_rate, bus.data_rate or 0)
