@@ -13,9 +13,13 @@ import pytest
 from playwright.sync_api import expect
 
 from ravenchart.building import checking, generation, programs
+from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.paths import ROOT
 from ravenchart.running.process import ControllerProcess
+from ravenchart.running.vocabulary import BusVocabulary
 from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
+from tests.support.bus_server import BusServer
+from tests.support.far_end import FarEnd
 from tests.support.recorded import FOLDER
 from tests.support.workbench import running
 
@@ -75,3 +79,26 @@ def test_recorded_values_move_in_the_live_tab(tmp_path: Path) -> None:
             ended = process.stop(0.0)
         assert ended.exit_code == 0, ended.warnings
         pane.closed(bench.address)
+
+
+def test_a_bus_is_shown_with_its_load_and_the_last_values() -> None:
+    """The bus of a board: no controller of the model runs on this machine."""
+    server = BusServer()
+    words = BusVocabulary.of(checking.check(PUMP, deadlines=False).system)
+    board = FarEnd(RavenchartBus(server.channel), words)
+    told = ("--interface", "ravenchart", "--channel", server.channel)
+    with running(PUMP, *told) as bench, launched() as browser:
+        pane = BrowserPage(browser, bench.address)
+        pane.page.get_by_role("tab", name="Live").click()
+        bus = pane.page.get_by_role("region", name="Bus ward")
+        expect(bus).to_contain_text("in the analysis: 3.2 %")
+        for number in range(30):
+            board.say("display", {"given": number, "lamp": "Steady", "buzzer": "False"})
+        row = bus.get_by_role("row", name="display 0x111")
+        expect(row).to_contain_text("given 29 ul, lamp Steady, buzzer False")
+        expect(bus).to_contain_text("frames: 30")
+        assert serious(pane.page) == []
+        server.close()
+        expect(bus).to_contain_text("gone: ")
+        pane.closed(bench.address)
+    board.close()
