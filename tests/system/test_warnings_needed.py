@@ -1,3 +1,6 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
 """Each warning that generated Ada switches off is one that the compiler gives there."""
 
 from __future__ import annotations
