@@ -37,6 +37,9 @@ SECOND = 10**9
 WAIT = 0.05
 """Seconds after which the thread sees that it is to end."""
 
+PATIENCE = 1.0
+"""Seconds after which a driver that does not return is left alone."""
+
 
 @dataclass(slots=True)
 class WatchedMessage(Described):
@@ -125,7 +128,7 @@ class BusWatch:
     def close(self) -> None:
         """Leave the bus."""
         self._ends.set()
-        self._thread.join()
+        self._thread.join(PATIENCE)
         with suppress(can.CanError, OSError):
             self._can.shutdown()
 
