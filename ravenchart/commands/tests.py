@@ -176,7 +176,7 @@ def _covered(checked: Checked, cases: list[FoundCase], file: Path) -> list[Sourc
         executed, taken = sum(one.executed() for one in some), sum(one.taken() for one in some)
         for what, reached, all_ in (("lines", executed, lines), ("branches", taken, branches)):
             if all_:
-                print(f"{f'{what} of {origin.value} bodies':<38} {reached:>4} of {all_}")
+                print(f"{f'{what} of {origin.value} sources':<38} {reached:>4} of {all_}")
     for one in found:
         if one.left():
             print(f"{one.path}: not executed: {coverage.number_ranges(one.left())}")

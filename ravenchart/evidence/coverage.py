@@ -9,7 +9,7 @@ A count is believed only of the text that stands there today.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 from ravenchart.gen.emit.ada.naming import region_package
 from ravenchart.gen.emit.program import simulation, source_folders
@@ -29,39 +29,50 @@ def coverage(facts: Facts) -> Iterator[Claim]:
     texts = simulation(system)
     for component in system.components:
         for region in component.regions:
-            file = f"{region_package(system, component, region).file_stem}.adb"
+            stem = region_package(system, component, region).file_stem
             name = f"{component.name}.{region.name}"
-            text = texts[file].encode("utf-8")
-            yield _claim(facts, f"coverage-{name}", (name,), file, text, counted.get(file))
+            files = [f"{stem}.adb", f"{stem}.ads"]
+            given = [(file, texts[file].encode("utf-8")) for file in files]
+            yield _claim(facts, f"coverage-{name}", (name,), given, counted)
     for place in source_folders(system):
         for path in sorted((facts.checked.folder / place).glob("*.adb")):
             id_ = f"coverage-{path.stem}"
-            yield _claim(facts, id_, (), path.name, path.read_bytes(), counted.get(path.name))
+            yield _claim(facts, id_, (), [(path.name, path.read_bytes())], counted)
 
 
 def _claim(
     facts: Facts,
     id_: str,
     elements: tuple[str, ...],
-    file: str,
-    text: bytes,
-    body: CountedBody | None,
+    given: Sequence[tuple[str, bytes]],
+    counted: Mapping[str, CountedBody],
 ) -> Claim:
-    version = hashlib.sha256(text).hexdigest()
-    wrong, left = _problems(file, version, body)
+    versions = {file: hashlib.sha256(text).hexdigest() for file, text in given}
+    wrong: list[str] = []
+    left: list[str] = []
+    for file, version in versions.items():
+        problems = _problems(file, version, counted.get(file))
+        wrong += problems[0]
+        left += problems[1]
     verdict = Shown.NOT_MET if wrong else Shown.PARTLY if left else Shown.MET
     counts = ""
-    if body is not None:
-        lines = sum(count > 0 for count in body.lines.values())
-        taken = sum(count > 0 for _, count in body.branches)
-        counts = f": lines {lines} of {len(body.lines)}, branches {taken} of {len(body.branches)}"
+    if bodies := [counted[file] for file in versions if file in counted]:
+        lines = [count for body in bodies for count in body.lines.values()]
+        branches = [count for body in bodies for _, count in body.branches]
+        counts = f": lines {_executed(lines)}, branches {_executed(branches)}"
+    files = " and ".join(versions)
     return Claim(
         id_, ClaimKind.COVERAGE, elements or (facts.checked.system.name,),
-        f"Test cases execute every line with code of {file} and take every branch",
+        f"Test cases execute every line with code of {files} and take every branch",
         f"executions in virtual time, as {GCOV} counts them without checks and contracts{counts}. "
-        "Where a body is generated, it is that of the simulation: with a note at each behaviour.",
-        "test", GCOV, verdict, (*wrong, *left), (*facts.sources, (file, version)),
+        "Of a spec the functions count that a body calls. Where a body is generated, it is that of "
+        "the simulation: with a note at each behaviour.",
+        "test", GCOV, verdict, (*wrong, *left), (*facts.sources, *versions.items()),
     )  # fmt: skip
+
+
+def _executed(counts: Sequence[int]) -> str:
+    return f"{sum(count > 0 for count in counts)} of {len(counts)}"
 
 
 def _problems(

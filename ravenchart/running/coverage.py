@@ -4,25 +4,32 @@
 """What runs of the program in virtual time execute of its sources, as gcov counts it.
 
 The program is compiled without optimisation, without checks and without contracts, so that what
-is counted is what the release executes. Only bodies are counted: the specs hold the declared form
-of charts, which contracts compare with and no statement calls.
+is counted is what the release executes. A function of a spec counts once it was called: the
+declared form of a chart has functions that the body executes, such as `Enabled` and `Target`, and
+others that only contracts name. A body that should call one and does not has a line that was not
+executed.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
 
 GCOV = "gcov"
 """The tool that reads the counts; it belongs to the compiler."""
+
+_ELABORATION = "___elabs"
+"""How the name of what elaborates a spec ends."""
 
 _NO_CONTRACTS = "pragma Assertion_Policy (Ignore);\n"
 
@@ -37,7 +44,7 @@ class SourceOwner(Enum):
 
 @dataclass(slots=True)
 class SourceCoverage:
-    """How often the lines and branches of a body were executed."""
+    """How often the lines and branches of a body or spec were executed."""
 
     path: Path
     origin: SourceOwner
@@ -75,7 +82,7 @@ def forget(home: Path) -> None:
 
 
 def measured(home: Path, user: Sequence[Path]) -> list[SourceCoverage]:
-    """What all runs since `forget` executed of the bodies; ``user``: the user's folders.
+    """What all runs since `forget` executed of the sources; ``user``: the user's folders.
 
     ToolMissing without gcov, ToolFailed where it cannot read what the compiler left.
     """
@@ -91,7 +98,7 @@ def measured(home: Path, user: Sequence[Path]) -> list[SourceCoverage]:
 
 
 def read(said: str, places: Mapping[Path, SourceOwner]) -> list[SourceCoverage]:
-    """What gcov says of the bodies in some folders, in order of place and name.
+    """What gcov says of the sources in some folders, in order of place and name.
 
     A line of a generic counts for all of its instances together.
     """
@@ -100,18 +107,41 @@ def read(said: str, places: Mapping[Path, SourceOwner]) -> list[SourceCoverage]:
         for one in json.loads(line)["files"]:
             path = Path(one["file"])
             origin = places.get(path.parent)
-            if origin is None or path.suffix != ".adb" or path.stem.endswith("_simulation"):
+            if origin is None or path.stem.endswith("_simulation"):
                 continue
+            idle = _uncalled(one) if path.suffix == ".ads" else lambda number: False
             coverage = found.setdefault(path, SourceCoverage(path, origin))
             for entry in one["lines"]:
                 number = entry["line_number"]
+                if idle(number):
+                    continue
                 coverage.lines[number] = coverage.lines.get(number, 0) + entry["count"]
                 kept = (branch for branch in entry["branches"] if not branch["throw"])
                 for index, branch in enumerate(kept):
                     key = number, index
                     coverage.branches[key] = coverage.branches.get(key, 0) + branch["count"]
     order = list(SourceOwner)
-    return sorted(found.values(), key=lambda one: (order.index(one.origin), one.path.name))
+    named = [one for one in found.values() if one.lines or one.path.suffix == ".adb"]
+    return sorted(named, key=lambda one: (order.index(one.origin), one.path.name))
+
+
+def _uncalled(file: Mapping[str, Any]) -> Callable[[int], bool]:
+    """Is a line of a spec in a function that nothing calls?
+
+    Of an expression function gcov knows the first line alone: it goes on to that of the next one.
+    """
+    calls: dict[int, int] = {}
+    for one in file["functions"]:
+        if not one["name"].endswith(_ELABORATION):
+            start = one["start_line"]
+            calls[start] = calls.get(start, 0) + one["execution_count"]
+    starts = sorted(calls)
+
+    def idle(line: int) -> bool:
+        place = bisect_right(starts, line)
+        return place > 0 and not calls[starts[place - 1]]
+
+    return idle
 
 
 def tracefile(coverage: Sequence[SourceCoverage]) -> str:

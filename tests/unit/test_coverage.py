@@ -22,7 +22,8 @@ def _line(number: int, count: int, *branches: int, throw: bool = False) -> dict[
 
 def _said(*files: tuple[Path, list[dict[str, object]]]) -> str:
     return "".join(
-        json.dumps({"files": [{"file": str(path), "lines": lines}]}) + "\n" for path, lines in files
+        json.dumps({"files": [{"file": str(path), "functions": [], "lines": lines}]}) + "\n"
+        for path, lines in files
     )
 
 
@@ -43,8 +44,24 @@ def test_instances_of_a_generic_and_several_objects_count_together() -> None:
     assert body.lines == {5: 7, 6: 0} and body.branches == {(5, 0): 3, (5, 1): 1}
 
 
-def test_specs_other_places_and_the_main_program_of_the_simulation_do_not_count() -> None:
-    names = [GENERATED / "a.ads", Path("/elsewhere/a.adb"), GENERATED / "system_simulation.adb"]
+def test_of_a_spec_the_functions_count_that_were_called() -> None:
+    functions = [
+        {"name": "a___elabs", "start_line": 1, "execution_count": 3},
+        {"name": "a__only_contracts_name_it", "start_line": 10, "execution_count": 0},
+        {"name": "a__enabled", "start_line": 20, "execution_count": 5},
+        {"name": "a__last", "start_line": 30, "execution_count": 0},
+    ]
+    lines = [_line(number, 0 if number == 22 else 5, 1, 0) for number in (5, 10, 12, 20, 22, 30)]
+    spec = {"file": str(GENERATED / "a.ads"), "functions": functions, "lines": lines}
+    (found,) = read(json.dumps({"files": [spec]}), PLACES)
+    assert (sorted(found.lines), found.left()) == ([5, 20, 22], [22])
+    assert len(found.branches) == 6
+    body = spec | {"file": str(GENERATED / "a.adb")}
+    assert len(read(json.dumps({"files": [body]}), PLACES)[0].lines) == 6
+
+
+def test_other_places_and_the_main_program_of_the_simulation_do_not_count() -> None:
+    names = [Path("/elsewhere/a.adb"), GENERATED / "system_simulation.adb"]
     assert read(_said(*((name, [_line(1, 1)]) for name in names)), PLACES) == []
 
 

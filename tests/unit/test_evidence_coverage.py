@@ -16,16 +16,18 @@ from ravenchart.failures import Refused
 from ravenchart.gen.emit.program import simulation
 from tests.support.evidence import verdicts
 
+SPEC = "valve_house-valve-motion.ads"
 CHART, OWN = "valve_house-valve-motion.adb", "valve_house-valve-activities.adb"
 EVERY = "DA:3,1\nDA:4,2\nBRDA:3,0,0,1\nBRDA:3,0,1,2\n"
 
 
-def _tracefile(home: Path, chart: str = EVERY, own: str = EVERY) -> Path:
-    """Counts of both bodies as they are."""
-    text = simulation(checking.check(home / "model.yaml").system)[CHART].encode()
+def _tracefile(home: Path, chart: str = EVERY, own: str = EVERY, spec: str = EVERY) -> Path:
+    """Counts of both bodies and of the spec of the chart as they are."""
+    texts = simulation(checking.check(home / "model.yaml").system)
     body = (home / "user" / OWN).read_bytes()
+    rows = ((CHART, texts[CHART].encode(), chart), (OWN, body, own))
     lines = ""
-    for name, content, counts in ((CHART, text, chart), (OWN, body, own)):
+    for name, content, counts in (*rows, (SPEC, texts[SPEC].encode(), spec)):
         version = hashlib.sha256(content).hexdigest()
         lines += f"TN:\nSF:/elsewhere/{name}\nVER:{version}\n{counts}end_of_record\n"
     file = home / "cases.info"
@@ -55,6 +57,11 @@ def test_what_is_left_is_named_by_line(home: Path) -> None:
     verdict, reasons = _claims(home, _tracefile(home, chart=left))["coverage-Valve.Motion"]
     assert verdict == "partly"
     assert reasons == (f"{CHART}: not executed: 4-5", f"{CHART}: a branch is not taken: 3")
+    guards = _tracefile(home, spec=left)
+    assert _claims(home, guards)["coverage-Valve.Motion"] == (
+        "partly",
+        (f"{SPEC}: not executed: 4-5", f"{SPEC}: a branch is not taken: 3"),
+    )
 
 
 def test_counts_of_another_text_show_nothing(home: Path) -> None:
@@ -75,7 +82,7 @@ def test_counts_of_an_unknown_text_and_none_at_all_show_nothing(home: Path) -> N
     file.write_text("TN:\nSF:other.adb\nend_of_record\n")
     assert _claims(home, file)["coverage-Valve.Motion"] == (
         "not met",
-        (f"the tracefile has no counts of {CHART}",),
+        (f"the tracefile has no counts of {CHART}", f"the tracefile has no counts of {SPEC}"),
     )
 
 
