@@ -56,7 +56,7 @@ def execute(options: argparse.Namespace) -> int:
         if not files and interface is None:
             raise Unusable(
                 f"{monitoring.none_runs(checked)}; start one, name with --file the file that "
-                f"{VARIABLE} gave it, or name with --interface its bus"
+                f"{VARIABLE} gave it, or name its bus with --interface and --channel"
             )
     with ExitStack() as stack:
         seen = _Seen(
@@ -151,6 +151,7 @@ class _Lines:
     def __init__(self, seen: _Seen) -> None:
         self._seen = seen
         self._next = 0.0
+        self._gone: set[str] = set()
 
     def show(self) -> None:
         """Print what is new."""
@@ -164,7 +165,10 @@ class _Lines:
             for line in monitor_text.lines(one.node, name, counts=due or ended):
                 print(line)
         for bus in self._seen.on_buses:
-            for line in bus_text.lines(bus) if due or bus.gone else ():
+            goes = bus.gone is not None and bus.bus not in self._gone
+            if goes:
+                self._gone.add(bus.bus)
+            for line in bus_text.lines(bus) if due or goes else ():
                 print(line)
         sys.stdout.flush()
 

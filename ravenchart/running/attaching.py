@@ -17,7 +17,7 @@ from .vocabulary import BusVocabulary
 def spoken_bus(system: System) -> Bus:
     """The bus on which a controller is spoken to; Unusable without one."""
     if not system.buses:
-        raise Unusable(f"{system.name} has no bus, so nothing can be said to it")
+        raise Unusable(f"{system.name} has no bus")
     return system.buses[0]
 
 

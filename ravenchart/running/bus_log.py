@@ -67,7 +67,7 @@ def _opened(path: Path) -> MessageWriter:
     except OSError:
         raise
     except Exception as fault:  # of a format whose package is missing, for example
-        raise Unusable(f"ravenchart: error: {path} cannot be written: {fault}") from None
+        raise Unusable(f"{path} cannot be written: {fault}") from None
 
 
 def _copy(read: Callable[[int], bytes], logger: can.Listener) -> None:

@@ -3,7 +3,7 @@
 
 """A bus while controllers use it: its load, and its messages with their last values.
 
-Who watches sends nothing: it is one more node that only receives. An adapter that takes part
+The watch sends nothing: it is one more node, which only receives. An adapter that takes part
 in the bus still acknowledges frames, unless its driver was told to listen only.
 """
 
@@ -43,7 +43,7 @@ PATIENCE = 1.0
 
 @dataclass(slots=True)
 class WatchedMessage(Described):
-    """A message of the bus, from the begin of the watch."""
+    """A message of the bus, since the watch started."""
 
     name: str
     """Its name."""
@@ -56,7 +56,8 @@ class WatchedMessage(Described):
     shortest: int | None
     """The shortest time between two frames, in ns; null before the second."""
     period: int | None
-    """The least time between two by the model, in ns; null where it says nothing."""
+    """The least time between two of its events by the model, in ns; null where it says nothing.
+    Frames may be closer by up to the response-time bound."""
     fields: dict[str, Value]
     """The values of the last frame, by the names of the model."""
     units: dict[str, str]
@@ -65,7 +66,7 @@ class WatchedMessage(Described):
 
 @dataclass(slots=True)
 class WatchedBus(Described):
-    """A bus. Times count from the begin of the watch."""
+    """A bus. Times count from the start of the watch."""
 
     bus: str
     """Its name in the model."""
@@ -74,15 +75,16 @@ class WatchedBus(Described):
     now: int
     """The time, in ns."""
     load: float
-    """The share of the last second that its frames took: each counts with its most stuff bits."""
+    """The share of the last second that its frames took: each counts with its most stuff bits.
+    In the first second it is too low."""
     bound: float | None
     """The most that it can be by the analysis; null where a message has no bound."""
     frames: int
     """How many frames came."""
     unknown: int
-    """Those of them that are no message of the model."""
+    """Frames that are no message of the model."""
     malformed: int
-    """Those whose data are no value of their message."""
+    """Frames whose data are no value of their message."""
     errors: int
     """How many error frames the interface has reported."""
     messages: list[WatchedMessage]
@@ -109,9 +111,12 @@ class BusWatch:
     def __init__(self, analysis: Analysis, interface: BusEnd) -> None:
         """The first bus of the model, at that interface; Unusable where there is none."""
         self._words = BusVocabulary.of(analysis.system)
+        bus = self._words.bus.name
+        self._known = {m.name: m for m in analysis.system.frames if m.bus == bus}
+        self._names = {(m.identifier, m.extended): m.name for m in self._known.values()}
         self._interface = interface
         self._bound = most_in_a_second(analysis, self._words.bus)
-        self._seen = {name: _Seen() for name in self._words.messages}
+        self._seen = {name: _Seen() for name in self._known}
         self._frames = self._unknown = self._malformed = self._errors = 0
         self._gone: str | None = None
         self._taken: deque[tuple[float, int]] = deque()
@@ -120,7 +125,7 @@ class BusWatch:
         try:
             self._can = opened_bus(interface)
         except BenchError as fault:
-            raise Unusable(f"ravenchart: error: {fault}") from None
+            raise Unusable(str(fault)) from None
         self._begin = time.monotonic()
         self._thread = threading.Thread(target=self._receive, daemon=True)
         self._thread.start()
@@ -137,12 +142,11 @@ class BusWatch:
         with self._lock:
             now = time.monotonic()
             self._forget(now)
-            span = min(WINDOW, max(now - self._begin, WAIT))
             return WatchedBus(
                 bus=self._words.bus.name,
                 interface=str(self._interface),
                 now=self._since(now),
-                load=sum(length for _, length in self._taken) / (span * SECOND),
+                load=sum(length for _, length in self._taken) / (WINDOW * SECOND),
                 bound=self._bound,
                 frames=self._frames,
                 unknown=self._unknown,
@@ -153,16 +157,15 @@ class BusWatch:
             )
 
     def _message(self, name: str, seen: _Seen) -> WatchedMessage:
-        known = {message.name: message for message in self._words.system.messages}
-        message, dbc = known.get(name), self._words.messages[name]
-        signals = self._words.fields(name)
+        message = self._known[name]
+        signals = self._words.fields(name) if name in self._words.messages else {}
         return WatchedMessage(
             name=name,
-            identifier=f"0x{dbc.frame_id:0{8 if dbc.is_extended_frame else 3}X}",
+            identifier=message.shown_identifier,
             frames=seen.frames,
             last=None if seen.last is None else self._since(seen.last),
             shortest=None if seen.shortest is None else round(seen.shortest * SECOND),
-            period=None if message is None else message.period or None,
+            period=message.period or None,
             fields=dict(seen.fields),
             units={one: s.unit for one, s in signals.items() if s.unit and one in seen.fields},
         )
@@ -192,22 +195,37 @@ class BusWatch:
         self._frames += 1
         self._taken.append((now, duration(frame, self._words.bus)))
         self._forget(now)
+        name = self._names.get((frame.arbitration_id, frame.is_extended_id))
+        if name is None:
+            self._unknown += 1
+            return
         try:
-            found = self._words.codec.decode(frame)
+            values = self._values(frame)
         except MalformedFrameError:
             self._malformed += 1
             return
-        if found is None or found[0] not in self._seen:
+        if values is None:
             self._unknown += 1
             return
-        name, values = found
-        seen, signals = self._seen[name], self._words.fields(name)
+        seen = self._seen[name]
         stamp = frame.timestamp or now
         if seen.frames and seen.stamp <= stamp:
             gap = stamp - seen.stamp
             seen.shortest = gap if seen.shortest is None else min(gap, seen.shortest)
         seen.frames, seen.last, seen.stamp = seen.frames + 1, now, stamp
-        seen.fields = {one: value for one, value in values.items() if one in signals}
+        seen.fields = values
+
+    def _values(self, frame: can.Message) -> dict[str, Value] | None:
+        """The fields of a frame of the model; none of one that others send to others.
+
+        None where it is of the other format, classic or FD. MalformedFrameError for bad data.
+        """
+        name = self._names[(frame.arbitration_id, frame.is_extended_id)]
+        if name not in self._words.messages:
+            return {} if frame.is_fd == self._known[name].fd else None
+        found = self._words.codec.decode(frame)
+        signals = self._words.fields(name)
+        return found and {one: value for one, value in found[1].items() if one in signals}
 
 
 def most_in_a_second(analysis: Analysis, bus: Bus) -> float | None:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import asdict
@@ -22,6 +23,9 @@ from ravenchart.running.monitoring import WatchedController
 
 from .motion import LastValues, shown_node
 
+PAUSE = 1.0
+"""Seconds between two attempts to watch a bus, and, beside one, to find controllers."""
+
 
 class LiveView:
     """What pages see of the controllers and of the bus; any thread may look."""
@@ -32,6 +36,8 @@ class LiveView:
         self._named = bus
         self._bus: BusWatch | None = None
         self._bus_text = ""
+        self._next_join = self._next_look = 0.0
+        self._text = ""
         self._lock = Lock()
         self._checked: Checked | None = None
         self._digest: str | None = None
@@ -51,7 +57,8 @@ class LiveView:
             if digest is None:
                 text = "The saved model has errors: its controllers are not looked for."
             elif all(one.node.process is None for one in self._watched) or digest != self._digest:
-                text = self._attached(digest)
+                text = self._found(digest)
+            self._join()
             buses = [] if self._bus is None else [asdict(self._bus.look())]
             text = " ".join(part for part in (text, self._bus_text) if part)
             return {"text": text, "nodes": list(self._nodes()), "buses": buses}
@@ -62,7 +69,8 @@ class LiveView:
             self._leave()
 
     def _leave(self) -> None:
-        self._watched, self._values, self._bus = [], [], None
+        self._watched, self._values = [], []
+        self._bus, self._bus_text, self._next_join = None, "", 0.0
         self._stack.close()
         self._on_bus.close()
 
@@ -73,17 +81,30 @@ class LiveView:
             yield shown_node(self._checked.system, one.node, one.last, lines) | {"age": one.age}
 
     def _join(self) -> None:
-        """Watch the bus; say why not where that cannot be."""
-        self._bus_text = ""
-        if self._named is None:
+        """Watch the bus, or watch it again where it was gone; say why not where that cannot be."""
+        works = self._bus is not None and self._bus.look().gone is None
+        now = time.monotonic()
+        if self._named is None or self._checked is None or works or now < self._next_join:
             return
-        assert self._checked is not None
+        self._next_join = now + PAUSE
         try:
             interface = interface_of(self._checked.system, *self._named)
-            self._bus = BusWatch(self._checked.analysis, interface)
-            self._on_bus.callback(self._bus.close)
+            watch = BusWatch(self._checked.analysis, interface)
         except Failure as problem:
-            self._bus_text = str(problem).removeprefix("ravenchart: error: ")
+            if self._bus is None:
+                self._bus_text = str(problem).removeprefix("ravenchart: error: ")
+            return
+        self._on_bus.close()
+        self._bus, self._bus_text = watch, ""
+        self._on_bus.callback(watch.close)
+
+    def _found(self, digest: str) -> str:
+        """As `_attached`; beside a bus, at which pages look all the time, not more often."""
+        now = time.monotonic()
+        if self._bus is None or digest != self._digest or now >= self._next_look:
+            self._next_look = now + PAUSE
+            self._text = self._attached(digest)
+        return self._text
 
     def _attached(self, digest: str) -> str:
         """Watch what runs now, in place of what has ended; why there is nothing to watch."""
@@ -92,7 +113,6 @@ class LiveView:
                 self._checked, self._digest = None, digest
                 self._leave()
                 self._checked = checking.check(self._path, deadlines=False)
-                self._join()
             files = monitoring.found(self._checked, lambda text: None)
             if not files:
                 text = monitoring.none_runs(self._checked)

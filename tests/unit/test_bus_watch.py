@@ -9,6 +9,7 @@ import json
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import can
 import pytest
@@ -17,6 +18,7 @@ from rich.console import Console
 from ravenchart.analysis.system.network import frame_length
 from ravenchart.building import checking
 from ravenchart.command_line import main
+from ravenchart.commands import monitor
 from ravenchart.failures import OK, UNUSABLE, WRONG, Unusable
 from ravenchart.hw_can.bench.interfaces import BusEnd
 from ravenchart.hw_can.bench.peer import Value
@@ -24,7 +26,9 @@ from ravenchart.paths import ROOT
 from ravenchart.running import bus_text, bus_watch
 from ravenchart.running.bus_watch import BusWatch, WatchedBus, duration, most_in_a_second
 from ravenchart.running.vocabulary import BusVocabulary
+from ravenchart.workbench import live as live_module
 from ravenchart.workbench.live import LiveView
+from tests.support.bus_server import BusServer
 
 PUMP = ROOT / "examples" / "pump" / "model.yaml"
 ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
@@ -116,15 +120,15 @@ def test_a_frame_takes_as_long_as_in_the_analysis(model: Path) -> None:
     assert compared >= 4
 
 
-def test_the_load_is_that_of_the_last_second(
-    watch: BusWatch, sender: can.BusABC, monkeypatch: pytest.MonkeyPatch
+def test_the_load_is_that_of_a_second_and_at_first_too_low(
+    watch: BusWatch, sender: can.BusABC
 ) -> None:
+    """Ten frames at once, as the watch starts, are no share of some milliseconds."""
     frame = WORDS.codec.encode("motor", {"value": 3})
-    length = duration(frame, WORDS.bus)
-    time.sleep(1.1)  # the window is full: what is counted now is divided by one second
     for _ in range(10):
         sender.send(frame)
-    assert looked(watch, lambda bus: bus.frames == 10).load == pytest.approx(10 * length / 1e9)
+    found = looked(watch, lambda bus: bus.frames == 10)
+    assert found.load == pytest.approx(10 * duration(frame, WORDS.bus) / 1e9)
     time.sleep(1.1)
     assert watch.look().load == 0
 
@@ -188,12 +192,13 @@ def test_monitor_shows_a_bus_on_which_no_controller_of_this_machine_runs(
     [
         (["--interface", "virtual"], "--interface and --channel go together"),
         (["--interface", "nothing", "--channel", "x"], "python-can has no interface 'nothing'"),
-        ([], "or name with --interface its bus"),
+        ([], "or name its bus with --interface and --channel"),
     ],
 )
 def test_what_cannot_be_watched_is_said(words: list[str], text: str, capsys: PRINTED) -> None:
     assert main(["monitor", str(PUMP), "--once", *words]) == UNUSABLE
-    assert text in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert text in said and said.count("error: ") == 1
 
 
 def test_a_bus_that_goes_ends_the_monitor(
@@ -223,6 +228,54 @@ def test_the_page_gets_the_bus_beside_the_controllers(channel: str, sender: can.
     wrong = LiveView(PUMP, ("nothing", "x"))
     found = wrong.look(digest)
     assert found["buses"] == [] and "has no interface 'nothing'" in found["text"]
+
+
+def test_the_page_watches_a_bus_again_that_was_gone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live_module, "PAUSE", 0.0)
+    digest = ANALYSIS.system.digest
+    server = BusServer()
+    live = LiveView(PUMP, ("ravenchart", server.channel))
+    assert live.look(digest)["buses"][0]["gone"] is None
+    server.close()
+    limit = time.monotonic() + 5
+    while not live.look(digest)["buses"][0]["gone"] and time.monotonic() < limit:
+        time.sleep(0.01)
+    gone = live.look(digest)
+    assert gone["buses"][0]["gone"] and "cannot be opened" not in gone["text"]
+    again = BusServer()
+    live._named = ("ravenchart", again.channel)  # as if it were at the same port
+    assert live.look(digest)["buses"][0]["gone"] is None
+    live.close()
+    again.close()
+
+
+def test_in_a_pipe_a_bus_that_goes_is_told_once(
+    watch: BusWatch, monkeypatch: pytest.MonkeyPatch, capsys: PRINTED
+) -> None:
+    monkeypatch.setattr(monitor, "SECOND", 1000.0)
+    bus = watch.look()
+    lines = monitor._Lines(SimpleNamespace(controllers=[], on_buses=[bus]))  # type: ignore[arg-type]
+    lines.show()
+    assert "gone: " not in capsys.readouterr().out
+    bus.gone = "Network is down"
+    for _ in range(3):
+        lines.show()
+    assert capsys.readouterr().out.count("gone: Network is down") == 1
+
+
+def test_what_others_send_to_others_is_known(channel: str, tmp_path: Path) -> None:
+    text = PUMP.read_text(encoding="utf-8")
+    model = tmp_path / "model.yaml"
+    other = "messages:\n  other: {bus: ward, id: 0x300, bytes: 2, period: 10 ms}\n"
+    model.write_text(text.replace("messages:\n", other))
+    analysis = checking.check(model, deadlines=False).analysis
+    watch = BusWatch(analysis, BusEnd("virtual", channel))
+    with can.Bus(channel, "virtual") as sender:
+        sender.send(can.Message(arbitration_id=0x300, is_extended_id=False, data=[1, 2]))
+        found = looked(watch, lambda bus: bus.frames == 1)
+    watch.close()
+    assert (found.unknown, found.malformed) == (0, 0)
+    assert [(one.name, one.frames) for one in found.messages if one.frames] == [("other", 1)]
 
 
 def test_a_replay_has_no_bus(capsys: PRINTED) -> None:

@@ -229,7 +229,7 @@ def test_what_there_is_not_is_refused_when_it_is_connected(tmp_path: Path) -> No
         connect(MODEL, interface="none", channel="x")
     with pytest.raises(Unusable, match=r"ravenchart '127.0.0.1:1' cannot be opened: "):
         connect(MODEL, interface="ravenchart", channel="127.0.0.1:1")
-    with pytest.raises(Unusable, match="Three_Components has no bus, so nothing can be said to it"):
+    with pytest.raises(Unusable, match="Three_Components has no bus"):
         connect(ROBOT.parent / "three_components" / "model.yaml", interface="virtual", channel="x")
     with pytest.raises(Refused, match="RV-0101"):
         connect(tmp_path / "none.yaml", interface="virtual", channel="x")

@@ -6,7 +6,7 @@
 A state may be exited only when it is active and nothing inside it is; entered
 only when its parent is active and nothing in its own region is; an effect runs
 when everything in the region that holds the transition has been left, and nothing
-else. The order then follows from the preconditions.
+else. The order follows from the ghost.
 """
 
 from __future__ import annotations
