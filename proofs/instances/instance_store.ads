@@ -8,14 +8,17 @@ with System;
 with Ravenchart.Answered_Offers;
 with Ravenchart.Blackboards;
 with Ravenchart.Bounded_Fifos;
+with Ravenchart.Deferrals;
 with Ravenchart.Event_Lists;
 with Ravenchart.Fault_Reports;
+with Ravenchart.Firing_Lists;
 with Ravenchart.Health_Counters;
 with Ravenchart.Monitors;
 with Ravenchart.Offers;
 with Ravenchart.Port_Regions;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
+with Ravenchart.Releasing_Queues;
 with Ravenchart.Remote_Calls;
 with Ravenchart.Remote_Reads;
 with Ravenchart.Trace_Buffers;
@@ -58,6 +61,13 @@ is
       Ceiling      => Ceiling,
       Policy       => Ravenchart.Queueing.Drop_Oldest);
 
+   package Releasing_Queue is new Ravenchart.Releasing_Queues
+     (Element_Type => Reading,
+      Null_Element => No_Reading,
+      Capacity     => 4,
+      Ceiling      => Ceiling,
+      Policy       => Ravenchart.Queueing.Reject_Newest);
+
    package Board is new Ravenchart.Blackboards
      (Element_Type => Reading,
       Initial      => No_Reading,
@@ -71,6 +81,44 @@ is
      (Event      => Signal,
       Null_Event => Start,
       Capacity   => 3);
+
+   type Place is (Busy, Idle);
+   --  Stands for the configuration of a region.
+
+   type Left is (Nothing_Left, All_Left);
+   --  Stands for the domains of transitions.
+
+   function Name_Of (Item : Signal) return Signal is (Item);
+
+   function Is_Deferred (Name : Signal; Here : Place) return Boolean is
+     (Name /= Reset and then Here = Busy);
+
+   function Is_Freed
+     (Name : Signal; D : Left; Here : Place) return Boolean is
+     (Name = Stop and then D = All_Left and then Here = Busy);
+
+   package Deferred is new Ravenchart.Deferrals
+     (Event         => Signal,
+      Null_Event    => Start,
+      Event_Name    => Signal,
+      Name_Of       => Name_Of,
+      Capacity      => 3,
+      Configuration => Place,
+      Is_Deferred   => Is_Deferred,
+      Domain        => Left,
+      Is_Freed      => Is_Freed);
+
+   type Way is (None, First_Way, Second_Way, Segment);
+   --  Stands for the transitions of a region and their segments.
+
+   function Is_Segment (T : Way) return Boolean is (T = Segment);
+
+   package Firings is new Ravenchart.Firing_Lists
+     (Selection     => Way,
+      No_Selection  => None,
+      Is_Segment    => Is_Segment,
+      Most_Segments => 1,
+      Capacity      => 4);
 
    package Counters is new Ravenchart.Health_Counters
      (Ceiling => Ceiling);

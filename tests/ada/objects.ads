@@ -4,11 +4,16 @@
 --  The shared objects under test: the profile wants them at library level.
 
 with System;
+with Ravenchart.Answered_Offers;
 with Ravenchart.Blackboards;
 with Ravenchart.Bounded_Fifos;
+with Ravenchart.Deferrals;
 with Ravenchart.Event_Lists;
+with Ravenchart.Fault_Reports;
+with Ravenchart.Firing_Lists;
 with Ravenchart.Health_Counters;
 with Ravenchart.Monitors;
+with Ravenchart.Offers;
 with Ravenchart.Port_Regions;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
@@ -57,6 +62,41 @@ package Objects is
       Null_Event => Start,
       Capacity   => 3);
 
+   type Place is (Busy, Idle);
+
+   type Left is (Nothing_Left, All_Left);
+
+   function Name_Of (Item : Signal) return Signal is (Item);
+
+   function Is_Deferred (Name : Signal; Here : Place) return Boolean is
+     (Name /= Reset and then Here = Busy);
+
+   function Is_Freed
+     (Name : Signal; D : Left; Here : Place) return Boolean is
+     (Name = Stop and then D = All_Left and then Here = Busy);
+
+   package Deferred is new Ravenchart.Deferrals
+     (Event         => Signal,
+      Null_Event    => Start,
+      Event_Name    => Signal,
+      Name_Of       => Name_Of,
+      Capacity      => 3,
+      Configuration => Place,
+      Is_Deferred   => Is_Deferred,
+      Domain        => Left,
+      Is_Freed      => Is_Freed);
+
+   type Way is (None, First_Way, Second_Way, Segment);
+
+   function Is_Segment (T : Way) return Boolean is (T = Segment);
+
+   package Firings is new Ravenchart.Firing_Lists
+     (Selection     => Way,
+      No_Selection  => None,
+      Is_Segment    => Is_Segment,
+      Most_Segments => 1,
+      Capacity      => 4);
+
    package Counters is new Ravenchart.Health_Counters
      (Ceiling => Ceiling);
 
@@ -76,6 +116,31 @@ package Objects is
    package Trace is new Ravenchart.Trace_Buffers
      (Capacity => 4,
       Ceiling  => Ceiling);
+
+   package Faults is new Ravenchart.Fault_Reports
+     (Record_Fault => Counters.Record_Fault,
+      Note         => Trace.Note);
+
+   package Rejecting_Offers is new Ravenchart.Offers
+     (Element_Type => Integer,
+      Put          => Rejecting.Put,
+      Policy       => Ravenchart.Queueing.Reject_Newest,
+      Element      => 1,
+      Report       => Faults.Report);
+
+   package Dropping_Offers is new Ravenchart.Offers
+     (Element_Type => Integer,
+      Put          => Dropping.Put,
+      Policy       => Ravenchart.Queueing.Drop_Oldest,
+      Element      => 2,
+      Report       => Faults.Report);
+
+   procedure Answer;
+   --  Offers 99 to the queue that drops.
+
+   package Answered is new Ravenchart.Answered_Offers
+     (Offers  => Rejecting_Offers,
+      On_Loss => Answer);
 
    package Large_Trace is new Ravenchart.Trace_Buffers
      (Capacity => 65_536,

@@ -1,7 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The pure parts of regions: ports, timers, schedule slots and event lists.
+--  The pure parts of regions: ports, timers, schedule slots, event lists,
+--  deferral, and the list of what fires in a step.
 
 with Facts;
 with Objects;
@@ -11,6 +12,7 @@ with Ravenchart.Timers;
 procedure Test_Regions is
    use type Objects.Ports.Change;
    use type Objects.Signal;
+   use type Objects.Way;
    use type Ravenchart.Execution_Count;
    use type Ravenchart.Freshness;
    use type Ravenchart.Timers.Remaining_Count;
@@ -22,6 +24,10 @@ procedure Test_Regions is
    procedure Check_Slots;
 
    procedure Check_Events;
+
+   procedure Check_Deferral;
+
+   procedure Check_Firings;
 
    -----------------
    -- Check_Ports --
@@ -169,10 +175,88 @@ procedure Test_Regions is
         ("a cleared list is empty", Objects.Events.Count (List) = 0);
    end Check_Events;
 
+   --------------------
+   -- Check_Deferral --
+   --------------------
+
+   procedure Check_Deferral is
+
+      procedure Defer (Event : Objects.Signal);
+
+      Store : Objects.Deferred.Store;
+      Item  : Objects.Signal;
+      Taken : Boolean;
+
+      -----------
+      -- Defer --
+      -----------
+
+      procedure Defer (Event : Objects.Signal) is
+      begin
+         Objects.Deferred.Change
+           (Store, True, Event, Objects.Nothing_Left, Objects.Busy);
+      end Defer;
+
+   begin
+      Defer (Objects.Start);
+      Defer (Objects.Stop);
+      Objects.Deferred.Take_Due (Store, Objects.Busy, Item, Taken);
+      Facts.Check ("what is deferred is not due", not Taken);
+      Defer (Objects.Reset);
+      Objects.Deferred.Take_Due (Store, Objects.Busy, Item, Taken);
+      Facts.Check
+        ("what no active state defers is due before older events",
+         Taken and then Item = Objects.Reset);
+      Objects.Deferred.Change
+        (Store, False, Objects.Reset, Objects.All_Left, Objects.Busy);
+      Defer (Objects.Stop);
+      Objects.Deferred.Take_Due (Store, Objects.Busy, Item, Taken);
+      Facts.Check
+        ("an exit frees what was deferred before it",
+         Taken and then Item = Objects.Stop);
+      Objects.Deferred.Take_Due (Store, Objects.Busy, Item, Taken);
+      Facts.Check ("and nothing that was deferred later", not Taken);
+      Objects.Deferred.Take_Due (Store, Objects.Idle, Item, Taken);
+      Facts.Check
+        ("the oldest one is due first elsewhere",
+         Taken and then Item = Objects.Start);
+      Facts.Check ("nothing was lost", not Store.Lost);
+      for I in 1 .. 3 loop
+         Defer (Objects.Start);
+      end loop;
+      Facts.Check ("an event too many is lost", Store.Lost);
+   end Check_Deferral;
+
+   -------------------
+   -- Check_Firings --
+   -------------------
+
+   procedure Check_Firings is
+      Fired : Objects.Firings.List;
+   begin
+      Facts.Check
+        ("at first nothing has fired",
+         Fired.Count = 0
+         and then not Objects.Firings.Has (Fired, Objects.None));
+      Objects.Firings.Add (Fired, Objects.Second_Way);
+      Objects.Firings.Add (Fired, Objects.Segment);
+      Facts.Check
+        ("what fires is listed in its order",
+         Fired.Count = 2
+         and then Fired.Items (1) = Objects.Second_Way
+         and then Fired.Items (2) = Objects.Segment);
+      Facts.Check
+        ("a list has what has fired, and nothing else",
+         Objects.Firings.Has (Fired, Objects.Segment)
+         and then not Objects.Firings.Has (Fired, Objects.First_Way));
+   end Check_Firings;
+
 begin
    Check_Ports;
    Check_Timers;
    Check_Slots;
    Check_Events;
+   Check_Deferral;
+   Check_Firings;
    Facts.Finish;
 end Test_Regions;

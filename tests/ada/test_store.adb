@@ -1,10 +1,12 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Queues, blackboards and the buffer behind them: order and overflow.
+--  Queues, blackboards and the buffer behind them: order and overflow, and
+--  what offers report and answer.
 
 with Facts;
 with Objects;
+with Ravenchart.Health;
 with Ravenchart.Queueing;
 
 procedure Test_Store is
@@ -12,11 +14,15 @@ procedure Test_Store is
    use type Ravenchart.Queueing.Put_Status;
    use type Ravenchart.Queueing.Take_Status;
 
+   type Wanted_Items is array (Positive range <>) of Integer;
+
    procedure Check_Fifo;
 
    procedure Check_Rejecting;
 
    procedure Check_Dropping;
+
+   procedure Check_Offers;
 
    procedure Check_Board;
 
@@ -111,6 +117,79 @@ procedure Test_Store is
       Facts.Check ("a queue that dropped keeps its order", Right);
    end Check_Dropping;
 
+   ------------------
+   -- Check_Offers --
+   ------------------
+
+   procedure Check_Offers is
+
+      function Overflows return Ravenchart.Event_Count;
+
+      function Holds
+        (First : Integer; Second : Integer; Third : Integer) return Boolean;
+      --  Takes three elements from the queue that drops.
+
+      ---------------
+      -- Overflows --
+      ---------------
+
+      function Overflows return Ravenchart.Event_Count is
+         Counts : Ravenchart.Health.Fault_Counts;
+      begin
+         Objects.Counters.Read (Counts);
+         return Counts (Ravenchart.Health.Queue_Overflow);
+      end Overflows;
+
+      -----------
+      -- Holds --
+      -----------
+
+      function Holds
+        (First : Integer; Second : Integer; Third : Integer) return Boolean
+      is
+         Item : Integer;
+         Take : Ravenchart.Queueing.Take_Status;
+         Same : Boolean := True;
+      begin
+         for Wanted of Wanted_Items'(First, Second, Third) loop
+            Objects.Dropping.Take (Item, Take);
+            Same := Same
+              and then Take = Ravenchart.Queueing.Taken
+              and then Item = Wanted;
+         end loop;
+         return Same;
+      end Holds;
+
+      Lost : Boolean;
+   begin
+      for I in 1 .. 3 loop
+         Objects.Rejecting_Offers.Offer (I);
+      end loop;
+      Facts.Check ("what is queued is no fault", Overflows = 0);
+      Objects.Rejecting_Offers.Offer (4);
+      Facts.Check ("a loss is reported once", Overflows = 1);
+      Objects.Rejecting_Offers.Offer_And_Tell (5, Lost);
+      Facts.Check ("a loss is told", Lost and then Overflows = 2);
+      Objects.Dropping_Offers.Offer (1);
+      Objects.Dropping_Offers.Offer_And_Tell (2, Lost);
+      Facts.Check ("no loss is told as none", not Lost);
+      Objects.Answered.Offer (6);
+      Facts.Check
+        ("a loss is reported and answered once",
+         Overflows = 3 and then Holds (1, 2, 99));
+      for I in 1 .. 3 loop
+         Objects.Dropping_Offers.Offer (I);
+      end loop;
+      Objects.Answered.Offer (7);
+      Facts.Check
+        ("what an answer loses is reported and not answered",
+         Overflows = 5 and then Holds (2, 3, 99));
+      Objects.Answered.Offer (8, Ravenchart.Queueing.Drop_Oldest);
+      Facts.Check
+        ("an element may have a policy of its own",
+         Overflows = 6);
+   end Check_Offers;
+
    -----------------
    -- Check_Board --
    -----------------
@@ -132,6 +211,7 @@ begin
    Check_Fifo;
    Check_Rejecting;
    Check_Dropping;
+   Check_Offers;
    Check_Board;
    Facts.Finish;
 end Test_Store;
