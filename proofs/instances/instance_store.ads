@@ -18,7 +18,6 @@ with Ravenchart.Offers;
 with Ravenchart.Port_Regions;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
-with Ravenchart.Releasing_Queues;
 with Ravenchart.Remote_Calls;
 with Ravenchart.Remote_Reads;
 with Ravenchart.Trace_Buffers;
@@ -60,13 +59,6 @@ is
       Capacity     => 4,
       Ceiling      => Ceiling,
       Policy       => Ravenchart.Queueing.Drop_Oldest);
-
-   package Releasing_Queue is new Ravenchart.Releasing_Queues
-     (Element_Type => Reading,
-      Null_Element => No_Reading,
-      Capacity     => 4,
-      Ceiling      => Ceiling,
-      Policy       => Ravenchart.Queueing.Reject_Newest);
 
    package Board is new Ravenchart.Blackboards
      (Element_Type => Reading,

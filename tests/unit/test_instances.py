@@ -11,6 +11,8 @@ from pathlib import Path
 from ravenchart.paths import ROOT
 
 SOURCES = ("spark_runtime/src", "hw_can/hal", "hw_can/protocol", "hw_can/simulator")
+ELSEWHERE = {"Ravenchart.Releasing_Queues": "proved in the program of tests/feature/releases"}
+"""Generics without an instance here, and where they have one."""
 GENERIC = re.compile(r"^generic\b.*?^(?:package|procedure|function) ([\w.]+)", re.M | re.S | re.I)
 
 
@@ -39,4 +41,4 @@ def test_each_generic_has_an_instance_that_is_proved() -> None:
     short = {name.rsplit(".", 1)[-1] for name in named}
     found = generics()
     assert len(found) > 20 and "Ravenchart.Offers" in found
-    assert {one for one in found if one.rsplit(".", 1)[-1] not in short} == set()
+    assert {one for one in found if one.rsplit(".", 1)[-1] not in short} == set(ELSEWHERE)
