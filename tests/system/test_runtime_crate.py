@@ -141,7 +141,7 @@ def test_the_project_of_a_crate_has_the_sources_of_the_plain_one(plain: str, of_
 
 def test_the_processor_by_hand_is_40_lines() -> None:
     texts = [path.read_text() for path in (ROOT / "examples" / "by_hand" / "src").glob("*.ad[sb]")]
-    lines = [line for text in texts for line in text.splitlines()]
+    lines = [line for text in texts for line in text.splitlines() if "SPDX" not in line]
     assert len(list(filter(str.strip, lines))) <= 40
     assert max(map(len, lines)) <= 79
 

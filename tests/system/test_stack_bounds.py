@@ -44,7 +44,7 @@ def _devices(tmp_path: Path, declarations: str = "", statements: str = "") -> Pa
     home = tmp_path / "devices"
     shutil.copytree(ROOT / "tests" / "feature" / "devices", home)
     body = home / "user" / BODY
-    text = body.read_text()
+    _, _, text = body.read_text().partition("\n\n")  # behind the licence
     assert text.count(DAMPED) == 1 and text.startswith(HEAD)
     text = text.replace(DAMPED, f"{declarations}   begin\n{statements}{DAMPED[9:]}")
     body.write_text(f"{HEAD.replace('with SPARK_Mode', '')}{text.removeprefix(HEAD)}")
