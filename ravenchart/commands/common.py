@@ -88,11 +88,15 @@ def interface(options: argparse.Namespace, system: System) -> BusEnd | None:
     """The interface that was named; Unusable where half of it is, or the model has no bus."""
     from ravenchart.running.attaching import interface_of
 
+    named = named_interface(options)
+    return None if named is None else interface_of(system, *named)
+
+
+def named_interface(options: argparse.Namespace) -> tuple[str, str] | None:
+    """The interface and its channel, where they are named; Unusable where one of both is."""
     if (options.interface is None) != (options.channel is None):
         raise Unusable("--interface and --channel go together")
-    if options.interface is None:
-        return None
-    return interface_of(system, options.interface, options.channel)
+    return None if options.interface is None else (options.interface, options.channel)
 
 
 def add_log(sub: argparse.ArgumentParser) -> None:

@@ -35,11 +35,9 @@ def execute(options: argparse.Namespace) -> int:
     from ravenchart.workbench.server import WorkbenchPages
     from ravenchart.workbench.session import Session
 
-    if (options.interface is None) != (options.channel is None):
-        raise Unusable("--interface and --channel go together")
-    if options.interface is not None and options.replay:
+    bus = common.named_interface(options)
+    if bus is not None and options.replay:
         raise Unusable("--replay shows a recorded run: leave --interface out")
-    bus = None if options.interface is None else (options.interface, options.channel)
 
     def made() -> WorkbenchPages:
         with progress(f"read and analyse {options.model}"):

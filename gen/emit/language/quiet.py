@@ -58,6 +58,8 @@ class DecidedStates:
 
     def words(self, unit: Unit, component: Component | None) -> Iterator[str]:
         """What the compiler says of the states that a unit asks for."""
+        if not self._literals and not self._composites:  # most models: no unit is walked
+            return
         prefix = () if component is None else (component_name(component),)
         for node in nodes_in(unit.item):
             match node:
