@@ -22,7 +22,7 @@ from ravenchart.analysis.core.frames import FD_SIZES, classic_bits, fd_bits
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.described import Described
 from ravenchart.failures import Unusable
-from ravenchart.gen.model.buses import Bus
+from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.hw_can.bench.interfaces import BusEnd, fault_text, opened_bus
 from ravenchart.hw_can.bench.peer import BenchError, MalformedFrameError, Value
 
@@ -112,11 +112,11 @@ class BusWatch:
         """The first bus of the model, at that interface; Unusable where there is none."""
         self._words = BusVocabulary.of(analysis.system)
         bus = self._words.bus.name
-        self._known = {m.name: m for m in analysis.system.frames if m.bus == bus}
-        self._names = {(m.identifier, m.extended): m.name for m in self._known.values()}
+        known = [m for m in analysis.system.frames if m.bus == bus]
+        self._known = {(m.identifier, m.extended): m for m in known}
         self._interface = interface
         self._bound = most_in_a_second(analysis, self._words.bus)
-        self._seen = {name: _Seen() for name in self._known}
+        self._seen = {m.name: _Seen() for m in known}
         self._frames = self._unknown = self._malformed = self._errors = 0
         self._gone: str | None = None
         self._taken: deque[tuple[float, int]] = deque()
@@ -152,15 +152,15 @@ class BusWatch:
                 unknown=self._unknown,
                 malformed=self._malformed,
                 errors=self._errors,
-                messages=[self._message(name, one) for name, one in self._seen.items()],
+                messages=[self._message(m, self._seen[m.name]) for m in self._known.values()],
                 gone=self._gone,
             )
 
-    def _message(self, name: str, seen: _Seen) -> WatchedMessage:
-        message = self._known[name]
-        signals = self._words.fields(name) if name in self._words.messages else {}
+    def _message(self, message: Message, seen: _Seen) -> WatchedMessage:
+        has_fields = message.name in self._words.messages
+        signals = self._words.fields(message.name) if has_fields else {}
         return WatchedMessage(
-            name=name,
+            name=message.name,
             identifier=message.shown_identifier,
             frames=seen.frames,
             last=None if seen.last is None else self._since(seen.last),
@@ -195,19 +195,16 @@ class BusWatch:
         self._frames += 1
         self._taken.append((now, duration(frame, self._words.bus)))
         self._forget(now)
-        name = self._names.get((frame.arbitration_id, frame.is_extended_id))
-        if name is None:
+        message = self._known.get((frame.arbitration_id, frame.is_extended_id))
+        if message is None or message.fd != frame.is_fd or frame.is_remote_frame:
             self._unknown += 1
             return
         try:
-            values = self._values(frame)
+            values = self._values(message, frame)
         except MalformedFrameError:
             self._malformed += 1
             return
-        if values is None:
-            self._unknown += 1
-            return
-        seen = self._seen[name]
+        seen = self._seen[message.name]
         stamp = frame.timestamp or now
         if seen.frames and seen.stamp <= stamp:
             gap = stamp - seen.stamp
@@ -215,17 +212,14 @@ class BusWatch:
         seen.frames, seen.last, seen.stamp = seen.frames + 1, now, stamp
         seen.fields = values
 
-    def _values(self, frame: can.Message) -> dict[str, Value] | None:
-        """The fields of a frame of the model; none of one that others send to others.
-
-        None where it is of the other format, classic or FD. MalformedFrameError for bad data.
-        """
-        name = self._names[(frame.arbitration_id, frame.is_extended_id)]
-        if name not in self._words.messages:
-            return {} if frame.is_fd == self._known[name].fd else None
+    def _values(self, message: Message, frame: can.Message) -> dict[str, Value]:
+        """The fields of a frame; none of one that others send to others."""
+        if message.name not in self._words.messages:
+            return {}
         found = self._words.codec.decode(frame)
-        signals = self._words.fields(name)
-        return found and {one: value for one, value in found[1].items() if one in signals}
+        assert found is not None  # it is known by its identifier and format
+        signals = self._words.fields(message.name)
+        return {one: value for one, value in found[1].items() if one in signals}
 
 
 def most_in_a_second(analysis: Analysis, bus: Bus) -> float | None:
