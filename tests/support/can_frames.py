@@ -6,6 +6,8 @@
 from __future__ import annotations
 
 import random
+import time
+from collections.abc import Callable
 
 import can
 
@@ -38,6 +40,16 @@ def _frame(chance: random.Random, kind: str) -> can.Message:
         data=None if kind == "remote" else chance.randbytes(length),
         check=True,
     )
+
+
+def within(look: Callable[[], object]) -> bool:
+    """Whether ``look()`` becomes true in time."""
+    end = time.monotonic() + WAIT
+    while time.monotonic() < end:
+        if look():
+            return True
+        time.sleep(0.01)
+    return False
 
 
 def taken(bus: can.BusABC, count: int) -> list[can.Message]:

@@ -8,8 +8,7 @@ from __future__ import annotations
 import select
 import socket
 import threading
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import can
@@ -18,7 +17,7 @@ import pytest
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.bus_records import BusRecord, Flag, RecordKind, Status, encode
 from tests.support.bus_server import BusServer
-from tests.support.can_frames import WAIT, taken
+from tests.support.can_frames import WAIT, taken, within
 
 ROOT = Path(__file__).parents[2]
 
@@ -64,16 +63,6 @@ def test_the_bus_state_follows_the_node(
     assert becomes(can.BusState.ACTIVE)
     with pytest.raises(NotImplementedError):
         bus.state = can.BusState.PASSIVE
-
-
-def within(look: Callable[[], object]) -> bool:
-    """Whether ``look()`` becomes true in time."""
-    end = time.monotonic() + WAIT
-    while time.monotonic() < end:
-        if look():
-            return True
-        time.sleep(0.01)
-    return False
 
 
 def test_a_refusal_is_raised_at_once_or_by_the_next_send(

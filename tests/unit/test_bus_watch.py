@@ -29,6 +29,7 @@ from ravenchart.running.vocabulary import BusVocabulary
 from ravenchart.workbench import live as live_module
 from ravenchart.workbench.live import LiveView
 from tests.support.bus_server import BusServer
+from tests.support.can_frames import within
 
 PUMP = ROOT / "examples" / "pump" / "model.yaml"
 ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
@@ -60,11 +61,9 @@ def watch(channel: str) -> Iterator[BusWatch]:
 
 
 def looked(watch: BusWatch, ready: Callable[[WatchedBus], bool]) -> WatchedBus:
-    """The bus once it is as wanted, at the latest in 5 s."""
-    limit = time.monotonic() + 5
-    while not ready(found := watch.look()) and time.monotonic() < limit:
-        time.sleep(0.01)
-    return found
+    """The bus once it is as wanted, or as it is when that does not come."""
+    within(lambda: ready(watch.look()))
+    return watch.look()
 
 
 def test_each_message_has_its_counts_its_shortest_distance_and_its_last_values(
@@ -220,10 +219,8 @@ def test_the_page_gets_the_bus_beside_the_controllers(channel: str, sender: can.
     digest = ANALYSIS.system.digest
     assert [one["bus"] for one in live.look(digest)["buses"]] == ["ward"]
     sender.send(WORDS.codec.encode("motor", {"value": 3}))
-    limit = time.monotonic() + 5
-    while not (bus := live.look(digest)["buses"][0])["frames"] and time.monotonic() < limit:
-        time.sleep(0.01)
-    assert bus["frames"] == 1
+    within(lambda: live.look(digest)["buses"][0]["frames"])
+    assert live.look(digest)["buses"][0]["frames"] == 1
     live.close()
     wrong = LiveView(PUMP, ("nothing", "x"))
     found = wrong.look(digest)
@@ -237,9 +234,7 @@ def test_the_page_watches_a_bus_again_that_was_gone(monkeypatch: pytest.MonkeyPa
     live = LiveView(PUMP, ("ravenchart", server.channel))
     assert live.look(digest)["buses"][0]["gone"] is None
     server.close()
-    limit = time.monotonic() + 5
-    while not live.look(digest)["buses"][0]["gone"] and time.monotonic() < limit:
-        time.sleep(0.01)
+    within(lambda: live.look(digest)["buses"][0]["gone"])
     gone = live.look(digest)
     assert gone["buses"][0]["gone"] and "cannot be opened" not in gone["text"]
     again = BusServer()
