@@ -7,10 +7,8 @@ with System;
 with Ravenchart.Answered_Offers;
 with Ravenchart.Blackboards;
 with Ravenchart.Bounded_Fifos;
-with Ravenchart.Deferrals;
 with Ravenchart.Event_Lists;
 with Ravenchart.Fault_Reports;
-with Ravenchart.Firing_Lists;
 with Ravenchart.Health_Counters;
 with Ravenchart.Monitors;
 with Ravenchart.Offers;
@@ -61,41 +59,6 @@ package Objects is
      (Event      => Signal,
       Null_Event => Start,
       Capacity   => 3);
-
-   type Place is (Busy, Idle);
-
-   type Left is (Nothing_Left, All_Left);
-
-   function Name_Of (Item : Signal) return Signal is (Item);
-
-   function Is_Deferred (Name : Signal; Here : Place) return Boolean is
-     (Name /= Reset and then Here = Busy);
-
-   function Is_Freed
-     (Name : Signal; D : Left; Here : Place) return Boolean is
-     (Name = Stop and then D = All_Left and then Here = Busy);
-
-   package Deferred is new Ravenchart.Deferrals
-     (Event         => Signal,
-      Null_Event    => Start,
-      Event_Name    => Signal,
-      Name_Of       => Name_Of,
-      Capacity      => 3,
-      Configuration => Place,
-      Is_Deferred   => Is_Deferred,
-      Domain        => Left,
-      Is_Freed      => Is_Freed);
-
-   type Way is (None, First_Way, Second_Way, Segment);
-
-   function Is_Segment (T : Way) return Boolean is (T = Segment);
-
-   package Firings is new Ravenchart.Firing_Lists
-     (Selection     => Way,
-      No_Selection  => None,
-      Is_Segment    => Is_Segment,
-      Most_Segments => 1,
-      Capacity      => 4);
 
    package Counters is new Ravenchart.Health_Counters
      (Ceiling => Ceiling);

@@ -5,14 +5,18 @@
 --  deferral, and the list of what fires in a step.
 
 with Facts;
+with Instance_Store;
 with Objects;
 with Ravenchart.Schedules;
 with Ravenchart.Timers;
 
 procedure Test_Regions is
+   package Proved renames Instance_Store;
+
+   use type Instance_Store.Signal;
+   use type Instance_Store.Way;
    use type Objects.Ports.Change;
    use type Objects.Signal;
-   use type Objects.Way;
    use type Ravenchart.Execution_Count;
    use type Ravenchart.Freshness;
    use type Ravenchart.Timers.Remaining_Count;
@@ -181,48 +185,48 @@ procedure Test_Regions is
 
    procedure Check_Deferral is
 
-      procedure Defer (Event : Objects.Signal);
+      procedure Defer (Event : Proved.Signal);
 
-      Store : Objects.Deferred.Store;
-      Item  : Objects.Signal;
+      Store : Proved.Deferred.Store;
+      Item  : Proved.Signal;
       Taken : Boolean;
 
       -----------
       -- Defer --
       -----------
 
-      procedure Defer (Event : Objects.Signal) is
+      procedure Defer (Event : Proved.Signal) is
       begin
-         Objects.Deferred.Change
-           (Store, True, Event, Objects.Nothing_Left, Objects.Busy);
+         Proved.Deferred.Change
+           (Store, True, Event, Proved.Nothing_Left, Proved.Busy);
       end Defer;
 
    begin
-      Defer (Objects.Start);
-      Defer (Objects.Stop);
-      Objects.Deferred.Take_Due (Store, Objects.Busy, Item, Taken);
+      Defer (Proved.Start);
+      Defer (Proved.Stop);
+      Proved.Deferred.Take_Due (Store, Proved.Busy, Item, Taken);
       Facts.Check ("what is deferred is not due", not Taken);
-      Defer (Objects.Reset);
-      Objects.Deferred.Take_Due (Store, Objects.Busy, Item, Taken);
+      Defer (Proved.Reset);
+      Proved.Deferred.Take_Due (Store, Proved.Busy, Item, Taken);
       Facts.Check
         ("what no active state defers is due before older events",
-         Taken and then Item = Objects.Reset);
-      Objects.Deferred.Change
-        (Store, False, Objects.Reset, Objects.All_Left, Objects.Busy);
-      Defer (Objects.Stop);
-      Objects.Deferred.Take_Due (Store, Objects.Busy, Item, Taken);
+         Taken and then Item = Proved.Reset);
+      Proved.Deferred.Change
+        (Store, False, Proved.Reset, Proved.All_Left, Proved.Busy);
+      Defer (Proved.Stop);
+      Proved.Deferred.Take_Due (Store, Proved.Busy, Item, Taken);
       Facts.Check
         ("an exit frees what was deferred before it",
-         Taken and then Item = Objects.Stop);
-      Objects.Deferred.Take_Due (Store, Objects.Busy, Item, Taken);
+         Taken and then Item = Proved.Stop);
+      Proved.Deferred.Take_Due (Store, Proved.Busy, Item, Taken);
       Facts.Check ("and nothing that was deferred later", not Taken);
-      Objects.Deferred.Take_Due (Store, Objects.Idle, Item, Taken);
+      Proved.Deferred.Take_Due (Store, Proved.Idle, Item, Taken);
       Facts.Check
         ("the oldest one is due first elsewhere",
-         Taken and then Item = Objects.Start);
+         Taken and then Item = Proved.Start);
       Facts.Check ("nothing was lost", not Store.Lost);
       for I in 1 .. 3 loop
-         Defer (Objects.Start);
+         Defer (Proved.Start);
       end loop;
       Facts.Check ("an event too many is lost", Store.Lost);
    end Check_Deferral;
@@ -232,23 +236,23 @@ procedure Test_Regions is
    -------------------
 
    procedure Check_Firings is
-      Fired : Objects.Firings.List;
+      Fired : Proved.Firings.List;
    begin
       Facts.Check
         ("at first nothing has fired",
          Fired.Count = 0
-         and then not Objects.Firings.Has (Fired, Objects.None));
-      Objects.Firings.Add (Fired, Objects.Second_Way);
-      Objects.Firings.Add (Fired, Objects.Segment);
+         and then not Proved.Firings.Has (Fired, Proved.None));
+      Proved.Firings.Add (Fired, Proved.Second_Way);
+      Proved.Firings.Add (Fired, Proved.Segment);
       Facts.Check
         ("what fires is listed in its order",
          Fired.Count = 2
-         and then Fired.Items (1) = Objects.Second_Way
-         and then Fired.Items (2) = Objects.Segment);
+         and then Fired.Items (1) = Proved.Second_Way
+         and then Fired.Items (2) = Proved.Segment);
       Facts.Check
         ("a list has what has fired, and nothing else",
-         Objects.Firings.Has (Fired, Objects.Segment)
-         and then not Objects.Firings.Has (Fired, Objects.First_Way));
+         Proved.Firings.Has (Fired, Proved.Segment)
+         and then not Proved.Firings.Has (Fired, Proved.First_Way));
    end Check_Firings;
 
 begin
