@@ -17,7 +17,8 @@ from tests.support.elsewhere import needed
 
 COMMON = (
     *("spark_runtime/src", "spark_runtime/native"),
-    *("hw_can/hal", "hw_can/drivers/serial", "hw_can/protocol", "hw_can/simulator", "tests/ada"),
+    *("hw_can/hal", "hw_can/drivers/serial", "hw_can/protocol", "hw_can/simulator"),
+    *("tests/ada", "proofs/instances"),
 )
 MAINS = {
     "hw_can/drivers/loopback": (
