@@ -13,7 +13,7 @@ RESULTS    := build/tests.xml
 ELSEWHERE  := tests/system/test_other_machines.py tests/system/test_codecs.py
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
-.PHONY: help setup demo test test-all test-long coverage hw-test board-test check prove generate bench bench-proof
+.PHONY: help setup setup-tests demo test test-all test-long coverage hw-test board-test check prove generate bench bench-proof
 .PHONY: mutate mutate-runtime docs site
 .PHONY: lock clean
 
@@ -38,19 +38,22 @@ help:
 setup:
 	@scripts/setup.sh
 
+setup-tests:
+	@scripts/setup.sh tests
+
 demo: setup
 	@$(RAVENCHART) run examples/cartesian_robot/model.yaml --scenario examples/cartesian_robot/scenario.yaml --report build/demo
 
-test: setup
+test: setup-tests
 	@$(PYTHON) -P -m pytest -q -n auto --junit-xml=$(RESULTS)
 
-test-all: setup
+test-all: setup-tests
 	@RAVENCHART_ALL_TESTS=1 $(PYTHON) -P -m pytest -q -n auto --durations=25 --junit-xml=$(RESULTS)
 
-coverage: setup
+coverage: setup-tests
 	@$(PYTHON) -P -m pytest -q -n auto --cov --cov-report=term:skip-covered --cov-report=html:build/coverage
 
-test-long: setup
+test-long: setup-tests
 	@RAVENCHART_ALL_TESTS=1 RAVENCHART_LONG_TESTS=1 $(PYTHON) -P -m pytest -q -n auto
 
 hw-test: setup

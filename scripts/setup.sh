@@ -8,7 +8,8 @@
 # with the word "guest" QEMU, the compilers for s390x and 32-bit Arm and, unpacked
 # below build/guest and not installed, Debian's kernel, which only `make hw-test` needs.
 # With the word "board" the emulator and the compiler for `make board-test`; with the word
-# "browser" Chromium, in which the tests use the workbench.
+# "browser" Chromium, in which the tests use the workbench; with the word "tests" Alire,
+# by which the tests build the crates.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -61,8 +62,11 @@ install() {
 
 [ -z "$packages" ] || install $packages || exit 2
 
-# Without these only the tests for other machines are skipped.
+# Without these only tests are skipped.
 others=
+if [ "${1:-}" = tests ]; then
+   command -v alr >/dev/null 2>&1 || others=alire
+fi
 if [ "${1:-}" = guest ]; then
    for machine in s390x-linux-gnu arm-linux-gnueabihf; do
       command -v $machine-gnatmake >/dev/null 2>&1 || others="$others gnat-12-$machine"

@@ -1,71 +1,32 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What Alire writes for a crate before it calls gprbuild: config/<crate>_config.gpr.
-
-`alr` itself is not used. The switches are those that Alire 2 documents for its three build
-profiles, changed by the `[build-switches]` of the crate.
-"""
+"""`alr` as a user calls it, without a network: its one index has the compiler of this machine."""
 
 from __future__ import annotations
 
+import os
+import re
+import subprocess
 import tomllib
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 PROFILES = ("release", "validation", "development")
-SECTIONS = ["-ffunction-sections", "-fdata-sections"]
-SWITCHES: dict[str, dict[str, list[str]]] = {
-    "source_encoding": {"utf-8": ["-gnatW8"], "compiler_default": []},
-    "optimization": {
-        "performance": ["-O3", "-gnatn", *SECTIONS],
-        "size": ["-Os", "-gnatn", *SECTIONS],
-        "debug": ["-Og", *SECTIONS],
-    },
-    "debug_info": {"no": [], "yes": ["-g"]},
-    "runtime_checks": {
-        "none": ["-gnatp"],
-        "default": [],
-        "overflow": ["-gnatp", "-gnato"],
-        "everything": ["-gnato"],
-    },
-    "compile_checks": {
-        "none": [],
-        "warnings": ["-gnatwa", "-gnatw.X", "-gnatVa"],
-        "errors": ["-gnatwa", "-gnatw.X", "-gnatVa", "-gnatwe"],
-    },
-    "contracts": {"no": [], "yes": ["-gnata"]},
-    "style_checks": {"no": [], "yes": ["-gnaty3abcefhiklmnprtux"]},
-    "ada_version": {"compiler_default": [], "ada12": ["-gnat12"], "ada2022": ["-gnat2022"]},
-}
-"""The switches of each choice, by category."""
-DEFAULTS = {
-    "release": {
-        "optimization": "performance",
-        "debug_info": "no",
-        "runtime_checks": "default",
-        "compile_checks": "none",
-        "contracts": "no",
-        "style_checks": "no",
-    },
-    "validation": {
-        "optimization": "performance",
-        "debug_info": "yes",
-        "runtime_checks": "everything",
-        "compile_checks": "errors",
-        "contracts": "yes",
-        "style_checks": "yes",
-    },
-    "development": {
-        "optimization": "debug",
-        "debug_info": "yes",
-        "runtime_checks": "default",
-        "compile_checks": "warnings",
-        "contracts": "no",
-        "style_checks": "yes",
-    },
-}
-"""What is chosen in each profile where the crate says nothing."""
+COMPILER = """\
+name = "gnat_external"
+description = "The GNAT on PATH"
+maintainers = ["nobody@example.org"]
+maintainers-logins = ["nobody"]
+
+[[external]]
+kind = "version-output"
+version-command = ["gnat", "--version"]
+version-regexp = "^GNAT ([\\\\d\\\\.]+).*"
+provides = "gnat"
+"""
+"""Of https://alire.ada.dev/docs, "External releases": a crate that stands for a program on PATH."""
 
 
 def manifest(crate: Path) -> dict[str, Any]:
@@ -73,56 +34,43 @@ def manifest(crate: Path) -> dict[str, Any]:
     return tomllib.loads((crate / "alire.toml").read_text(encoding="utf-8"))
 
 
-def switches(crate: Path, profile: str) -> list[str]:
-    """Those with which a crate is compiled in a profile."""
-    chosen: dict[str, Any] = {
-        "source_encoding": "utf-8", "ada_version": "compiler_default", **DEFAULTS[profile]
-    }  # fmt: skip
-    own = manifest(crate).get("build-switches", {})
-    for changes in (own.get("*", {}), own.get(profile, {})):
-        chosen |= {category.lower(): choice for category, choice in changes.items()}
-    found: list[str] = []
-    for category, choices in SWITCHES.items():
-        choice = chosen[category]
-        found += choice if isinstance(choice, list) else choices[choice.lower()]
-    return found
+@dataclass(frozen=True, slots=True)
+class Alire:
+    """An installation of `alr` of its own, so that the user's is not touched."""
+
+    settings: Path
+
+    @classmethod
+    def installed(cls, folder: Path) -> Alire:
+        """With an index in ``folder`` that has GNAT and nothing else."""
+        index, found = folder / "index", cls(folder / "settings")
+        release = index / "gn" / "gnat_external" / "gnat_external-external.toml"
+        release.parent.mkdir(parents=True)
+        release.write_text(COMPILER, encoding="utf-8")
+        version = found.call(folder, "--version").split()[-1]
+        (index / "index.toml").write_text(f'version = "{version}"\n', encoding="utf-8")
+        found.call(folder, "index", "--add", f"file://{index}", "--name", "local")
+        return found
+
+    def call(self, folder: Path, *words: str, **variables: str) -> str:
+        """What `alr` prints; AssertionError where it fails."""
+        kept = {name: value for name, value in os.environ.items() if "RAVENCHART" not in name}
+        done = subprocess.run(
+            ["alr", "-n", "-c", str(self.settings), *words], cwd=folder, env=kept | variables,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stdout
+        return done.stdout
 
 
-def configure(crate: Path, profile: str) -> None:
-    """Write the configuration of a crate."""
-    known = manifest(crate)
-    name = "_".join(part.capitalize() for part in known["name"].split("_"))
-    listed = "\n          ,".join(f'"{one}"' for one in switches(crate, profile))
-    kinds = ", ".join(f'"{one}"' for one in PROFILES)
-    text = f"""\
---  Configuration for {known["name"]} as Alire generates it
-abstract project {name}_Config is
-   Crate_Version := "{known["version"]}";
-   Crate_Name := "{known["name"]}";
-
-   Alire_Host_OS := "linux";
-
-   Alire_Host_Arch := "x86_64";
-
-   Alire_Host_Distro := "debian";
-   Ada_Compiler_Switches := External_As_List ("ADAFLAGS", " ");
-   Ada_Compiler_Switches := Ada_Compiler_Switches &
-          (
-           {listed}
-          );
-
-   type Build_Profile_Kind is ({kinds});
-   Build_Profile : Build_Profile_Kind := "{profile}";
-
-end {name}_Config;
-"""
-    folder = crate / known.get("configuration", {}).get("output_dir", "config")
-    folder.mkdir(exist_ok=True)
-    (folder / f"{known['name']}_config.gpr").write_text(text, encoding="utf-8")
+def with_profile(crate: Path, profile: str) -> None:
+    """Let a consumer compile its dependencies in a profile."""
+    with (crate / "alire.toml").open("a", encoding="utf-8") as written:
+        written.write(f'\n[build-profiles]\n"*" = "{profile}"\n')
 
 
-def project_path(*crates: Path) -> str:
-    """GPR_PROJECT_PATH as Alire sets it: the folders of the project files of all crates."""
-    return ":".join(
-        str((crate / name).parent) for crate in crates for name in manifest(crate)["project-files"]
-    )
+def switches(crate: Path) -> list[str]:
+    """Those that Alire wrote for a crate when it built a program with it."""
+    name = manifest(crate)["name"]
+    text = (crate / "config" / f"{name}_config.gpr").read_text(encoding="utf-8")
+    return re.findall(r'"(-[^"]*)"', text)

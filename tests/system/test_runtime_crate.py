@@ -1,10 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The runtime as a crate: projects of consumers, built as Alire builds them, and run.
-
-`alr` is not called: `tests/support/alire.py` writes the configuration that it would write.
-"""
+"""The runtime as a crate: `alr` builds its consumers in each build profile, and they run."""
 
 from __future__ import annotations
 
@@ -18,25 +15,32 @@ from pathlib import Path
 import pytest
 
 from ravenchart.paths import ROOT
-from tests.support import alire
+from tests.support.alire import PROFILES, Alire, manifest, switches, with_profile
 
 CRATES = (".", "spark_runtime")
 """Where their alire.toml is."""
+CONSUMERS = {"examples/by_hand": "spark_runtime", "tests/can_crate": "."}
+"""Crates that are written by hand, and the crate that each is pinned to."""
+WARNING = re.compile(r":\d+:\d+: warning")
+"""Of a compiler, or of gprbuild. Alire warns that its index has no GNAT to install."""
+GENERATED = """\
+name = "three_components"
+description = "A generated program and the crate"
+version = "0.1.0"
+licenses = "Apache-2.0"
+maintainers = ["nobody@example.org"]
+maintainers-logins = ["nobody"]
+project-files = ["generated/three_components.gpr"]
 
+[configuration]
+disabled = true
 
-def _built(project: Path, path: str, tmp_path: Path, **scenario: str) -> None:
-    """Build a consumer; ``path`` leads to the projects of the crates."""
-    environment = {name: value for name, value in os.environ.items() if "RAVENCHART" not in name}
-    environment |= {
-        "GPR_PROJECT_PATH": path,
-        "RAVENCHART_OBJECTS": str(tmp_path / "objects"),
-        **scenario,
-    }
-    done = subprocess.run(
-        ["gprbuild", "-p", "-q", "-P", project.name], cwd=project.parent, env=environment,
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert (done.returncode, done.stdout + done.stderr) == (0, "")
+[[depends-on]]
+ravenchart = "~0.1.0"
+
+[[pins]]
+ravenchart = { path = "../.." }
+"""
 
 
 def _run(program: Path, tmp_path: Path) -> None:
@@ -49,74 +53,70 @@ def _run(program: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize("mode", ["checks", "release"])
 def test_a_processor_by_hand_is_built_without_a_warning_and_runs(tmp_path: Path, mode: str) -> None:
     home = Path(shutil.copytree(ROOT / "examples" / "by_hand", tmp_path / "consumer"))
-    _built(home / "by_hand.gpr", str(ROOT / "spark_runtime"), tmp_path, MODE=mode)
+    environment = {name: value for name, value in os.environ.items() if "RAVENCHART" not in name}
+    environment |= {
+        "GPR_PROJECT_PATH": str(ROOT / "spark_runtime"),
+        "RAVENCHART_OBJECTS": str(tmp_path / "objects"),
+        "MODE": mode,
+    }
+    done = subprocess.run(
+        ["gprbuild", "-p", "-q", "-P", "by_hand.gpr"], cwd=home, env=environment,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout + done.stderr) == (0, "")
     _run(home / "build" / "by_hand_main", tmp_path)
 
 
 # --- As Alire builds -----------------------------------------------------------------
 
-OWN, OF_DEPENDENCIES = ("development", "validation"), ("release", "validation")
-"""The profiles of `alr build`, and of `alr build --validation` with `"*" = "validation"`."""
+
+@pytest.fixture(scope="module")
+def alr(tmp_path_factory: pytest.TempPathFactory) -> Alire:
+    if shutil.which("alr") is None:
+        pytest.skip("alr is not on PATH (`scripts/setup.sh tests` installs it)")
+    return Alire.installed(tmp_path_factory.mktemp("alire"))
 
 
-def _deployed(tmp_path: Path) -> tuple[Path, Path]:
-    """Both crates where Alire puts the dependencies of a program."""
-    whole = tmp_path / "dependencies" / "ravenchart"
+def _checkout(folder: Path, consumer: str) -> Path:
+    """What Alire takes of a checkout: both crates, and a consumer that is pinned to one."""
     for name in ("alire.toml", "ravenchart.gpr", "switches.gpr"):
-        (whole / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, whole / name)
+        shutil.copy(ROOT / name, folder / name)
     for name in ("spark_runtime", "hw_can"):
-        shutil.copytree(ROOT / name, whole / name, symlinks=True)
-    return whole, whole / "spark_runtime"
+        shutil.copytree(ROOT / name, folder / name, symlinks=True)
+    return Path(shutil.copytree(ROOT / consumer, folder / consumer))
 
 
-@pytest.mark.parametrize(("own", "of_dependencies"), list(zip(OWN, OF_DEPENDENCIES, strict=True)))
-def test_a_consumer_of_the_whole_crate_has_the_can_layer(
-    tmp_path: Path, own: str, of_dependencies: str
+@pytest.mark.parametrize("profile", PROFILES)
+@pytest.mark.parametrize(("consumer", "crate"), CONSUMERS.items())
+def test_a_consumer_is_built_in_the_profile_and_runs(
+    alr: Alire, tmp_path: Path, consumer: str, crate: str, profile: str
 ) -> None:
-    home = Path(shutil.copytree(ROOT / "tests" / "can_crate", tmp_path / "consumer"))
-    whole, _ = _deployed(tmp_path)
-    alire.configure(home, own)
-    alire.configure(whole, of_dependencies)
-    _built(home / "can_by_hand.gpr", alire.project_path(whole), tmp_path)
-    _run(home / "bin" / "can_by_hand_main", tmp_path)
-    assert (tmp_path / "objects" / f"crate-{of_dependencies}-loopback").is_dir()
+    home, objects = _checkout(tmp_path, consumer), tmp_path / "objects"
+    with_profile(home, profile)
+    said = alr.call(home, "build", RAVENCHART_OBJECTS=str(objects))
+    assert WARNING.search(said) is None
+    (built,) = objects.iterdir()
+    assert built.name.startswith("crate-") and f"-{profile}" in built.name
+    (program,) = manifest(home)["executables"]
+    _run(next(path for path in home.rglob(program) if path.is_file()), tmp_path)
 
-
-@pytest.mark.parametrize("profile", OF_DEPENDENCIES)
-def test_a_consumer_of_the_runtime_alone_is_built_in_the_profile(
-    tmp_path: Path, profile: str
-) -> None:
-    home = Path(shutil.copytree(ROOT / "examples" / "by_hand", tmp_path / "consumer"))
-    _, runtime = _deployed(tmp_path)
-    alire.configure(runtime, profile)
-    _built(home / "by_hand.gpr", alire.project_path(runtime), tmp_path)
-    _run(home / "build" / "by_hand_main", tmp_path)
-    assert (tmp_path / "objects" / f"crate-runtime-{profile}").is_dir()
+    chosen = switches(tmp_path / crate)
+    assert "-gnatwe" not in chosen
+    assert not any(one.startswith("-gnaty") for one in chosen)
+    assert ("-gnata" in chosen, "-gnatp" in chosen) == (
+        (False, True) if profile == "release" else (True, False)
+    )
 
 
 @pytest.mark.slow
-def test_a_generated_program_is_built_with_the_crate(tmp_path: Path) -> None:
-    home = Path(shutil.copytree(ROOT / "examples" / "three_components", tmp_path / "consumer"))
-    whole, _ = _deployed(tmp_path)
-    alire.configure(whole, "release")
-    project, build = home / "generated" / "three_components.gpr", str(tmp_path / "build")
-    _built(project, alire.project_path(whole), tmp_path, RAVENCHART_BUILD=build)
-    assert (tmp_path / "build" / "release").is_dir()
-    assert (tmp_path / "objects" / "crate-release-loopback").is_dir()
-
-
-@pytest.mark.parametrize("crate", CRATES)
-def test_warnings_of_no_profile_are_errors_and_contracts_are_executed_but_in_release(
-    crate: str,
-) -> None:
-    for profile in alire.PROFILES:
-        switches = alire.switches(ROOT / crate, profile)
-        assert "-gnatwe" not in switches
-        assert not any(one.startswith("-gnaty") for one in switches)
-        assert ("-gnata" in switches, "-gnatp" in switches) == (
-            (False, True) if profile == "release" else (True, False)
-        )
+def test_a_generated_program_is_built_with_the_crate(alr: Alire, tmp_path: Path) -> None:
+    home, objects = _checkout(tmp_path, "examples/three_components"), tmp_path / "objects"
+    (home / "alire.toml").write_text(GENERATED, encoding="utf-8")
+    build = tmp_path / "build"
+    said = alr.call(home, "build", RAVENCHART_OBJECTS=str(objects), RAVENCHART_BUILD=str(build))
+    assert WARNING.search(said) is None
+    assert (build / "release").is_dir()
+    assert (objects / "crate-release-loopback").is_dir()
 
 
 PROJECTS = {
@@ -149,7 +149,7 @@ def test_the_processor_by_hand_is_40_lines() -> None:
 def test_the_crates_have_the_version_of_the_tool() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     for crate in CRATES:
-        known = alire.manifest(ROOT / crate)
+        known = manifest(ROOT / crate)
         assert (known["version"], known["licenses"]) == (project["version"], project["license"])
         for name in known["project-files"]:
             assert (ROOT / crate / name).is_file()
