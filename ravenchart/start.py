@@ -33,6 +33,9 @@ SOON = 0.002
 PRESENT = (datetime,)
 """What a library in Rust imports while it is imported, and panics where a signal comes then."""
 
+NO_PLUGINS = ("PYDANTIC_DISABLE_PLUGINS", "__all__")
+"""Pydantic searches all installed packages else. A program that imports us decides itself."""
+
 _asked: list[int] = []
 """The signals that asked the process to end, oldest first."""
 
@@ -50,6 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         _heed_signals()
         forget_working_folder()
+        os.environ.setdefault(*NO_PLUGINS)
         return _command(arguments)
     except (Stopped, KeyboardInterrupt) as stopped:
         return _stopped(stopped.number if isinstance(stopped, Stopped) else signal.SIGINT)

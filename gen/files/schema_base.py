@@ -6,7 +6,6 @@
 The forms themselves are in `schema`.
 """
 
-import os
 import re
 from typing import Annotated, Any, TypeVar
 
@@ -49,9 +48,6 @@ from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.origins import Origin
 
 from .located import Map, Seq, TextPlace
-
-os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
-"""Pydantic reads what every installed package says of itself otherwise."""
 
 
 def key(description: str, **limits: Any) -> Any:

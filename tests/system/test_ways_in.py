@@ -52,6 +52,17 @@ def called(words: list[str | Path], where: Path, **more: str) -> subprocess.Comp
     return subprocess.run(words, cwd=where, env=environment, capture_output=True, text=True)
 
 
+def test_a_program_that_imports_the_tool_keeps_its_environment(tmp_path: Path) -> None:
+    program = """if True:
+        import os
+        before = dict(os.environ)
+        from ravenchart.building import checking
+        assert dict(os.environ) == before
+        """
+    done = called([PYTHON, "-P", "-c", program], tmp_path, PYTHONPATH=str(ROOT))
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 @pytest.mark.parametrize("way", ["launcher", "wheel", "safe module", "empty path"])
 def test_modules_in_the_working_folder_are_not_imported(way: str, hostile: Path) -> None:
     more = {}
