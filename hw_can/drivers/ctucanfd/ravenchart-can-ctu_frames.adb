@@ -7,12 +7,17 @@ is
    function Identity_Of (Id : Identifier; Format : Frame_Format) return Word
    with
      Pre  => Fits (Id, Format),
-     Post =>
-       (if Format = Extended
-        then (Identity_Of'Result and 16#1FFF_FFFF#) = Word (Id)
-        else (Interfaces.Shift_Right (Identity_Of'Result, 18) and 16#7FF#)
-             = Word (Id));
+     Post => Bits_Of (Identity_Of'Result, Format) = Word (Id);
    --  IDENTIFIER_W.
+
+   procedure Lemma_Kept (Bits : Word; Id : Identifier)
+   with
+     Ghost,
+     Global => null,
+     Pre    => Bits = Word (Id),
+     Post   => Bits <= Word (Identifier'Last) and then Identifier (Bits) = Id;
+   --  An identifier is the same after both conversions. Provers do not see
+   --  it of what a function returned.
 
    function Rest_Of (Length : Fd_Frames.Fd_Length) return Word
    is (Interfaces.Shift_Left (Word (3 + (Length + 3) / 4), 11))
@@ -30,6 +35,15 @@ is
        or Interfaces.Shift_Left
             (Word (Fd_Frames.Byte (F, 4 * At_Word + 3)), 24));
    --  Four bytes, the first one lowest.
+
+   ----------------
+   -- Lemma_Kept --
+   ----------------
+
+   procedure Lemma_Kept (Bits : Word; Id : Identifier) is
+   begin
+      pragma Assert (Identifier (Word (Id)) = Id and then Bits = Word (Id));
+   end Lemma_Kept;
 
    -----------------
    -- Identity_Of --
@@ -76,6 +90,7 @@ is
       Bits   : constant Interfaces.Unsigned_64 := Payload (F);
       Layout : Word :=
         Rest_Of (if F.Kind = Remote then 0 else F.Length) or Word (F.Length);
+      Result : Image;
    begin
       if F.Format = Extended then
          Layout := Layout or Extended_Bit;
@@ -83,14 +98,14 @@ is
       if F.Kind = Remote then
          Layout := Layout or Remote_Bit;
       end if;
-      return
-        (Layout   => Layout,
-         Identity => Identity_Of (F.Id, F.Format),
-         Data     =>
-           (0      => Word (Bits and 16#FFFF_FFFF#),
-            1      => Word (Interfaces.Shift_Right (Bits, 32)),
-            others => 0),
-         others   => 0);
+      Result.Layout   := Layout;
+      Result.Identity := Identity_Of (F.Id, F.Format);
+      Result.Data (0) := Word (Bits and 16#FFFF_FFFF#);
+      Result.Data (1) := Word (Interfaces.Shift_Right (Bits, 32));
+      Lemma_Kept (Bits_Of (Result.Identity, Format_Of (Result)), F.Id);
+      pragma Assert (Id_Of (Result) = F.Id);
+      pragma Assert (Frame_Of (Result).Id = F.Id);
+      return Result;
    end Image_Of;
 
    -----------------
@@ -147,6 +162,9 @@ is
          pragma Loop_Invariant
            (for all V in 0 .. W => Result.Data (V) = Packed (F, V));
       end loop;
+      Lemma_Kept (Bits_Of (Result.Identity, Format_Of (Result)), F.Id);
+      pragma Assert (Id_Of (Result) = F.Id);
+      pragma Assert (Fd_Frame_Of (Result).Id = F.Id);
       return Result;
    end Image_Of;
 

@@ -63,14 +63,21 @@ is
    is (if (I.Layout and Extended_Bit) /= 0 then Extended else Standard)
    with Global => null;
 
+   function Bits_Of (Identity : Word; Format : Frame_Format) return Word
+   is (if Format = Extended
+       then Identity and 16#1FFF_FFFF#
+       else Interfaces.Shift_Right (Identity, 18) and 16#7FF#)
+   with
+     Global => null,
+     Post   =>
+       Bits_Of'Result
+       <= (if Format = Extended then 16#1FFF_FFFF# else 16#7FF#);
+   --  The identifier in IDENTIFIER_W. A standard one stands where the upper
+   --  eleven bits of an extended one do.
+
    function Id_Of (I : Image) return Identifier
-   is (if Format_Of (I) = Extended
-       then Identifier (I.Identity and 16#1FFF_FFFF#)
-       else Identifier
-              (Interfaces.Shift_Right (I.Identity, 18) and 16#7FF#))
+   is (Identifier (Bits_Of (I.Identity, Format_Of (I))))
    with Global => null, Post => Fits (Id_Of'Result, Format_Of (I));
-   --  A standard identifier stands where the upper eleven bits of an
-   --  extended one do.
 
    function Code_Of (I : Image) return Fd_Frames.Length_Code
    is (Fd_Frames.Length_Code (I.Layout and 16#F#))
