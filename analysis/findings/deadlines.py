@@ -13,7 +13,7 @@ from ravenchart.analysis.core.chains import HopLatency
 from ravenchart.analysis.core.responses import Interference, Reason, Response
 from ravenchart.analysis.system.latencies import HopKind, Latency
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.analysis.units import duration, microseconds, percent
+from ravenchart.analysis.units import duration, percent, span
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus
@@ -97,7 +97,7 @@ def _of_task(response: Response, analysis: Analysis) -> Diagnostic:
         MISSED,
         task.origin,
         f"{task.element} misses its deadline: "
-        f"R = {microseconds(response.bound)} us > D = {duration(task.deadline)}",
+        f"R = {span(response.bound)} > D = {span(task.deadline)}",
         notes=_task_notes(response, analysis),
         hint="lengthen its period, or move an activity to a slower processor",
     )
@@ -107,9 +107,10 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
     """Its own time, the largest interferers and the blocker, each where it is declared."""
     tasks, blocking = analysis.tasks, response.blocking
     task = tasks[response.task.name]
-    notes = [(task.origin, f"it runs for up to {duration(task.wcet)} by itself")]
+    notes = [(task.origin, f"{task.element} itself runs for up to {span(task.wcet)}")]
     if response.jitter:
-        notes.append((task.origin, f"its release is late by up to {duration(response.jitter)}"))
+        late = f"the release of {task.element} is late by up to {span(response.jitter)}"
+        notes.append((task.origin, late))
     if response.bound is None:
         others = response.level.order[: response.level.reach]
         load = [other for other in others if other.name != task.element]
@@ -117,7 +118,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
         notes += [
             (
                 tasks[other.name].origin,
-                f"it is preempted by {other.name}, period {duration(other.period)}: "
+                f"{other.name}, period {span(other.period)}, preempts {task.element}: "
                 f"{percent(other.utilisation)} of the core",
             )
             for other in load[:LARGEST]
@@ -126,7 +127,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
         notes.append(
             (
                 tasks[share.task.name].origin,
-                f"it is preempted by {share.task.name}, period {duration(share.task.period)}: "
+                f"{share.task.name}, period {span(share.task.period)}, preempts {task.element}: "
                 f"{taken(share)}",
             )
         )
@@ -135,7 +136,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
         notes.append(
             (
                 origin,
-                f"{blocking.user} may hold it up for {duration(blocking.length)} "
+                f"{blocking.user} may block {task.element} for {span(blocking.length)} "
                 f"inside {blocking.resource}",
             )
         )
@@ -146,22 +147,22 @@ def taken(share: Interference) -> str:
     """How the time of an interferer adds up."""
     cost = share.task.plain_wcet
     if share.time == share.releases * cost:
-        return f"{share.releases} x {duration(cost)} = {duration(share.time)}"
-    return f"{share.releases} releases, not all with every row, take {duration(share.time)}"
+        return f"{share.releases} x {span(cost)} = {span(share.time)}"
+    return f"{share.releases} releases, not all with every row, take {span(share.time)}"
 
 
 def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
     """What is wrong with one message."""
     message = analysis.messages[response.frame.name]
-    notes = [(message.origin, f"its frame takes {duration(response.frame.cost)}")]
+    notes = [(message.origin, f"the frame of {message.name} takes {span(response.frame.cost)}")]
     if response.frame.jitter:
-        late = duration(response.frame.jitter)
-        notes.append((message.origin, f"it is handed to the controller up to {late} late"))
+        late = f"the controller gets {message.name} up to {span(response.frame.jitter)} late"
+        notes.append((message.origin, late))
     notes += [
         (
             analysis.messages[share.frame.name].origin,
-            f"{share.frame.name} goes before it: {share.instances} x "
-            f"{duration(share.frame.cost)} = {duration(share.time)}",
+            f"{share.frame.name} goes before {message.name}: {share.instances} x "
+            f"{span(share.frame.cost)} = {span(share.time)}",
         )
         for share in response.interference[:LARGEST]
     ]
@@ -177,7 +178,7 @@ def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
         MISSED,
         message.origin,
         f"message {message.name} misses its deadline: "
-        f"R = {microseconds(response.bound)} us > D = {duration(message.limit)}",
+        f"R = {span(response.bound)} > D = {span(message.limit)}",
         notes=notes,
         hint="give it a lower identifier, let its sender finish earlier, or set `deadline:`",
     )
@@ -193,7 +194,7 @@ def _of_bus(bus: Bus, analysis: Analysis) -> Diagnostic:
             (
                 message.origin,
                 f"{message.name} takes {percent(frame.utilisation)}: "
-                f"{duration(frame.cost)} every {duration(frame.period)}",
+                f"{span(frame.cost)} every {span(frame.period)}",
             )
         )
     return error(
@@ -282,16 +283,13 @@ def _late_chain(
     """A limit that is not kept, with the slowest hops."""
     hops = [(hop.step.name, (hop.wait or 0) + (hop.response or 0)) for hop in found.hops]
     hops.sort(key=lambda hop: -hop[1])
-    takes = "has no bound" if value is None else f"may take {microseconds(value)} us"
+    takes = "has no bound" if value is None else f"may take {span(value)}"
     return error(
         CHAIN_LATE,
         chain.origin,
-        f"the {what} of {chain.name} {takes}; its limit is {duration(limit)}",
+        f"the {what} of {chain.name} {takes}; its limit is {span(limit)}",
         notes=[(chain.origin, reason) for reason in _unbounded(found, what)]
-        or [
-            (chain.origin, f"{name} takes up to {microseconds(time)} us of it")
-            for name, time in hops[:LARGEST]
-        ],
+        or [(chain.origin, f"{name} takes up to {span(time)}") for name, time in hops[:LARGEST]],
         hint=_chain_hint(chain, found, what, value),
     )
 

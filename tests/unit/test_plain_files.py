@@ -360,7 +360,7 @@ def test_the_command_prints_a_verdict_a_table_and_json(
     assert main(["analyse", str(file)]) == 0
     text = capsys.readouterr().out
     assert text.startswith("every deadline is met\nall execution times can be multiplied by 3.9")
-    assert "chain control: reaction 13350 us, age 3350 us" in text
+    assert "chain control: reaction 13.35 ms, age 3.35 ms" in text
     assert main(["analyse", str(file), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert [task["response"] for task in found["tasks"]] == [2_100_000, 3_960_000, 3_350_000]

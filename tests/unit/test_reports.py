@@ -114,8 +114,8 @@ def test_a_longer_execution_is_worse_and_a_shorter_one_better() -> None:
     better = [row.element for row in back.rows if row.word is Wording.BETTER]
     assert worse == better
     assert {"task sense", "message frame_cmd", "chain control", "obc"} <= set(worse)
-    assert "task sense: R 2100 us -> 3110 us (+48.1 %), worse" in list(there.lines())
-    assert "task sense: C 900 us -> 1900 us (+111.1 %), changed" in list(there.lines())
+    assert "task sense: R 2.1 ms -> 3.11 ms (+48.1 %), worse" in list(there.lines())
+    assert "task sense: C 900 us -> 1.9 ms (+111.1 %), changed" in list(there.lines())
     assert there.verdict.startswith("every deadline and limit is still met; ")
     assert not differences("old", before, before).rows
 
