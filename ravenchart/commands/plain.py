@@ -114,7 +114,7 @@ def _observed(path: Path, system: PlainSystem) -> list[Execution]:
     if not isinstance(found, dict):
         raise Refused("\n".join(map(str, found[:SHOWN])))
     known = longest_times(system.network)
-    rows = [Execution(name, time, known[name]) for name, time in found.items()]
+    rows = [Execution(name, max(seen), known[name], tuple(seen)) for name, seen in found.items()]
     return sorted(rows, key=lambda row: -Fraction(row.observed, row.wcet))
 
 

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -64,9 +65,23 @@ def test_the_hops_of_a_chain_add_up_to_its_reaction() -> None:
 
 
 def test_a_histogram_is_a_picture_with_the_bound() -> None:
-    text = figure_svg(histogram((4_000_000, 5_000_000, 5_000_000), 9_000_000, 12_000_000))
+    lines = [("bound", 9_000_000), ("limit", 12_000_000)]
+    far = [("bound", 9_000_000), ("limit", 100_000_000)]
+    text = figure_svg(histogram((4_000_000, 5_000_000, 5_000_000), lines, "reaction"))
     assert text.startswith("<svg") and ">bound<" in text and ">limit<" in text
-    assert ">limit<" not in figure_svg(histogram((4_000_000,), 9_000_000, 100_000_000))
+    assert ">limit<" not in figure_svg(histogram((4_000_000,), far, "reaction"))
+
+
+def test_the_histogram_of_what_a_plain_file_was_observed_to_take(tmp_path: Path) -> None:
+    """A name in several rows has one; of a single time there is nothing to count."""
+    seen, page = tmp_path / "seen.csv", tmp_path / "page.html"
+    seen.write_text("task,observed_us\nsense,300\nsense,450\nsense,450\nwheel,600\n")
+    words = ["analyse", str(TWO_NODES), "--observed", str(seen), "--html", str(page)]
+    assert main(words) == 0
+    text = page.read_text(encoding="utf-8")
+    captions = re.findall(r"<figcaption>(\w+): how often each execution time", text)
+    assert captions == ["sense"]
+    assert ">WCET<" in text and ">execution in us<" in text
 
 
 def test_milliseconds_stand_beside_microseconds_from_1_ms_on() -> None:
