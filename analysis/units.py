@@ -24,7 +24,7 @@ def duration(ns: int) -> str:
     return "0 us"
 
 
-def span(ns: int) -> str:
+def spoken(ns: int) -> str:
     """A time in a sentence: in us below 1 ms, else in ms; rounded up to a tenth of a us."""
     return f"{milliseconds(ns)} ms" if abs(ns) >= MS else f"{microseconds(ns)} us"
 

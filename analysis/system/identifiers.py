@@ -22,7 +22,7 @@ from ravenchart.analysis.core.assignment import Order, audsley_frames, responses
 from ravenchart.analysis.core.bus import Frame
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.frames import leading_of_rank
-from ravenchart.analysis.units import percent, span
+from ravenchart.analysis.units import percent, spoken
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import System
@@ -109,7 +109,9 @@ def _refusal(
         text = f"{_some(len(left) - 1)} would go before {message.name}, {len(placed)} after it"
         notes = [(message.origin, text)]
     if first.blocker:
-        text = f"{messages[first.blocker].name} may block {message.name} for {span(first.blocked)}"
+        text = (
+            f"{messages[first.blocker].name} may block {message.name} for {spoken(first.blocked)}"
+        )
         notes.append((messages[first.blocker].origin, text))
     notes += [
         (messages[one.frame.name].origin, f"{messages[one.frame.name].name} {_needs(one)}")
@@ -142,4 +144,4 @@ def _needs(response: FrameResponse) -> str:
     if response.bound is None:
         load = percent(response.level.load)
         return f"has no bound: it and the messages before it need {load} of the bus"
-    return f"has R = {span(response.bound)} > D = {span(response.frame.deadline)}"
+    return f"has R = {spoken(response.bound)} > D = {spoken(response.frame.deadline)}"

@@ -25,7 +25,7 @@ from ravenchart.analysis.plain.results import Json, PlainResult, analyse_plain, 
 from ravenchart.analysis.present.plain_report import render_plain
 from ravenchart.analysis.present.report import Execution
 from ravenchart.analysis.present.sentences import distance_lines, offset_lines, overload_lines
-from ravenchart.analysis.units import percent, span
+from ravenchart.analysis.units import percent, spoken
 from ravenchart.failures import Refused
 from ravenchart.terminal import console
 
@@ -173,7 +173,7 @@ def _miss(name: str, found: Holistic) -> str:
     if needed is None:
         return f"{name} has no bound: {no_bound_reason(found.responses[name])}"
     over = needed - found.deadline(name)
-    return f"{name} misses its deadline by {span(over)}"
+    return f"{name} misses its deadline by {spoken(over)}"
 
 
 def _table(result: PlainResult) -> Table:
@@ -190,9 +190,9 @@ def _table(result: PlainResult) -> Table:
         slack = None if needed is None else found.deadline(name) - needed
         table.add_row(
             name,
-            *map(span, (item.period, item.deadline, longest)),
-            span(item.jitter),
-            span(response.blocked),
+            *map(spoken, (item.period, item.deadline, longest)),
+            spoken(item.jitter),
+            spoken(response.blocked),
             _shown(needed),
             _shown(slack),
         )
@@ -205,4 +205,4 @@ def _slack(name: str, found: Holistic) -> tuple[bool, int]:
 
 
 def _shown(time: int | None) -> str:
-    return "no bound" if time is None else span(time)
+    return "no bound" if time is None else spoken(time)

@@ -9,16 +9,16 @@ from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.model.buses import Message
 
 
-def sender_of(message: Message) -> str:
+def sending_state(message: Message) -> str:
     """The state of the sender."""
     return f"Sender_Of_{ada_case(message.name)}"
 
 
-def checker_of(message: Message) -> str:
+def checking_state(message: Message) -> str:
     """The state of the receiver."""
     return f"Checker_Of_{ada_case(message.name)}"
 
 
-def checker_before(message: Message) -> str:
+def state_before(message: Message) -> str:
     """The state of the receiver before the frame came."""
     return f"Checker_Before_{ada_case(message.name)}"

@@ -24,7 +24,7 @@ from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.model.buses import Message
 
-from .ends import checker_before, checker_of, sender_of
+from .ends import checking_state, sending_state, state_before
 
 PROTECTION = ref("Ravenchart.Can.Protection")
 
@@ -59,14 +59,14 @@ def setting_of(message: Message) -> list[Decl]:
 
 def states_of_senders(sent: Sequence[Message]) -> tuple[Decl, ...]:
     """The counters of the protected messages."""
-    return tuple(Object(sender_of(m), ref(PROTECTION, "Sender")) for m in sent if m.protection)
+    return tuple(Object(sending_state(m), ref(PROTECTION, "Sender")) for m in sent if m.protection)
 
 
 def protecting(message: Message) -> tuple[Stmt, ...]:
     """Write the header of a frame that is about to go, and count."""
     if message.protection is None:
         return ()
-    given = (ref(sender_of(message)), _setting(message), ref("Frame"))
+    given = (ref(sending_state(message)), _setting(message), ref("Frame"))
     return (
         do(ref(PROTECTION, "Protect"), *given),
         Pragma("Assert", (call(ref(PROTECTION, "Is_Intact"), ref("Frame"), _setting(message)),)),
@@ -78,7 +78,7 @@ def receiver_of(message: Message) -> tuple[Decl, ...]:
     if message.protection is None:
         return ()
     kind = ref(PROTECTION, "Receiver")
-    return (Object(checker_of(message), kind), Object(checker_before(message), kind))
+    return (Object(checking_state(message), kind), Object(state_before(message), kind))
 
 
 def checked(
@@ -87,8 +87,8 @@ def checked(
     """Take a frame that is usable; of one that is faulty do what is to be done then."""
     if message.protection is None:
         return taken
-    state, setting, frame = ref(checker_of(message)), _setting(message), ref("Frame")
-    before = ref(checker_before(message))
+    state, setting, frame = ref(checking_state(message)), _setting(message), ref("Frame")
+    before = ref(state_before(message))
     counter = call(ref(PROTECTION, "Counter"), frame, ref(setting, "Kind"))
     proved = both(
         call(ref(PROTECTION, "Is_Intact"), frame, setting),
