@@ -13,7 +13,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from ravenchart.analysis.core.can_response import FrameResponse
+from ravenchart.analysis.core.chains import Latency
 from ravenchart.analysis.core.holistic import Holistic
+from ravenchart.analysis.core.responses import Reason, Response
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.exchange import FORMATS, Unfit
 from ravenchart.analysis.findings import advice
@@ -36,6 +39,9 @@ EXPORTS = tuple(FORMATS)
 
 ENDINGS = (".csv", ".json")
 """How the names of plain files end."""
+
+FEW = 5
+"""Names in a line."""
 
 SHOWN = 50
 """Rows of the table; the tightest come first."""
@@ -130,15 +136,22 @@ def show(result: PlainResult, out: Console) -> None:
     """The verdict, then the tightest rows, chains and loads."""
     found = result.found
     missed = [name for name in found.responses if not found.meets(name)]
-    late = [latency.chain.name for latency in result.latencies if not latency.met]
     if result.met:
         out.print("every deadline is met", markup=False)
-    for line in overload_lines(loads(result.system.network)):
+    overloaded = overload_lines(loads(result.system.network))
+    for line in overloaded:
         out.print(line, markup=False)
+    if overloaded:
+        delayed = [name for name in missed if _is_delayed(found.responses[name])]
+        named = ", ".join(delayed[:FEW])
+        more = f" and {len(delayed) - FEW} more" if len(delayed) > FEW else ""
+        out.print(f"without a bound because of that: {named}{more}", markup=False)
+        missed = [name for name in missed if name not in delayed]
     for name in missed[:SHOWN]:
         out.print(_miss(name, found), markup=False)
-    for name in late:
-        out.print(f"chain {name} is above its limit", markup=False)
+    for latency in result.latencies:
+        if not latency.met:
+            out.print(_late(latency), markup=False)
     if result.scaling is not None:
         factor = result.scaling.factor
         limit = f", then {result.scaling.binding} fails" if result.scaling.binding else ""
@@ -165,6 +178,18 @@ def show(result: PlainResult, out: Console) -> None:
 def _advice(result: PlainResult) -> advice.Advice | None:
     """What to change so that deadlines are met; limits of chains are not looked at."""
     return advice.of_network(result.system.network, result.scaling, met=result.found.met)
+
+
+def _is_delayed(response: Response | FrameResponse) -> bool:
+    return response.reason in (Reason.OVERLOAD, Reason.RIVAL)
+
+
+def _late(latency: Latency) -> str:
+    """One line on a chain with a limit that is not kept."""
+    limits = latency.chain.reaction_limit, latency.chain.age_limit
+    pairs = zip((latency.reaction, latency.age), limits, strict=True)
+    unbounded = any(limit and time is None for time, limit in pairs)
+    return f"chain {latency.chain.name} {'has no bound' if unbounded else 'is above its limit'}"
 
 
 def _miss(name: str, found: Holistic) -> str:
