@@ -169,7 +169,5 @@ def test_an_overload_is_named_with_its_load(
     assert main(["analyse", str(now)]) == 1
     out = capsys.readouterr().out
     assert out.splitlines()[0] == "obc is overloaded: what runs on it needs 112.0 % of its time"
-    assert (
-        "sense has no bound: it and the tasks that preempt it need 110.1 % of the core, "
-        "more than all of it"
-    ) in " ".join(out.split())
+    named = "without a bound because of that: sense, housekeeping, wheel, frame_cmd, frame_hk"
+    assert " ".join(out.split()).find(named) > 0
