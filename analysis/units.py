@@ -24,6 +24,11 @@ def duration(ns: int) -> str:
     return "0 us"
 
 
+def spoken(ns: int) -> str:
+    """A time in a sentence: in us below 1 ms, else in ms; rounded up to a tenth of a us."""
+    return f"{milliseconds(ns)} ms" if abs(ns) >= MS else f"{microseconds(ns)} us"
+
+
 def microseconds(ns: int) -> str:
     """A duration in us, rounded up to a tenth; whole numbers without the tenth."""
     tenths = -(-ns // 100)

@@ -212,7 +212,7 @@ CODES: Mapping[str, str] = {
     "RV-1110": "The check of behaviour was not finished.",
     "RV-1111": "An invariant is checked on the model, and is no contract of the code.",
     "RV-1201": "A command in the dictionary lacks a type that its kind needs, or has one more.",
-    "RV-1202": "A command is per axis and has no scalar type that there could be one of per axis.",
+    "RV-1202": "A command is per axis, but has no scalar type that an axis could have a value of.",
     "RV-1203": "A required interface is bound to nothing, or twice.",
     "RV-1204": "The provider bound to an interface lacks a required command or event.",
     "RV-1205": "A required interface works on another number of axes than what it is bound to.",

@@ -148,7 +148,7 @@ def _unit(items: Sequence[_Item]) -> int:
     for item in items:
         if min(item.period, item.deadline) < unit:
             raise Unfit(
-                f"Cheddar's integers hold no {max(times)} ns beside the times of {item.name}"
+                f"Cheddar's integers cannot hold both {max(times)} ns and the times of {item.name}"
             )
     return unit
 

@@ -19,7 +19,7 @@ from ravenchart.analysis.core import changes, holistic
 from ravenchart.analysis.core.changes import Change, ChangeKind, Met, Part
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling, scaled_network
-from ravenchart.analysis.units import microseconds, percent
+from ravenchart.analysis.units import percent, spoken
 from ravenchart.gen.model.nodes import PROBE, SUPERVISOR
 
 if TYPE_CHECKING:
@@ -244,11 +244,11 @@ def _told(change: Change, found: Advice) -> str:
     if change.kind is ChangeKind.PERIOD:
         period = found.network.items()[change.name].period
         longer = -(-period * change.factor.numerator // change.factor.denominator)
-        after = f"{microseconds(period)} to {microseconds(longer)} us"
+        after = f"{spoken(period)} to {spoken(longer)}"
         return f"period of {change.name} longer by {share}: {after}"
     wcet = _wcet(found, change.name)
     shorter = wcet * change.factor.numerator // change.factor.denominator
-    after = f"{microseconds(wcet)} to {microseconds(shorter - 99)} us"
+    after = f"{spoken(wcet)} to {spoken(shorter - 99)}"
     return f"WCET of {change.name} less by {share}: {after}"
 
 

@@ -13,12 +13,14 @@ from ravenchart.analysis.core.chains import HopLatency
 from ravenchart.analysis.core.responses import Interference, Reason, Response
 from ravenchart.analysis.system.latencies import HopKind, Latency
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.analysis.units import duration, microseconds, percent
+from ravenchart.analysis.units import duration, percent, spoken
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import Carried, Chain, Gap
 from ravenchart.gen.origins import Origin
+
+from .causes import Causes, is_full
 
 MISSED = "RV-0901"
 """A task or message may complete after its deadline."""
@@ -45,18 +47,27 @@ LARGEST = 3
 def findings(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnostic, ...]:
     """One error for each deadline that may be missed, each overload, and each limit of a chain.
 
-    Deadlines of tasks and messages in ``but`` are left out.
+    Deadlines of tasks and messages in ``but`` are left out. So is an error that only depends on
+    another one, which has a note of how many there are.
     """
-    found: list[Diagnostic] = []
-    for name in (one for one in analysis.failed() if one not in but):
+    causes = Causes(analysis, [one for one in analysis.failed() if one not in but])
+    found: list[tuple[str, Diagnostic]] = []
+    for name in causes.failed:
         response = analysis.found.responses[name]
+        if causes.leave_out(causes.cause.get(name)):
+            continue
         if isinstance(response, Response):
-            found.append(_of_task(response, analysis))
+            found.append((name, _of_task(response, analysis)))
         else:
-            found.append(_of_message(response, analysis))
-    found += [_of_bus(bus, analysis) for bus in analysis.overloaded]
-    found += _of_transfers(analysis)
-    return (*found, *_of_receptions(analysis), *_of_chains(analysis), *_of_queues(analysis))
+            found.append((name, _of_message(response, analysis)))
+    found += [(bus.name, _of_bus(bus, analysis)) for bus in analysis.overloaded]
+    others = (
+        *_of_transfers(analysis),
+        *_of_receptions(analysis, causes),
+        *_of_chains(analysis, causes),
+        *_of_queues(analysis),
+    )
+    return (*(causes.counted(name, one) for name, one in found), *others)
 
 
 def _of_transfers(analysis: Analysis) -> Iterator[Diagnostic]:
@@ -74,7 +85,7 @@ def _of_transfers(analysis: Analysis) -> Iterator[Diagnostic]:
 def no_bound_reason(response: Response | FrameResponse) -> str:
     """Why there is no bound, in words."""
     reason = response.reason or Reason.EFFORT
-    if reason is not Reason.OVERLOAD:
+    if not is_full(response):
         return str(reason.value)
     load = percent(response.level.load)
     if isinstance(response, Response):
@@ -97,9 +108,11 @@ def _of_task(response: Response, analysis: Analysis) -> Diagnostic:
         MISSED,
         task.origin,
         f"{task.element} misses its deadline: "
-        f"R = {microseconds(response.bound)} us > D = {duration(task.deadline)}",
+        f"R = {spoken(response.bound)} > D = {spoken(task.deadline)}",
         notes=_task_notes(response, analysis),
-        hint="lengthen its period, or move an activity to a slower processor",
+        hint="lengthen the period of the message, or shorten what preempts the driver"
+        if task.driver_of
+        else "lengthen its period, or move an activity to a slower processor",
     )
 
 
@@ -107,9 +120,10 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
     """Its own time, the largest interferers and the blocker, each where it is declared."""
     tasks, blocking = analysis.tasks, response.blocking
     task = tasks[response.task.name]
-    notes = [(task.origin, f"it runs for up to {duration(task.wcet)} by itself")]
+    notes = [(task.origin, f"{task.element} itself runs for up to {spoken(task.wcet)}")]
     if response.jitter:
-        notes.append((task.origin, f"its release is late by up to {duration(response.jitter)}"))
+        late = f"the release of {task.element} is late by up to {spoken(response.jitter)}"
+        notes.append((task.origin, late))
     if response.bound is None:
         others = response.level.order[: response.level.reach]
         load = [other for other in others if other.name != task.element]
@@ -117,7 +131,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
         notes += [
             (
                 tasks[other.name].origin,
-                f"it is preempted by {other.name}, period {duration(other.period)}: "
+                f"{other.name}, period {spoken(other.period)}, preempts {task.element}: "
                 f"{percent(other.utilisation)} of the core",
             )
             for other in load[:LARGEST]
@@ -126,7 +140,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
         notes.append(
             (
                 tasks[share.task.name].origin,
-                f"it is preempted by {share.task.name}, period {duration(share.task.period)}: "
+                f"{share.task.name}, period {spoken(share.task.period)}, preempts {task.element}: "
                 f"{taken(share)}",
             )
         )
@@ -135,7 +149,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
         notes.append(
             (
                 origin,
-                f"{blocking.user} may hold it up for {duration(blocking.length)} "
+                f"{blocking.user} may block {task.element} for {spoken(blocking.length)} "
                 f"inside {blocking.resource}",
             )
         )
@@ -146,22 +160,22 @@ def taken(share: Interference) -> str:
     """How the time of an interferer adds up."""
     cost = share.task.plain_wcet
     if share.time == share.releases * cost:
-        return f"{share.releases} x {duration(cost)} = {duration(share.time)}"
-    return f"{share.releases} releases, not all with every row, take {duration(share.time)}"
+        return f"{share.releases} x {spoken(cost)} = {spoken(share.time)}"
+    return f"{share.releases} releases, not all with every row, take {spoken(share.time)}"
 
 
 def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
     """What is wrong with one message."""
     message = analysis.messages[response.frame.name]
-    notes = [(message.origin, f"its frame takes {duration(response.frame.cost)}")]
+    notes = [(message.origin, f"the frame of {message.name} takes {spoken(response.frame.cost)}")]
     if response.frame.jitter:
-        late = duration(response.frame.jitter)
-        notes.append((message.origin, f"it is handed to the controller up to {late} late"))
+        late = f"the controller gets {message.name} up to {spoken(response.frame.jitter)} late"
+        notes.append((message.origin, late))
     notes += [
         (
             analysis.messages[share.frame.name].origin,
-            f"{share.frame.name} goes before it: {share.instances} x "
-            f"{duration(share.frame.cost)} = {duration(share.time)}",
+            f"{share.frame.name} goes before {message.name}: {share.instances} x "
+            f"{spoken(share.frame.cost)} = {spoken(share.time)}",
         )
         for share in response.interference[:LARGEST]
     ]
@@ -177,7 +191,7 @@ def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
         MISSED,
         message.origin,
         f"message {message.name} misses its deadline: "
-        f"R = {microseconds(response.bound)} us > D = {duration(message.limit)}",
+        f"R = {spoken(response.bound)} > D = {spoken(message.limit)}",
         notes=notes,
         hint="give it a lower identifier, let its sender finish earlier, or set `deadline:`",
     )
@@ -193,7 +207,7 @@ def _of_bus(bus: Bus, analysis: Analysis) -> Diagnostic:
             (
                 message.origin,
                 f"{message.name} takes {percent(frame.utilisation)}: "
-                f"{duration(frame.cost)} every {duration(frame.period)}",
+                f"{spoken(frame.cost)} every {spoken(frame.period)}",
             )
         )
     return error(
@@ -205,13 +219,15 @@ def _of_bus(bus: Bus, analysis: Analysis) -> Diagnostic:
     )
 
 
-def _of_receptions(analysis: Analysis) -> Iterator[Diagnostic]:
+def _of_receptions(analysis: Analysis, causes: Causes) -> Iterator[Diagnostic]:
     """Receptions that take frames no faster than they come."""
     for processor in analysis.system.processors:
         received = analysis.system.received(processor.released_by, processor.node)
         taken_here = [one.message for one in received]
         load = sum((Fraction(processor.period, m.period) for m in taken_here), Fraction(0))
         if load > 1 or any(message in analysis.undelivered for message in taken_here):
+            if load <= 1 and causes.leave_out(causes.of_reception(processor.name)):
+                continue
             lost = "frames will be lost" if load > 1 else "a frame may wait without bound"
             yield error(
                 NO_BOUND,
@@ -238,7 +254,7 @@ def _of_queues(analysis: Analysis) -> Iterator[Diagnostic]:
             yield warning(QUEUE_OPEN, one.origin, f"any number of {one.what}, {lost}", hint=hint)
 
 
-def _of_chains(analysis: Analysis) -> Iterator[Diagnostic]:
+def _of_chains(analysis: Analysis, causes: Causes) -> Iterator[Diagnostic]:
     """Chains without a way, and those that may take too long."""
     for chain in analysis.system.chains:
         gap = chain.gap
@@ -251,6 +267,8 @@ def _of_chains(analysis: Analysis) -> Iterator[Diagnostic]:
         pairs = (("reaction", found.reaction, chain.reaction), ("age", found.age, chain.age))
         for what, value, limit in pairs:
             if limit is not None and (value is None or value > limit):
+                if causes.leave_out(causes.of_chain(found)):
+                    continue
                 yield _late_chain(chain, found, what, value, limit)
 
 
@@ -282,16 +300,13 @@ def _late_chain(
     """A limit that is not kept, with the slowest hops."""
     hops = [(hop.step.name, (hop.wait or 0) + (hop.response or 0)) for hop in found.hops]
     hops.sort(key=lambda hop: -hop[1])
-    takes = "has no bound" if value is None else f"may take {microseconds(value)} us"
+    takes = "has no bound" if value is None else f"may take {spoken(value)}"
     return error(
         CHAIN_LATE,
         chain.origin,
-        f"the {what} of {chain.name} {takes}; its limit is {duration(limit)}",
+        f"the {what} of {chain.name} {takes}; its limit is {spoken(limit)}",
         notes=[(chain.origin, reason) for reason in _unbounded(found, what)]
-        or [
-            (chain.origin, f"{name} takes up to {microseconds(time)} us of it")
-            for name, time in hops[:LARGEST]
-        ],
+        or [(chain.origin, f"{name} takes up to {spoken(time)}") for name, time in hops[:LARGEST]],
         hint=_chain_hint(chain, found, what, value),
     )
 

@@ -15,7 +15,7 @@ from enum import Enum
 from fractions import Fraction
 from typing import Any
 
-from ravenchart.analysis.units import duration, percent
+from ravenchart.analysis.units import percent, spoken
 
 Figures = Mapping[str, Any]
 """An object of `analyse --json`."""
@@ -88,12 +88,12 @@ def _plainly(value: object) -> str:
 def _times(longest: str) -> tuple[_Figure, ...]:
     """The times of a task or message, whose C is the figure ``longest``."""
     return (
-        _Figure("T", "period", Wording.CHANGED, duration),
-        _Figure("D", "deadline", Wording.CHANGED, duration),
-        _Figure("C", longest, Wording.CHANGED, duration),
-        _Figure("J", "jitter", Wording.CHANGED, duration),
-        _Figure("B", "blocked", Wording.CHANGED, duration),
-        _Figure("R", "response", Wording.WORSE, duration, "no bound"),
+        _Figure("T", "period", Wording.CHANGED, spoken),
+        _Figure("D", "deadline", Wording.CHANGED, spoken),
+        _Figure("C", longest, Wording.CHANGED, spoken),
+        _Figure("J", "jitter", Wording.CHANGED, spoken),
+        _Figure("B", "blocked", Wording.CHANGED, spoken),
+        _Figure("R", "response", Wording.WORSE, spoken, "no bound"),
     )
 
 
@@ -109,10 +109,10 @@ _ELEMENTS: tuple[tuple[str, str, Sequence[_Figure]], ...] = (
         "chains",
         "chain",
         (
-            _Figure("reaction limit", "reaction_limit", Wording.CHANGED, duration),
-            _Figure("reaction", "reaction", Wording.WORSE, duration, "no bound"),
-            _Figure("age limit", "age_limit", Wording.CHANGED, duration),
-            _Figure("age", "age", Wording.WORSE, duration, "no bound"),
+            _Figure("reaction limit", "reaction_limit", Wording.CHANGED, spoken),
+            _Figure("reaction", "reaction", Wording.WORSE, spoken, "no bound"),
+            _Figure("age limit", "age_limit", Wording.CHANGED, spoken),
+            _Figure("age", "age", Wording.WORSE, spoken, "no bound"),
         ),
     ),
 )

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Longest execution times that were seen, as plain rows: `task`, `row` or `message`."""
+"""Execution times that were seen, as plain rows: `task`, `row` or `message`."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ def longest_times(network: Network) -> dict[str, int]:
     return found
 
 
-def observed(text: str, file: str, network: Network) -> dict[str, int] | tuple[Problem, ...]:
-    """The longest time seen of each that the file lists, in ns, or what is wrong with it."""
+def observed(text: str, file: str, network: Network) -> dict[str, list[int]] | tuple[Problem, ...]:
+    """The times seen of each that the file lists, in ns, or what is wrong with it."""
     reading = read_rows(text, file)
     known = longest_times(network)
-    found: dict[str, int] = {}
+    found: dict[str, list[int]] = {}
     for entry in reading.entries:
         row = values(entry, reading, KINDS)
         if row is None:
@@ -51,7 +51,7 @@ def observed(text: str, file: str, network: Network) -> dict[str, int] | tuple[P
         if name not in known:
             reading.complain(entry.line, f"there is no {entry.kind} {name}")
         else:
-            found[name] = max(found.get(name, 0), row.number("observed"))
+            found.setdefault(name, []).append(row.number("observed"))
     if not reading.problems and not found:
         reading.complain(0, "no execution time was observed")
     return tuple(reading.problems) or found

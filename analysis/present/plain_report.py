@@ -14,11 +14,14 @@ from ravenchart.analysis.plain.results import PlainResult, loads
 from .bars import row_of, slack_of
 from .page import page
 from .report import Execution
-from .rows import chain_picture, hop_cells, instants_of
+from .rows import chain_picture, histogram_of, hop_cells, instants_of
 from .sentences import distance_lines, offset_lines, overload_lines
 
 SHOWN = 300
 """Rows of a table; the tightest come first."""
+
+SHOWN_HISTOGRAMS = 40
+"""Histograms of executions; those nearest to their WCETs come first."""
 
 
 def render_plain(
@@ -54,6 +57,10 @@ def render_plain(
         ],
         "shorter": [*offset_lines(found.responses.values()), *distance_lines(found)],
         "executions": executions,
+        "histograms": [
+            (one.row, histogram_of(one.times, [("WCET", one.wcet)], "execution"))
+            for one in [one for one in executions if len(one.times) > 1][:SHOWN_HISTOGRAMS]
+        ],
         "compared_with": earlier,
     }
     return page("plain.html", context)

@@ -15,6 +15,7 @@ from matplotlib.ticker import MaxNLocator
 
 from ravenchart.analysis.core.chains import Latency
 from ravenchart.analysis.system.critical import GIVEN, RunningSlice
+from ravenchart.analysis.units import MS
 
 from .sentences import families
 
@@ -133,32 +134,31 @@ BINS = 30
 """Bars of a histogram at most."""
 
 
-def histogram(times: Sequence[int], bound: int, limit: int) -> Figure:
-    """How often a chain was seen to react in that time, beside the bound and the limit."""
+def histogram(times: Sequence[int], lines: Sequence[tuple[str, int]], seen: str) -> Figure:
+    """How often something was ``seen`` to take that time, beside a bound and perhaps a limit."""
+    unit, factor = ("ms", 1e6) if max(*times, lines[0][1]) >= MS else ("us", 1e3)
     figure = Figure(figsize=(11, 2.4), layout="constrained")
     axes = figure.subplots()
     bins = min(BINS, max(1, len(set(times))))
-    axes.hist([time / 1e6 for time in times], bins=bins, color=COLOURS["own"])
+    axes.hist([time / factor for time in times], bins=bins, color=COLOURS["own"])
     axes.set_ylim(0, axes.get_ylim()[1] * 1.15)
-    lines = [("bound", bound)]
-    if limit <= 2 * max(bound, *times):
-        lines.append(("limit", limit))
-    _lines(axes, lines)
-    axes.set_xlim(0, max(*times, *(time for _, time in lines)) / 1e6 * 1.06)
+    drawn = [line for line in lines if line[1] <= 2 * max(lines[0][1], *times)]
+    _lines(axes, drawn, factor)
+    axes.set_xlim(0, max(*times, *(time for _, time in drawn)) / factor * 1.06)
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.set_xlabel("reaction in ms", color=INK)
-    axes.set_ylabel("reactions", color=INK, fontsize=8.5)
+    axes.set_xlabel(f"{seen} in {unit}", color=INK)
+    axes.set_ylabel(f"{seen}s", color=INK, fontsize=8.5)
     _plain(axes)
     return figure
 
 
-def _lines(axes: Axes, lines: Sequence[tuple[str, int]]) -> None:
+def _lines(axes: Axes, lines: Sequence[tuple[str, int]], factor: float = 1e6) -> None:
     """Times in ns that bound what is drawn, each with its name."""
     for name, time in lines:
         limit = name == "limit"
         colour = COLOURS["interference"] if limit else INK
-        axes.axvline(time / 1e6, color=colour, linewidth=1.6, linestyle="--" if limit else "-")
-        axes.annotate(name, (time / 1e6, 1), xycoords=("data", "axes fraction"), color=INK,
+        axes.axvline(time / factor, color=colour, linewidth=1.6, linestyle="--" if limit else "-")
+        axes.annotate(name, (time / factor, 1), xycoords=("data", "axes fraction"), color=INK,
                       xytext=(-3, -2) if not limit else (3, -2), textcoords="offset points",
                       fontsize=8.5, ha="left" if limit else "right", va="top")  # fmt: skip
 

@@ -32,7 +32,7 @@ from . import plots
 from .bars import row_of
 from .page import page
 from .picture import draw
-from .rows import chain_picture, hop_cells, instants_of
+from .rows import chain_picture, histogram_of, hop_cells, instants_of
 from .sentences import binding_lines, families, growth_line, offset_lines, verdict_line
 
 SHOWN_CHAINS = 40
@@ -123,11 +123,12 @@ class RunReport:
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """Longest execution seen of one row, beside its WCET."""
+    """Longest execution seen of one row, beside its WCET; ``times`` has all that are known."""
 
     row: str
     observed: int
     wcet: int
+    times: tuple[int, ...] = ()
 
     @property
     def exceeded(self) -> bool:
@@ -320,7 +321,10 @@ def _instants(analysis: Analysis) -> list[tuple[str, int, Markup]]:
 def _histograms(run: RunReport | None) -> list[tuple[str, Markup]]:
     """How often the chains were seen to react in what time."""
     return [
-        (one.chain, Markup(plots.figure_svg(plots.histogram(one.times, one.bound, one.limit))))
+        (
+            one.chain,
+            histogram_of(one.times, (("bound", one.bound), ("limit", one.limit)), "reaction"),
+        )
         for one in (run.journeys if run else ())
         if one.times
     ]

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from markupsafe import Markup
 
@@ -42,6 +42,11 @@ def chain_picture(found: Latency) -> Markup | None:
     if not pieces:
         return None
     return Markup(plots.figure_svg(plots.hops(pieces, found.reaction, found.chain.reaction_limit)))
+
+
+def histogram_of(times: Sequence[int], lines: Sequence[tuple[str, int]], seen: str) -> Markup:
+    """How often each time was seen, beside what bounds it."""
+    return Markup(plots.figure_svg(plots.histogram(times, lines, seen)))
 
 
 def instants_of(found: Holistic, names: Iterable[str]) -> list[tuple[str, int, Markup]]:

@@ -14,7 +14,7 @@ from ravenchart.analysis.core.holistic import Holistic
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.system.critical import GIVEN
 from ravenchart.analysis.system.timing import Analysis, Verdict
-from ravenchart.analysis.units import microseconds, percent
+from ravenchart.analysis.units import microseconds, percent, spoken
 
 WORDS = {Verdict.MET: "ok", Verdict.MISSED: "MISS", Verdict.NO_BOUND: "NONE"}
 """The verdict of a row in a word."""
@@ -109,8 +109,8 @@ def binding_lines(analysis: Analysis) -> tuple[str, ...]:
     slack = analysis.slack(name)
     room = "has no bound"
     if slack is not None:
-        room = f"misses by {microseconds(-slack)} us" if slack < 0 else ""
-        room = room or f"is the tightest, with a slack of {microseconds(slack)} us"
+        room = f"misses by {spoken(-slack)}" if slack < 0 else ""
+        room = room or f"is the tightest, with a slack of {spoken(slack)}"
     parts = sorted(window_parts(analysis, name), key=lambda part: -part.time)
     if not parts:
         return (f"{name} {room}",)

@@ -22,7 +22,7 @@ from ravenchart.analysis.core.assignment import Order, audsley_frames, responses
 from ravenchart.analysis.core.bus import Frame
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.frames import leading_of_rank
-from ravenchart.analysis.units import duration, microseconds, percent
+from ravenchart.analysis.units import percent, spoken
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import System
@@ -103,13 +103,15 @@ def _refusal(
     first, rest = tried[0], tried[1:]
     message = messages[first.frame.name]
     if first.frame.queue:
-        text = "all of the bus may go before it, for it leaves in the order sent: no identifier "
-        notes = [(message.origin, f"{text}helps it")]
+        text = f"no identifier helps {message.name}: its node sends in order, behind all others"
+        notes = [(message.origin, text)]
     else:
-        text = f"{_some(len(left) - 1)} would go before it, {len(placed)} after it"
+        text = f"{_some(len(left) - 1)} would go before {message.name}, {len(placed)} after it"
         notes = [(message.origin, text)]
     if first.blocker:
-        text = f"{messages[first.blocker].name} may hold it up for {duration(first.blocked)}"
+        text = (
+            f"{messages[first.blocker].name} may block {message.name} for {spoken(first.blocked)}"
+        )
         notes.append((messages[first.blocker].origin, text))
     notes += [
         (messages[one.frame.name].origin, f"{messages[one.frame.name].name} {_needs(one)}")
@@ -126,7 +128,7 @@ def _refusal(
         NO_ORDER,
         message.origin,
         f"no order of identifiers found that meets all deadlines of {bus.name}: {message.name} "
-        f"cannot have the lowest place that is left; it {_needs(first)}",
+        f"cannot have the lowest place that is left: there it {_needs(first)}",
         notes=notes,
         hint=hint,
     )
@@ -138,11 +140,8 @@ def _some(number: int) -> str:
 
 
 def _needs(response: FrameResponse) -> str:
-    """By how much it misses its deadline there."""
+    """How a message misses its deadline at a place."""
     if response.bound is None:
         load = percent(response.level.load)
-        return f"has no bound there: it and what goes before it need {load} of the bus"
-    return (
-        f"may take {microseconds(response.bound)} us there, and its deadline is "
-        f"{duration(response.frame.deadline)}"
-    )
+        return f"has no bound: it and the messages before it need {load} of the bus"
+    return f"has R = {spoken(response.bound)} > D = {spoken(response.frame.deadline)}"

@@ -303,7 +303,7 @@ def safe_state_is_near(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]
         message = f"no way leads from {at} to {safe}, the safe state of {thread.name}"
         notes = [
             (tree.region.state(safe).origin, "the safe state is here"),
-            (_origin(thread, edge), f"it comes there by {trace(tree, reach.way(thread, node))}"),
+            (_origin(thread, edge), f"the way there: {trace(tree, reach.way(thread, node))}"),
         ]
         hint = f"add a transition to {safe} that no guard shuts out"
         yield error("RV-1106", _origin(thread, edge), message, notes=notes, hint=hint)

@@ -276,7 +276,7 @@ def _violated(reach: Reachable, invariant: Invariant, found: Violation) -> Diagn
 def _not_inductive(invariant: Invariant, broken: Broken, looked: int) -> Diagnostic:
     message = f"the invariant {invariant.name} is not proved: {broken.step} may violate it"
     data = f"when {broken.data}" if broken.data else "whatever the data"
-    notes = [(broken.origin, f"it does so {data}")]
+    notes = [(broken.origin, f"the step violates it {data}")]
     searched = (
         f"no way from the start to it was found among {looked} situations"
         if looked

@@ -97,4 +97,4 @@ def way_to(reach: Reachable, thread: Thread, edge: Edge) -> str:
     """The shortest way to where a step begins, as a note."""
     way = reach.way(thread, edge.before)
     text = trace(thread.tree, way)
-    return f"it comes there by {text}" if len(way) > 1 else f"it begins with {text}"
+    return f"the way there: {text}" if len(way) > 1 else f"the way begins with {text}"

@@ -109,7 +109,7 @@ class States(NameScope[str]):
         if vertex is None or vertex.is_state:
             return None if vertex is None else vertex.name
         message = f"expected a state, found the {vertex.what} `{vertex.name}`"
-        hint = REGION_HINT if vertex.pseudo is None else "nothing rests there: name a state"
+        hint = REGION_HINT if vertex.pseudo is None else "a step cannot end there: name a state"
         findings.error("RV-0514", origin, message, hint=hint)
         return None
 

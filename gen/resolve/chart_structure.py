@@ -70,7 +70,7 @@ def _branching(tree: Tree, pseudo: Pseudostate) -> Iterator[Diagnostic]:
     leaving = tree.outgoing.get(pseudo.name, ())
     if not leaving:
         message = f"no transition leaves the {shown(pseudo)}"
-        hint = "nothing rests there: add transitions from it, the last with `guard: else`"
+        hint = "a step cannot end there: add transitions from it, the last with `guard: else`"
         yield error("RV-0517", pseudo.origin, message, hint=hint)
     otherwise = [t for t in leaving if t.otherwise]
     for second in otherwise[1:]:
@@ -105,7 +105,7 @@ def _circles(tree: Tree) -> Iterator[Diagnostic]:
             for t in tree.outgoing[name]
             if t.target in circle
         ]
-        hint = "a step must end: put a state into the circle"
+        hint = "a step must end: put a state into the cycle"
         yield error("RV-0518", first.origin, message, notes=notes, hint=hint)
 
 

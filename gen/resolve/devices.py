@@ -201,7 +201,7 @@ class Devices:
             return None
         if form.has("choose") and not form.has("facade"):
             message = "`choose` has no meaning without `facade`"
-            hint = f"remove it: whoever is bound to {name} gets what {name} provides"
+            hint = f"remove `choose`: a binding to {name} gets all that {name} provides"
             self.findings.error("RV-1210", form.at_key("choose"), message, hint=hint)
         if form.type is not None:
             kind = self.kinds.look_up(form.type, form.at("type"), self.findings)

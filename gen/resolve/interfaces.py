@@ -58,7 +58,7 @@ def command_of(
     kinds = [type_ for type_ in sides.values() if type_ is not None]
     if form.per_axis and findings.count() == before:
         if not kinds:
-            message = f"{name} has neither argument nor reply that there could be one of per axis"
+            message = f"`per_axis` has no meaning for {name}, which has neither argument nor reply"
             findings.error("RV-1202", form.at_key("per_axis"), message, hint="remove `per_axis`")
         for record in (type_ for type_ in kinds if isinstance(type_, RecordType)):
             message = f"{name} is per axis, but {record.name} is a record"
@@ -227,7 +227,11 @@ def _stand_in(
     if text == NOTHING:
         if is_read or reply is not None:
             message = f"{command.name} gives a reply, so its fallback cannot be `{NOTHING}`"
-            hint = "name what keeps the value up: `else: activity.item`" if is_read else None
+            hint = (
+                "name the data item that holds the value: `else: activity.item`"
+                if is_read
+                else None
+            )
             findings.error("RV-1207", at, message, hint=hint)
         return None
     if not is_read:
@@ -297,7 +301,7 @@ def stand_ins_agree(form: ComponentForm, component: Component, findings: Finding
         notes = [(activity.origin, f"{own} is declared here")]
         if item not in activity.writes:
             message = f"{own} does not write {item}"
-            hint = "name the activity that keeps the item up"
+            hint = "name the activity that writes the item"
             findings.error("RV-1207", at, message, notes=notes, hint=hint)
         for reader in component.runnables():
             taken = [name for name in activity.writes if name in reader.reads]

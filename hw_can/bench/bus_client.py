@@ -393,7 +393,9 @@ class RavenchartBus(can.BusABC):
         if record.kind is not RecordKind.WELCOME:
             raise can.CanOperationError(f"bus protocol: {record.kind.name} is no welcome")
         if record.code != VERSION:
-            raise can.CanOperationError(f"version {record.code} is spoken there, {VERSION} here")
+            raise can.CanOperationError(
+                f"the server has protocol {record.code}, this client {VERSION}"
+            )
         return record
 
     def _check_usable(self) -> None:

@@ -401,7 +401,7 @@ def _problems(made: BuiltProgram, depths: Depths) -> Iterator[Diagnostic]:
             case longest.Unbounded(name, place, objects):
                 yield error(
                     "RV-1504", _origin(place) or unknown,
-                    f"the frame of {graph.ada_name(name)} has a size that no bound is known of",
+                    f"the size of the frame of {graph.ada_name(name)} has no known bound",
                     notes=[(_origin(o.rpartition(" ")[2]) or unknown,
                             f"{o.rpartition(' ')[0] or 'an object'} has a size of run time")
                            for o in objects],

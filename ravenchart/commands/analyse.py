@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ravenchart.analysis.units import microseconds
+from ravenchart.analysis.units import spoken
 from ravenchart.failures import OK, WRONG, Refused
 from ravenchart.terminal import progress
 
@@ -50,10 +50,11 @@ def execute(options: argparse.Namespace) -> int:
     printed = options.json or options.export is not None
     if printed and any((options.html, options.observed, options.bounds)):
         raise Refused(
-            "ravenchart: error: --json and --export go without --html, --observed and --bounds"
+            "ravenchart: error: --json and --export cannot be combined with --html, --observed "
+            "and --bounds"
         )
     if options.export is not None and options.compare is not None:
-        raise Refused("ravenchart: error: --export goes without --compare")
+        raise Refused("ravenchart: error: --export cannot be combined with --compare")
     if options.model.suffix.lower() in plain.ENDINGS:
         if options.bounds is not None:
             raise Refused("ravenchart: error: --bounds is for a model")
@@ -124,12 +125,12 @@ def _is_bounded(options: argparse.Namespace, checked: Checked, given: Mapping[st
     """Print each bound of a static tool beside its WCET; none is above it."""
     table = bounds.rows(checked, given)
     for row in table:
-        wcet = f"its WCET of {microseconds(row.wcet)} us"
+        wcet = f"its WCET of {spoken(row.wcet)}"
         if row.bound is None:
             print(f"{row.row}: no bound is given for {wcet}")
         else:
             word = "ABOVE" if row.words else "within"
-            print(f"{row.row}: bound {microseconds(row.bound)} us, {word} {wcet}")
+            print(f"{row.row}: bound {spoken(row.bound)}, {word} {wcet}")
     for text in bounds.findings(table, given, checked.system):
         say(options.answer, text)
     return not any(row.words for row in table)

@@ -19,7 +19,7 @@ from .build_results import CheckResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments."""
     common.add_model(sub)
     sub.add_argument(
         "--watch", action="store_true",
@@ -36,7 +36,7 @@ def execute(options: argparse.Namespace) -> int:
         from . import watching
 
         if options.json:
-            raise Unusable("--watch goes without --json: it has no end to answer at")
+            raise Unusable("--watch cannot be combined with --json: it does not end")
         watching.watch(options.model)
     if options.all:
         return _all(options)
@@ -46,7 +46,7 @@ def execute(options: argparse.Namespace) -> int:
 def _all(options: argparse.Namespace) -> int:
     """Check each deployment; Refused in the end where one has errors."""
     if options.json:
-        raise Unusable("--all goes without --json: each deployment has an answer of its own")
+        raise Unusable("--all cannot be combined with --json: check each deployment by itself")
     refused: dict[str, Refused] = {}
     first: dict[str, str] = {}
     paths = deployments_of(options.model)

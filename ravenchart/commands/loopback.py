@@ -99,7 +99,7 @@ def tested(options: argparse.Namespace) -> bool:
     """
     both = options.receive_interface is not None or options.receive_channel is not None
     if options.echo and both:
-        raise BenchError("--echo goes without --receive-interface and --receive-channel")
+        raise BenchError("--echo cannot be combined with --receive-interface and --receive-channel")
     setup = Setup(
         interface=options.interface,
         channel=options.channel,

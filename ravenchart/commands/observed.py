@@ -17,7 +17,7 @@ from ravenchart.analysis.system.observed import (
     read_map,
     read_trace,
 )
-from ravenchart.analysis.units import microseconds
+from ravenchart.analysis.units import spoken
 from ravenchart.building.checking import Checked
 from ravenchart.failures import Refused
 
@@ -75,9 +75,9 @@ def report(checked: Checked, seen: Observation, path: Path, *, within: bool) -> 
 def tell(rows: Sequence[Execution], every: Collection[str]) -> bool:
     """Print what was seen of each of ``rows``, and which of ``every`` was not; none is above."""
     for row in rows:
-        longest, wcet = microseconds(row.observed), microseconds(row.wcet)
+        longest, wcet = spoken(row.observed), spoken(row.wcet)
         word = "ABOVE" if row.exceeded else "within"
-        print(f"{row.row}: {longest} us, {word} its WCET of {wcet} us")
+        print(f"{row.row}: {longest}, {word} its WCET of {wcet}")
     for name in sorted(set(every) - {row.row for row in rows}):
         print(f"{name}: not executed in this run")
     return not any(row.exceeded for row in rows)

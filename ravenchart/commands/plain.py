@@ -13,7 +13,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from ravenchart.analysis.core.can_response import FrameResponse
+from ravenchart.analysis.core.chains import Latency
 from ravenchart.analysis.core.holistic import Holistic
+from ravenchart.analysis.core.responses import Reason, Response
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.exchange import FORMATS, Unfit
 from ravenchart.analysis.findings import advice
@@ -25,7 +28,7 @@ from ravenchart.analysis.plain.results import Json, PlainResult, analyse_plain, 
 from ravenchart.analysis.present.plain_report import render_plain
 from ravenchart.analysis.present.report import Execution
 from ravenchart.analysis.present.sentences import distance_lines, offset_lines, overload_lines
-from ravenchart.analysis.units import duration, percent
+from ravenchart.analysis.units import percent, spoken
 from ravenchart.failures import Refused
 from ravenchart.terminal import console
 
@@ -36,6 +39,9 @@ EXPORTS = tuple(FORMATS)
 
 ENDINGS = (".csv", ".json")
 """How the names of plain files end."""
+
+FEW = 5
+"""Names in a line."""
 
 SHOWN = 50
 """Rows of the table; the tightest come first."""
@@ -114,7 +120,7 @@ def _observed(path: Path, system: PlainSystem) -> list[Execution]:
     if not isinstance(found, dict):
         raise Refused("\n".join(map(str, found[:SHOWN])))
     known = longest_times(system.network)
-    rows = [Execution(name, time, known[name]) for name, time in found.items()]
+    rows = [Execution(name, max(seen), known[name], tuple(seen)) for name, seen in found.items()]
     return sorted(rows, key=lambda row: -Fraction(row.observed, row.wcet))
 
 
@@ -130,15 +136,22 @@ def show(result: PlainResult, out: Console) -> None:
     """The verdict, then the tightest rows, chains and loads."""
     found = result.found
     missed = [name for name in found.responses if not found.meets(name)]
-    late = [latency.chain.name for latency in result.latencies if not latency.met]
     if result.met:
         out.print("every deadline is met", markup=False)
-    for line in overload_lines(loads(result.system.network)):
+    overloaded = overload_lines(loads(result.system.network))
+    for line in overloaded:
         out.print(line, markup=False)
+    if overloaded:
+        delayed = [name for name in missed if _is_delayed(found.responses[name])]
+        named = ", ".join(delayed[:FEW])
+        more = f" and {len(delayed) - FEW} more" if len(delayed) > FEW else ""
+        out.print(f"without a bound because of that: {named}{more}", markup=False)
+        missed = [name for name in missed if name not in delayed]
     for name in missed[:SHOWN]:
         out.print(_miss(name, found), markup=False)
-    for name in late:
-        out.print(f"chain {name} is above its limit", markup=False)
+    for latency in result.latencies:
+        if not latency.met:
+            out.print(_late(latency), markup=False)
     if result.scaling is not None:
         factor = result.scaling.factor
         limit = f", then {result.scaling.binding} fails" if result.scaling.binding else ""
@@ -167,13 +180,25 @@ def _advice(result: PlainResult) -> advice.Advice | None:
     return advice.of_network(result.system.network, result.scaling, met=result.found.met)
 
 
+def _is_delayed(response: Response | FrameResponse) -> bool:
+    return response.reason in (Reason.OVERLOAD, Reason.RIVAL)
+
+
+def _late(latency: Latency) -> str:
+    """One line on a chain with a limit that is not kept."""
+    limits = latency.chain.reaction_limit, latency.chain.age_limit
+    pairs = zip((latency.reaction, latency.age), limits, strict=True)
+    unbounded = any(limit and time is None for time, limit in pairs)
+    return f"chain {latency.chain.name} {'has no bound' if unbounded else 'is above its limit'}"
+
+
 def _miss(name: str, found: Holistic) -> str:
     """One line on a missed deadline."""
     needed = found.from_event(name)
     if needed is None:
         return f"{name} has no bound: {no_bound_reason(found.responses[name])}"
     over = needed - found.deadline(name)
-    return f"{name} misses its deadline by {duration(over)}"
+    return f"{name} misses its deadline by {spoken(over)}"
 
 
 def _table(result: PlainResult) -> Table:
@@ -190,9 +215,9 @@ def _table(result: PlainResult) -> Table:
         slack = None if needed is None else found.deadline(name) - needed
         table.add_row(
             name,
-            *map(duration, (item.period, item.deadline, longest)),
-            duration(item.jitter),
-            duration(response.blocked),
+            *map(spoken, (item.period, item.deadline, longest)),
+            spoken(item.jitter),
+            spoken(response.blocked),
             _shown(needed),
             _shown(slack),
         )
@@ -205,4 +230,4 @@ def _slack(name: str, found: Holistic) -> tuple[bool, int]:
 
 
 def _shown(time: int | None) -> str:
-    return "no bound" if time is None else duration(time)
+    return "no bound" if time is None else spoken(time)

@@ -21,7 +21,7 @@ from ravenchart.running.runs import RunRequest, joins_a_server, run_model
 
 from . import common, run_results, running
 
-ALONE = "without a scenario nobody is on the bus of one node"
+ALONE = "without a scenario no other node is on the bus"
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:

@@ -128,7 +128,7 @@ def _gateway(
     name, emulator = board.target.name, board.target.facts.emulator
     if scenario is None and nodes == 1:
         if log is not None:
-            raise Unusable(f"without `--scenario` nobody is on the bus of {name}: no log")
+            raise Unusable(f"without `--scenario` no other node is on the bus of {name}: no log")
         return None
     if emulator is None or emulator.gateway is None:
         raise Unusable(f"{name} has no gateway between its bus and this machine")

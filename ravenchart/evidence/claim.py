@@ -80,4 +80,4 @@ def verdict_of(problems: Sequence[str], *, shown: bool = True) -> Shown:
     return Shown.NOT_MET if problems else Shown.MET
 
 
-NO_RECORD = "no proof record is at hand: write one with `ravenchart prove MODEL --record FILE`"
+NO_RECORD = "no proof record is given: write one with `ravenchart prove MODEL --record FILE`"

@@ -408,7 +408,7 @@ def _runtime(facts: Facts) -> Iterator[Claim]:
     if not facts.runtime:
         yield Claim(
             "runtime", ClaimKind.RUNTIME, (facts.checked.system.name,), statement, theorem, "proof",
-            records.UNKNOWN_TOOL, Shown.NOT_SHOWN, ("its proof records are not at hand",), (),
+            records.UNKNOWN_TOOL, Shown.NOT_SHOWN, ("its proof records are not given",), (),
         )  # fmt: skip
     reasons = dict(facts.runtime_reasons)
     for record in facts.runtime:

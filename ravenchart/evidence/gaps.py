@@ -28,8 +28,8 @@ LIMITS = (
     ("effects", "No postcondition states what an effect does to the data, nor what a body of an "
      "activity without `ensures` does."),
     ("mutation", "No mutation score is part of this folder."),
-    ("records", "A proof record is a text file: whoever can write it can lie. Who does not trust "
-     "it runs `ravenchart prove MODEL --fresh` and compares."),
+    ("records", "A proof record is a text file, and can be edited. To check it, run "
+     "`ravenchart prove MODEL --fresh` and compare."),
     ("requirements", "An id at an element says that somebody saw a connection. That the element "
      "implements the text needs a review."),
 )  # fmt: skip
@@ -72,7 +72,7 @@ def _assumptions(facts: Facts) -> Iterator[Lack]:
     for one in found:
         yield Lack("assumption", one.id, f"{one.title[:1].upper()}{one.title[1:]}. {one.text}")
     if not found:
-        yield Lack("assumption", "ledger", "the ledger of assumptions is not at hand")
+        yield Lack("assumption", "ledger", "the ledger of assumptions is missing")
 
 
 def _outside(facts: Facts) -> Iterator[Lack]:

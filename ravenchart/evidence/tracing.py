@@ -54,7 +54,7 @@ class Probe:
         return self.outcome in (PASSED, UNKNOWN)
 
 
-UNKNOWN = "result not at hand"
+UNKNOWN = "result not given"
 
 
 @dataclass(frozen=True, slots=True)

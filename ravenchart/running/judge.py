@@ -12,7 +12,7 @@ from itertools import pairwise
 from ravenchart.analysis.present.report import Comparison, StepRow
 from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.system.observed import Observation
-from ravenchart.analysis.units import microseconds
+from ravenchart.analysis.units import spoken
 from ravenchart.gen.model.system import Processor, System
 from ravenchart.hw_can.bench.forms import TraceCheck
 from ravenchart.hw_can.bench.runner import ScenarioResult
@@ -131,14 +131,14 @@ def failures(
             yield "the trace holds no processor's counts"
     if ended.real_time:
         yield from (
-            f"{row.task} was observed to take {microseconds(row.observed)} us, "
-            f"above its bound of {microseconds(row.bound or 0)} us"
+            f"{row.task} was observed to take {spoken(row.observed)}, "
+            f"above its bound of {spoken(row.bound or 0)}"
             for row in compared
             if row.exceeded and not row.explained
         )
         yield from (
-            f"the chain {row.chain} was observed to react after {microseconds(row.observed)} us, "
-            f"above its bound of {microseconds(row.bound)} us"
+            f"the chain {row.chain} was observed to react after {spoken(row.observed)}, "
+            f"above its bound of {spoken(row.bound)}"
             for row in took
             if row.exceeded
             and not row.is_explained(withheld)

@@ -43,7 +43,7 @@ def check_plants(
             plant = plant_of(form, scenario.folder)
         except PlantError as fault:
             key = "class" if form.fmu is None else "fmu"
-            source.wrong(MISFIT, (*place, key), f"the plant {name} cannot be had: {fault}")
+            source.wrong(MISFIT, (*place, key), f"the plant {name} cannot be loaded: {fault}")
             continue
         with closing(plant):
             _check_names(name, form, plant, scenario, source)

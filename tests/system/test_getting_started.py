@@ -82,7 +82,7 @@ def test_the_one_wcet_that_the_page_raises_is_refused_with_the_task_that_it_name
     assert main(["check", str(model)]) == 1
     said = capsys.readouterr().err
     assert re.search(rf"model.yaml:\d+:\d+: error: {task} has no response-time bound", said)
-    assert "note: it is preempted by simulation" in said
+    assert "note: simulation, period 20 ms, preempts" in said
 
 
 @pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")

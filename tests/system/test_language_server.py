@@ -217,7 +217,7 @@ def test_a_key_and_a_name_are_explained(robot: Path) -> None:
         told = await _hovered(editor, "joint.yaml", "kind: queued", 2)
         assert told.startswith("`sampled` keeps the last value")
         told = await _hovered(editor, "model.yaml", "joint_x.Motion", 10)
-        assert "R = " in told and "us, D = " in told
+        assert "R = " in told and "ms, D = 20 ms" in told
 
     played(robot, scene)
 

@@ -93,6 +93,16 @@ def test_all_is_done_by_keys(shown: BrowserPage) -> None:
     expect(page.get_by_text("1 waiting for the release")).to_be_visible()
 
 
+def test_arrow_keys_go_from_tab_to_tab_and_around(shown: BrowserPage) -> None:
+    page = shown.page
+    page.get_by_role("tab", name="Last execution").focus()
+    for key, tab in (("ArrowRight", "Trace"), ("ArrowLeft", "Last execution"),
+                     ("ArrowLeft", "Event file"), ("ArrowRight", "Last execution")):  # fmt: skip
+        page.keyboard.press(key)
+        expect(page.get_by_role("tab", name=tab)).to_be_focused()
+        expect(page.get_by_role("tab", name=tab)).to_have_attribute("aria-selected", "true")
+
+
 def test_what_is_refused_is_said_beside_the_field(shown: BrowserPage) -> None:
     page = shown.page
     page.get_by_label("panel amount").fill("many")

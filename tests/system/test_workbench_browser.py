@@ -128,6 +128,14 @@ def test_a_row_is_moved_by_keys_and_keeps_the_focus(pane: Pane) -> None:
     expect(page.get_by_role("button", name="Undo")).to_be_enabled()
 
 
+def test_arrow_keys_go_from_one_outcome_to_the_next(pane: Pane) -> None:
+    page = pane.page
+    page.get_by_role("tab", name="Findings").focus()
+    page.keyboard.press("ArrowRight")
+    expect(page.get_by_role("tab", name="Chains")).to_be_focused()
+    expect(page.get_by_role("tab", name="Chains")).to_have_attribute("aria-selected", "true")
+
+
 def test_the_buttons_of_a_selected_row_do_the_same(pane: Pane) -> None:
     page = pane.page
     row = "joint_x.Monitoring"

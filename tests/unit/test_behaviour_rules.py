@@ -31,7 +31,7 @@ def test_guards_that_can_both_hold_are_told_with_data_and_a_way() -> None:
     assert (found.code, found.severity) == ("RV-1103", Severity.WARNING)
     value = int(found.message.partition("level = ")[2].partition(":")[0])
     assert 40 < value < 50
-    assert [text for _, text in found.notes] == ["low is here", "it begins with A"]
+    assert [text for _, text in found.notes] == ["low is here", "the way begins with A"]
 
 
 def test_guards_that_exclude_each_other_are_well() -> None:
@@ -175,7 +175,7 @@ def test_choice_that_can_get_stuck_is_an_error_with_data() -> None:
     found = only(model(region("Main", CHOICE, transitions % 5)))
     assert (found.code, found.severity) == ("RV-1104", Severity.ERROR)
     assert found.message == "Main may get stuck in P: no segment leaves it with level = 5"
-    assert [text for _, text in found.notes] == ["it begins with A", "then A -Go-> P"]
+    assert [text for _, text in found.notes] == ["the way begins with A", "then A -Go-> P"]
     assert not said(model(region("Main", CHOICE, transitions % 6)))
 
 

@@ -298,7 +298,7 @@ def test_requirements_are_traced_both_ways(home: Path) -> None:
     assert rows["R-1"].code == [f"{GENERATED}-valve-motion.ad{end}" for end in "bs"]
     assert [one.outcome for one in rows["R-1"].tests] == ["passed"]
     assert rows["R-2"].claims == ["chain-reaction"]
-    assert [one.outcome for one in rows["R-2"].tests] == ["result not at hand"]
+    assert [one.outcome for one in rows["R-2"].tests] == ["result not given"]
     assert rows["R-3"].claims == ["code-never-Valve.full", "never-Valve.full"]
     back = {one.element: one.requirements for one in found.elements}
     assert back == {"Valve.Motion.lost": ["R-1"], "Valve.full": ["R-3"], "reaction": ["R-2"]}

@@ -61,7 +61,7 @@ def on_bus(bus: Bus, *frames: Frame) -> Network:
         (
             Network((TASK, replace(TASK, name="b", period=2**60))),
             "cheddar",
-            "Cheddar's integers hold no",
+            "Cheddar's integers cannot hold both",
         ),
         (
             Network(

@@ -6,6 +6,8 @@
 from __future__ import annotations
 
 import hashlib
+import json
+import re
 import tomllib
 from pathlib import Path
 
@@ -90,6 +92,18 @@ def test_the_licence_is_one_text_and_one_identifier() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     named = {one.licence for one in licences.annotated() if not one.foreign}
     assert named == {project["project"]["license"]} == {licences.LICENCE}
+
+
+def test_the_version_is_one() -> None:
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    crates = [file for file in tracked() if Path(file).name == "alire.toml"]
+    assert len(crates) > 4
+    found = {file: tomllib.loads((ROOT / file).read_text())["version"] for file in crates}
+    package = "editors/vscode/package.json"
+    found[package] = json.loads((ROOT / package).read_text())["version"]
+    page = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8")
+    (found["docs/editors.md"],) = re.findall(r"ravenchart-(\S+)\.vsix", page)
+    assert {file: one for file, one in found.items() if one != version} == {}
 
 
 def test_the_map_of_the_house_names_every_folder() -> None:

@@ -170,12 +170,12 @@ def test_what_cannot_be_ordered_says_why() -> None:
     assert (found.code, found.origin.line) == ("RV-0908", 46)
     assert found.message == (
         "no order of identifiers found that meets all deadlines of can_bus: b cannot have the "
-        "lowest place that is left; it may take 3600 us there, and its deadline is 2 ms"
+        "lowest place that is left: there it has R = 3.6 ms > D = 2 ms"
     )
     assert [text for _, text in found.notes] == [
-        "1 message would go before it, 1 after it",
-        "c may hold it up for 1 ms",
-        "a may take 2600 us there, and its deadline is 2 ms",
+        "1 message would go before b, 1 after it",
+        "c may block b for 1 ms",
+        "a has R = 2.6 ms > D = 2 ms",
     ]
     assert found.hint == "lengthen a `deadline:` or period of these, or raise the bit rate"
 
@@ -197,7 +197,7 @@ def test_what_leaves_in_the_order_sent_is_helped_by_no_identifier() -> None:
     _, (found,) = with_good_identifiers(system_of(("id: 0x100, ", ""), urgent, audsley))
     assert "valve_out cannot have" in found.message
     assert [text for _, text in found.notes] == [
-        "all of the bus may go before it, for it leaves in the order sent: no identifier helps it"
+        "no identifier helps valve_out: its node sends in order, behind all others"
     ]
 
 

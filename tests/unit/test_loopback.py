@@ -258,7 +258,7 @@ def test_a_failure_is_told_in_each_form() -> None:
         (["--interface", "pcan", "--channel", "x"], "cannot be opened"),
         (
             ["--interface", "virtual", "--channel", "x", "--echo", "--receive-channel", "y"],
-            "--echo goes without",
+            "--echo cannot be combined with",
         ),
         (
             ["--interface", "virtual", "--channel", "x", "--receive-interface", "nowhere"],

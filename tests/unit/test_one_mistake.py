@@ -6,12 +6,15 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.system.timing import analyse
+from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.files import spans
 from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.files.spans import YamlMapping, YamlNode, YamlScalar
@@ -71,6 +74,45 @@ def misspelt(model: Path) -> Iterator[str]:
     assert root is not None
     for key in keys(root):
         yield text[: key.end] + text[key.end - 1] + text[key.end :]
+
+
+ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
+LEFT_OUT = re.compile(r"(\d+) errors? that depends? on this (is|are) left out")
+
+
+def late(text: str) -> list[Diagnostic]:
+    """The errors of time in the robot with that model."""
+    system = load(ROBOT, changed(ROBOT, text)).system
+    assert system is not None
+    return list(findings(analyse(system)))
+
+
+def left_out(found: list[Diagnostic]) -> int:
+    """How many errors they stand for besides themselves."""
+    notes = [text for one in found for _, text in one.notes]
+    return sum(int(match[1]) for text in notes if (match := LEFT_OUT.match(text)))
+
+
+def test_a_wrong_bit_rate_is_one_error() -> None:
+    (one,) = found = late(ROBOT.read_text().replace("500 kbit/s", "50 kbit/s"))
+    assert (one.code, one.message) == ("RV-0903", "robot_bus may be loaded to 203.2 %")
+    assert left_out(found) == 28  # 12 tasks, 7 messages, the reception, 4 chains twice
+
+
+def test_a_late_message_is_named_and_the_driver_and_chains_behind_it_are_counted() -> None:
+    found = late(ROBOT.read_text().replace("500 kbit/s", "125 kbit/s"))
+    assert {one.code for one in found} == {"RV-0901"}
+    assert all(one.message.startswith("message ") for one in found) and len(found) == 6
+    assert left_out(found) == 11  # 3 tasks of the driver, 4 chains twice
+
+
+def test_a_full_core_is_one_error_and_the_first_task_without_time_is_named() -> None:
+    (one,) = found = late(ROBOT.read_text().replace("driver_wcet: 40 us", "driver_wcet: 2 ms"))
+    assert one.message == (
+        "robot_bus.driver_rx.robot_command has no response-time bound: it and the tasks that "
+        "preempt it need 196.6 % of the core, more than all of it"
+    )
+    assert left_out(found) > 20
 
 
 @pytest.mark.slow

@@ -205,7 +205,7 @@ def test_a_scenario_with_a_wrong_plant_is_refused(old: str, new: str, told: str)
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("oven.py:Oven", "oven.py:Stove", "the plant oven cannot be had: oven.py has no class"),
+        ("oven.py:Oven", "oven.py:Stove", "the plant oven cannot be loaded: oven.py has no class"),
         ("capacity: 20", "capacity: 0", "ValueError: capacity must be above 0"),
         ("heater: heater.value", "fan: heater.value", "oven has no input `fan`"),
         (".value: temperature", ".value: heat", "oven has no output `heat`"),

@@ -48,6 +48,8 @@ from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.system import System
 
+from .ends import checking_state, sending_state, state_before
+
 AUTHENTICATION = ref("Ravenchart.Can.Authentication")
 
 UNIT = "Authentication"
@@ -152,18 +154,6 @@ def _setting(message: Message) -> DottedName:
     return ref(f"Authentication_Of_{ada_case(message.name)}")
 
 
-def _sender(message: Message) -> str:
-    return f"Sender_Of_{ada_case(message.name)}"
-
-
-def _receiver(message: Message) -> str:
-    return f"Checker_Of_{ada_case(message.name)}"
-
-
-def _before(message: Message) -> str:
-    return f"Checker_Before_{ada_case(message.name)}"
-
-
 SETTING = SubtypeDeclaration("Mac_Setting", ref(AUTHENTICATION, "Setting"))
 STATE = SubtypeDeclaration("Mac_State", ref(AUTHENTICATION, "Freshness_State"))
 """Short names: those of messages may be long."""
@@ -194,7 +184,7 @@ def _setting_of(message: Message) -> list[Decl]:
 
 def states_of_senders(sent: Sequence[Message]) -> tuple[Decl, ...]:
     """The freshness values of the authenticated messages that are sent."""
-    return tuple(Object(_sender(m), STATE.name) for m in sent if m.authentication)
+    return tuple(Object(sending_state(m), STATE.name) for m in sent if m.authentication)
 
 
 def variables(*, taken: bool) -> tuple[Decl, ...]:
@@ -228,7 +218,7 @@ def sealed(
     message: Message, own: Authentication, sent: tuple[Stmt, ...], refused: tuple[Stmt, ...]
 ) -> tuple[Stmt, ...]:
     """Send a frame with the next freshness value and its MAC; where there is none, do not."""
-    state, setting = _sender(message), _setting(message)
+    state, setting = sending_state(message), _setting(message)
     return (
         _begun(state, message),
         do(ref(AUTHENTICATION, "Take"), ref(state), VALUE, ref("Taken")),
@@ -252,15 +242,15 @@ def receiver_of(message: Message) -> tuple[Decl, ...]:
     """What is known of an authenticated message; the second one is for its assertion."""
     if message.authentication is None:
         return ()
-    return (Object(_receiver(message), STATE.name), Object(_before(message), STATE.name))
+    return (Object(checking_state(message), STATE.name), Object(state_before(message), STATE.name))
 
 
 def verified(
     message: Message, own: Authentication, taken: tuple[Stmt, ...], refused: tuple[Stmt, ...]
 ) -> tuple[Stmt, ...]:
     """Take a frame whose MAC is right; of another do what is to be done then."""
-    state, setting = ref(_receiver(message)), _setting(message)
-    before = _before(message)
+    state, setting = ref(checking_state(message)), _setting(message)
+    before = state_before(message)
     newer = OperatorChain(">", (VALUE, ref(before, "Last")))
     known = both(newer, _is_authentic(message, own))
     return (

@@ -24,23 +24,13 @@ from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.model.buses import Message
 
+from .ends import checking_state, sending_state, state_before
+
 PROTECTION = ref("Ravenchart.Can.Protection")
 
 
 def _setting(message: Message) -> DottedName:
     return ref(f"Protection_Of_{ada_case(message.name)}")
-
-
-def _sender(message: Message) -> str:
-    return f"Sender_Of_{ada_case(message.name)}"
-
-
-def _receiver(message: Message) -> str:
-    return f"Checker_Of_{ada_case(message.name)}"
-
-
-def _before(message: Message) -> str:
-    return f"Checker_Before_{ada_case(message.name)}"
 
 
 def setting_of(message: Message) -> list[Decl]:
@@ -69,14 +59,14 @@ def setting_of(message: Message) -> list[Decl]:
 
 def states_of_senders(sent: Sequence[Message]) -> tuple[Decl, ...]:
     """The counters of the protected messages."""
-    return tuple(Object(_sender(m), ref(PROTECTION, "Sender")) for m in sent if m.protection)
+    return tuple(Object(sending_state(m), ref(PROTECTION, "Sender")) for m in sent if m.protection)
 
 
 def protecting(message: Message) -> tuple[Stmt, ...]:
     """Write the header of a frame that is about to go, and count."""
     if message.protection is None:
         return ()
-    given = (ref(_sender(message)), _setting(message), ref("Frame"))
+    given = (ref(sending_state(message)), _setting(message), ref("Frame"))
     return (
         do(ref(PROTECTION, "Protect"), *given),
         Pragma("Assert", (call(ref(PROTECTION, "Is_Intact"), ref("Frame"), _setting(message)),)),
@@ -88,7 +78,7 @@ def receiver_of(message: Message) -> tuple[Decl, ...]:
     if message.protection is None:
         return ()
     kind = ref(PROTECTION, "Receiver")
-    return (Object(_receiver(message), kind), Object(_before(message), kind))
+    return (Object(checking_state(message), kind), Object(state_before(message), kind))
 
 
 def checked(
@@ -97,8 +87,8 @@ def checked(
     """Take a frame that is usable; of one that is faulty do what is to be done then."""
     if message.protection is None:
         return taken
-    state, setting, frame = ref(_receiver(message)), _setting(message), ref("Frame")
-    before = ref(_before(message))
+    state, setting, frame = ref(checking_state(message)), _setting(message), ref("Frame")
+    before = ref(state_before(message))
     counter = call(ref(PROTECTION, "Counter"), frame, ref(setting, "Kind"))
     proved = both(
         call(ref(PROTECTION, "Is_Intact"), frame, setting),

@@ -4,7 +4,7 @@
 // Below the drawing: what is wrong, chains, buses, advice, tables, and the source of what was clicked.
 
 import { html, useEffect, useRef, useState } from "./preact.js";
-import { Bar, Place, Word, useBench } from "./parts.js";
+import { Bar, Place, Word, tabKeys, useBench } from "./parts.js";
 import { get, time } from "./link.js";
 import { Allocation } from "./allocation.js";
 import { Live } from "./live.js";
@@ -20,17 +20,9 @@ export function Outcomes({ tab, setTab, at }) {
     ["allocation", "Allocation", 0, Allocation], ["live", state.replay ? "Replay" : "Live", 0, Live],
     ["source", "Source", 0, () => html`<${Source} at=${at} />`],
   ];
-  function key(event) {
-    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (!step) return;
-    const now = tabs.findIndex(([name]) => name === tab);
-    const next = tabs[(now + step + tabs.length) % tabs.length][0];
-    setTab(next);
-    document.getElementById(`tab-${next}`)?.focus();
-  }
   const Shown = (tabs.find(([name]) => name === tab) ?? tabs[0])[3];
   return html`<section class="pane outcomes" aria-label="Outcome">
-    <div role="tablist" aria-label="Outcome" onKeyDown=${key}>${tabs.map(([name, label, count]) => html`<button
+    <div role="tablist" aria-label="Outcome" onKeyDown=${tabKeys(tabs, tab, setTab)}>${tabs.map(([name, label, count]) => html`<button
       key=${name} id="tab-${name}" role="tab" aria-selected=${name === tab} aria-controls="outcome"
       tabindex=${name === tab ? 0 : -1} onClick=${() => setTab(name)}>${label}${count > 0
         ? html` <span class="count">${count}</span>` : ""}</button>`)}</div>

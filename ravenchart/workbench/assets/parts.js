@@ -18,6 +18,16 @@ export function Place({ at, children, label }) {
     onClick=${() => show(at)}>${children}</button>`;
 }
 
+/** The arrow keys of a row of tabs, whose entries begin with their names: the next one is shown. */
+export const tabKeys = (tabs, tab, setTab) => (event) => {
+  const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+  if (!step) return;
+  const now = tabs.findIndex(([name]) => name === tab);
+  const next = tabs[(now + step + tabs.length) % tabs.length][0];
+  setTab(next);
+  document.getElementById(`tab-${next}`)?.focus();
+};
+
 /** A value that people may change: Enter or leaving the field sends it, Escape takes it back.
     What follows from other values is shown as a placeholder. */
 export function Field({ label, value, follows, width = 8, optional = false, send, hidden = true }) {

@@ -8,7 +8,7 @@ import { Canvas } from "./canvas.js";
 import { highlight } from "./highlight.js";
 import { Inputs } from "./inputs.js";
 import { Reasons, Recording, Situation, Trace } from "./situation.js";
-import { Bench, rewind, useBench } from "./parts.js";
+import { Bench, rewind, tabKeys, useBench } from "./parts.js";
 import { Link } from "./link.js";
 
 function App() {
@@ -115,16 +115,8 @@ function Time() {
 function Outcome({ tab, setTab }) {
   const tabs = [["reasons", "Last execution", Reasons], ["trace", "Trace", Trace], ["file", "Event file", Recording]];
   const Shown = tabs.find(([name]) => name === tab)[2];
-  function key(event) {
-    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (!step) return;
-    const now = tabs.findIndex(([name]) => name === tab);
-    const next = tabs[(now + step + tabs.length) % tabs.length][0];
-    setTab(next);
-    document.getElementById(`tab-${next}`)?.focus();
-  }
   return html`<section class="pane outcomes" aria-label="Outcome">
-    <div role="tablist" aria-label="Outcome" onKeyDown=${key}>${tabs.map(([name, label]) => html`<button
+    <div role="tablist" aria-label="Outcome" onKeyDown=${tabKeys(tabs, tab, setTab)}>${tabs.map(([name, label]) => html`<button
       key=${name} id="tab-${name}" role="tab" aria-selected=${name === tab} aria-controls="outcome"
       tabindex=${name === tab ? 0 : -1} onClick=${() => setTab(name)}>${label}</button>`)}</div>
     <div id="outcome" role="tabpanel" aria-labelledby="tab-${tab}" tabindex="0"><${Shown} /></div>
