@@ -6,15 +6,15 @@
 from __future__ import annotations
 
 import argparse
-from itertools import chain
 from pathlib import Path
 
 from ravenchart.analysis.system.observed import TraceError
 from ravenchart.building.checking import Checked
-from ravenchart.failures import OK, Refused, Unusable
+from ravenchart.failures import OK, Refused
 from ravenchart.running.traces.files import read_traces
 from ravenchart.running.traces.formats import FORMATS
-from ravenchart.running.traces.simulated import is_simulated, of_simulation
+from ravenchart.running.traces.simulated import of_simulation
+from ravenchart.running.traces.sources import simulation_in
 from ravenchart.running.traces.timeline import Timeline, of_run
 
 from . import common
@@ -73,11 +73,8 @@ def execute(options: argparse.Namespace) -> int:
 
 def _timeline(checked: Checked, paths: list[Path]) -> Timeline:
     """What the files hold; TraceError where they do not fit the model."""
-    with paths[0].open(encoding="utf-8", errors="replace") as lines:
-        first = next((line.strip() for line in lines if line.strip()), "")
-        if is_simulated(first):
-            if len(paths) > 1:
-                raise Unusable("a simulation has one trace for all nodes: give one file")
-            return of_simulation(checked.system, chain([first], lines), str(paths[0]))
+    simulated = simulation_in(checked, paths, of_simulation)
+    if simulated is not None:
+        return simulated
     traces = read_traces(checked, paths)
     return of_run(checked.system, {node: one.seen for node, one in traces.items()})

@@ -20,8 +20,8 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     common.add_port(sub)
     sub.add_argument(
         "--replay", type=Path, action="append", default=[], metavar="FILE",
-        help="show a recorded run in place of running controllers: trace.txt; once for each of "
-        "several nodes, trace-NODE.txt",
+        help="show a recorded run in place of running controllers: trace.txt, or what `simulate` "
+        "printed; once for each of several nodes, trace-NODE.txt",
     )  # fmt: skip
     common.add_interface(sub, "show in Live the bus", builds=False)
     common.add_scheduler(sub)

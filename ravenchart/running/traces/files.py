@@ -25,6 +25,8 @@ class NodeTrace:
     seen: Observation
     reports: list[list[str]] = field(default_factory=list)
     """The lines of each report of counts. It begins with an N line, where the trace has one."""
+    simulated: bool = False
+    """Whether `ravenchart simulate` printed it: then nothing of it counts."""
 
 
 def read_traces(checked: Checked, paths: Sequence[Path]) -> dict[str, NodeTrace]:
