@@ -49,10 +49,12 @@ def execute(options: argparse.Namespace) -> int:
     """Write it in the other format; the exit status."""
     checked = common.checked(options, deadlines=False)
     try:
-        timeline = _timeline(checked, options.trace)
+        timeline, said = _timeline(checked, options.trace)
     except TraceError as fault:
         raise Refused(str(fault)) from None
     options.out.write_bytes(FORMATS[options.out.suffix](timeline))
+    for text in said:
+        say(options.answer, f"warning: the controller said: {text}")
     if not timeline.complete:
         say(options.answer, "warning: the trace was cut off: the counts of its end are missing")
     if timeline.gaps:
@@ -71,10 +73,11 @@ def execute(options: argparse.Namespace) -> int:
     return OK
 
 
-def _timeline(checked: Checked, paths: list[Path]) -> Timeline:
-    """What the files hold; TraceError where they do not fit the model."""
+def _timeline(checked: Checked, paths: list[Path]) -> tuple[Timeline, list[str]]:
+    """What the files hold, and what controllers said; TraceError where it does not fit."""
     simulated = simulation_in(checked, paths, of_simulation)
     if simulated is not None:
-        return simulated
+        return simulated, []
     traces = read_traces(checked, paths)
-    return of_run(checked.system, {node: one.seen for node, one in traces.items()})
+    said = [text for one in traces.values() for text in one.said]
+    return of_run(checked.system, {node: one.seen for node, one in traces.items()}), said

@@ -47,6 +47,9 @@ class ReplayView:
             "steps": {what: sum(one.count(what) for one in controllers) for what in STEPS},
             "gaps": [{"node": one.name} | asdict(gap) for one in controllers for gap in one.gaps],
             "cut": [one.name for one in controllers if not one.is_whole],
+            "said": [
+                {"node": node, "text": text} for node, one in found.items() for text in one.said
+            ],
             "simulated": any(one.simulated for one in found.values()),
         }  # the same at each instant
         self._lock = Lock()

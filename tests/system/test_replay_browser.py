@@ -142,6 +142,16 @@ def test_a_simulation_is_replayed(tmp_path: Path) -> None:
         pane.closed(bench.address)
 
 
+def test_why_a_board_has_ended_is_told(tmp_path: Path) -> None:
+    said = "error: control has ended by an exception: infusion_system-bed.adb:12"
+    trace = write(tmp_path / "board.txt", trace_map(), [f"T 1000 State {REGION} 0", "T 2", said])
+    with running(PUMP, "--replay", str(trace)) as bench, launched() as browser:
+        pane = BrowserPage(browser, bench.address)
+        expect(pane.page.locator(".player")).to_contain_text(f"The controller said: {said}")
+        expect(pane.page.locator(".player")).to_contain_text("The trace of board was cut off")
+        pane.closed(bench.address)
+
+
 def test_two_pages_show_one_instant(pane: BrowserPage, bench: Running) -> None:
     bench.act(kind="seek", at=7 * SECOND)  # as another page asks
     expect(pane.page.locator(".player .clock")).to_have_text("7.000 s of 20.000 s")

@@ -12,6 +12,7 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
+import can
 import pytest
 
 from ravenchart.analysis.system.observed import TraceMap, read_map
@@ -215,6 +216,27 @@ def test_a_simulation_stands_alone(trace: Path, tmp_path: Path) -> None:
     path.write_text("0.000 bed.Infusion: Self_Test.entry\n")
     with pytest.raises(Unusable, match="a simulation has one trace for all nodes"):
         ReplayView(PUMP, [trace, path])
+
+
+@pytest.mark.parametrize("suffix", [".blf", ".asc", ".log"])
+def test_a_log_of_a_bus_has_no_states_to_replay(suffix: str, tmp_path: Path) -> None:
+    log = tmp_path / f"bus{suffix}"
+    with can.Logger(log) as logger:
+        logger(can.Message(arbitration_id=0x111, is_extended_id=False, timestamp=1.0))
+    with pytest.raises(Unusable, match=r"bus\.... is a log of a bus: it has frames and no states"):
+        ReplayView(PUMP, [log])
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".json"])
+def test_what_a_trace_was_written_as_is_told_from_it(
+    suffix: str, trace: Path, tmp_path: Path, capsys: PRINTED
+) -> None:
+    out = tmp_path / f"run{suffix}"
+    assert main(["trace", str(PUMP), str(trace), "--out", str(out)]) == 0
+    with pytest.raises(Unusable, match="name the trace that it was made from"):
+        ReplayView(PUMP, [out])
+    assert main(["trace", str(PUMP), str(out), "--out", str(out)]) == 2
+    assert "name the trace that it was made from" in capsys.readouterr().err
 
 
 def test_a_model_without_its_program_has_no_names_and_the_command_in_the_message_writes_them(
