@@ -234,12 +234,13 @@ class ChartTree:
         )
 
     @cached_property
-    def _sources(self) -> dict[str, str]:
-        return {t.name: t.source for t in self.region.transitions}
+    def transitions(self) -> dict[str, Transition]:
+        """The transitions and segments by name, in model order."""
+        return {t.name: t for t in self.region.transitions}
 
     def source_of(self, transition: str) -> str:
         """Where a transition starts."""
-        return self._sources[transition]
+        return self.transitions[transition].source
 
     @cached_property
     def _triggered(self) -> dict[tuple[str, Occurrence], tuple[Transition, ...]]:

@@ -33,6 +33,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from itertools import groupby
 
 from .bus import Bus, Frame
@@ -56,6 +57,12 @@ def analyse(frames: Sequence[Frame], bus: Bus) -> tuple[FrameResponse, ...]:
 
     ValueError for a name that two of them have.
     """
+    return _analysed(tuple(frames), bus)
+
+
+@lru_cache(maxsize=64)
+def _analysed(frames: tuple[Frame, ...], bus: Bus) -> tuple[FrameResponse, ...]:
+    """As `analyse`; kept, for the rounds of a network, and a model that is changed, ask again."""
     distinct("messages", [frame.name for frame in frames])
     effort = Effort(WHOLE_EFFORT)
     order = tuple(sorted(frames, key=lambda frame: frame.rank))

@@ -234,11 +234,11 @@ def _delays(task: Task, core: str, network: Network, late: Mapping[str, int | No
 
 def _reach(frame: Frame, frames: Sequence[Frame]) -> int:
     """The most urgent rank that a frame and its queue can delay."""
-    return min(f.rank for f in frames if f is frame or (f.queue and f.queue == frame.queue))
+    return min(f.rank for f in frames if f == frame or (f.queue and f.queue == frame.queue))
 
 
 def _level(frame: Frame, frames: Sequence[Frame]) -> int:
     """The least urgent rank that a frame and its queue are analysed at."""
     if frame.reloaded:
         return max(f.rank for f in frames)
-    return max(f.rank for f in frames if f is frame or (f.queue and f.queue == frame.queue))
+    return max(f.rank for f in frames if f == frame or (f.queue and f.queue == frame.queue))

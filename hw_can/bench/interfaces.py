@@ -44,14 +44,19 @@ class BusEnd:
         return told
 
 
+def check_name(interface: str) -> None:
+    """BenchError where python-can has no such interface."""
+    if interface not in BACKENDS:
+        known = ", ".join(sorted(BACKENDS))
+        raise BenchError(f"python-can has no interface {interface!r}; it has {known}")
+
+
 def opened_bus(interface: BusEnd, *, echo: bool = False) -> can.BusABC:
     """One bus object, which receives its own frames with ``echo``; BenchError when there is none.
 
     Drivers raise what they like.
     """
-    if interface.name not in BACKENDS:
-        known = ", ".join(sorted(BACKENDS))
-        raise BenchError(f"python-can has no interface {interface.name!r}; it has {known}")
+    check_name(interface.name)
     options = interface.options() | ({"receive_own_messages": True} if echo else {})
     try:
         return can.Bus(interface.channel, interface.name, ignore_config=True, **options)

@@ -75,13 +75,29 @@ def add_interface(sub: argparse.ArgumentParser, use: str, *, builds: bool = True
     ``builds``: without it the command builds and starts something.
     """
     sub.add_argument(
-        "--interface", metavar="NAME",
+        "--interface", metavar="NAME", action=_OfOneBus,
         help=f"{use} on an interface of python-can, such as socketcan, slcan or ravenchart, at "
         f"the bit rate of the model{'; nothing is built or started' if builds else ''}",
     )  # fmt: skip
     sub.add_argument(
-        "--channel", help="its channel, such as can0, /dev/ttyACM0 or socket://HOST:PORT"
-    )
+        "--channel", action=_OfOneBus,
+        help="its channel, such as can0, /dev/ttyACM0 or socket://HOST:PORT",
+    )  # fmt: skip
+
+
+class _OfOneBus(argparse.Action):
+    """An option that is given once: a second adapter would silently take the place of the first."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: object,
+        option_string: str | None = None,
+    ) -> None:
+        if getattr(namespace, self.dest) is not None:
+            raise argparse.ArgumentError(self, "is given twice, and a model has one bus")
+        setattr(namespace, self.dest, values)
 
 
 def interface(options: argparse.Namespace, system: System) -> BusEnd | None:

@@ -6,15 +6,15 @@
 from __future__ import annotations
 
 import argparse
-from itertools import chain
 from pathlib import Path
 
 from ravenchart.analysis.system.observed import TraceError
 from ravenchart.building.checking import Checked
-from ravenchart.failures import OK, Refused, Unusable
+from ravenchart.failures import OK, Refused
 from ravenchart.running.traces.files import read_traces
 from ravenchart.running.traces.formats import FORMATS
-from ravenchart.running.traces.simulated import is_simulated, of_simulation
+from ravenchart.running.traces.simulated import of_simulation
+from ravenchart.running.traces.sources import simulation_in
 from ravenchart.running.traces.timeline import Timeline, of_run
 
 from . import common
@@ -49,10 +49,12 @@ def execute(options: argparse.Namespace) -> int:
     """Write it in the other format; the exit status."""
     checked = common.checked(options, deadlines=False)
     try:
-        timeline = _timeline(checked, options.trace)
+        timeline, said = _timeline(checked, options.trace)
     except TraceError as fault:
         raise Refused(str(fault)) from None
     options.out.write_bytes(FORMATS[options.out.suffix](timeline))
+    for text in said:
+        say(options.answer, f"warning: the controller said: {text}")
     if not timeline.complete:
         say(options.answer, "warning: the trace was cut off: the counts of its end are missing")
     if timeline.gaps:
@@ -71,13 +73,11 @@ def execute(options: argparse.Namespace) -> int:
     return OK
 
 
-def _timeline(checked: Checked, paths: list[Path]) -> Timeline:
-    """What the files hold; TraceError where they do not fit the model."""
-    with paths[0].open(encoding="utf-8", errors="replace") as lines:
-        first = next((line.strip() for line in lines if line.strip()), "")
-        if is_simulated(first):
-            if len(paths) > 1:
-                raise Unusable("a simulation has one trace for all nodes: give one file")
-            return of_simulation(checked.system, chain([first], lines), str(paths[0]))
+def _timeline(checked: Checked, paths: list[Path]) -> tuple[Timeline, list[str]]:
+    """What the files hold, and what controllers said; TraceError where it does not fit."""
+    simulated = simulation_in(checked, paths, of_simulation)
+    if simulated is not None:
+        return simulated, []
     traces = read_traces(checked, paths)
-    return of_run(checked.system, {node: one.seen for node, one in traces.items()})
+    said = [text for one in traces.values() for text in one.said]
+    return of_run(checked.system, {node: one.seen for node, one in traces.items()}), said

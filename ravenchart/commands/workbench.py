@@ -20,8 +20,8 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     common.add_port(sub)
     sub.add_argument(
         "--replay", type=Path, action="append", default=[], metavar="FILE",
-        help="show a recorded run in place of running controllers: trace.txt; once for each of "
-        "several nodes, trace-NODE.txt",
+        help="show a recorded run in place of running controllers: trace.txt, or what `simulate` "
+        "printed; once for each of several nodes, trace-NODE.txt",
     )  # fmt: skip
     common.add_interface(sub, "show in Live the bus", builds=False)
     common.add_scheduler(sub)
@@ -30,6 +30,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Serve until it is stopped; the exit status."""
+    from ravenchart.running.attaching import interface_of
     from ravenchart.workbench.hub import Hub
     from ravenchart.workbench.replay import ReplayView
     from ravenchart.workbench.server import WorkbenchPages
@@ -42,6 +43,8 @@ def execute(options: argparse.Namespace) -> int:
     def made() -> WorkbenchPages:
         with progress(f"read and analyse {options.model}"):
             session = Session(options.model)
+        if bus is not None and session.saved.analysis is not None:
+            interface_of(session.saved.analysis.system, *bus)
         if not options.replay:
             return WorkbenchPages(Hub(session, bus=bus, scheduler=options.scheduler))
         with progress("read the trace"):

@@ -14,6 +14,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from ravenchart.gen.files import spans
 from ravenchart.gen.files.spans import Plain, YamlMapping, YamlNode, YamlScalar, plain_tree
@@ -39,7 +40,7 @@ class Document:
     @classmethod
     def of(cls, text: str) -> Document | None:
         """The document of a text; None where it is not YAML, or not one mapping."""
-        root = spans.spans(text)
+        root = _tree(text)
         return None if root is None else cls(text, root)
 
     def changed(self, text: str, exchange: Exchange) -> Document:
@@ -48,6 +49,12 @@ class Document:
         if made is None or plain_tree(made.root) != _exchanged(self.root, exchange):
             raise LayoutError("the layout of the file does not allow this change: edit the file")
         return made
+
+
+@lru_cache(maxsize=8)
+def _tree(text: str) -> spans.YamlMapping | None:
+    """The tree of a text; kept, for a change makes it, and the state after the change asks."""
+    return spans.spans(text)
 
 
 @dataclass(frozen=True, slots=True)

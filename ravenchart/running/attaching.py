@@ -8,7 +8,7 @@ from __future__ import annotations
 from ravenchart.failures import Unusable
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import System
-from ravenchart.hw_can.bench.interfaces import BusEnd, joined_peer
+from ravenchart.hw_can.bench.interfaces import BusEnd, check_name, joined_peer
 from ravenchart.hw_can.bench.peer import BenchError, OnFrame, Peer
 
 from .vocabulary import BusVocabulary
@@ -22,8 +22,15 @@ def spoken_bus(system: System) -> Bus:
 
 
 def interface_of(system: System, name: str, channel: str) -> BusEnd:
-    """The interface with the bit rates that the model gives its bus; Unusable without a bus."""
+    """The interface with the bit rates that the model gives its bus.
+
+    Unusable without a bus, and where python-can has no such interface.
+    """
     bus = spoken_bus(system)
+    try:
+        check_name(name)
+    except BenchError as fault:
+        raise Unusable(str(fault)) from None
     data_rate = (bus.data_rate or bus.bit_rate) if bus.takes_fd else None
     return BusEnd(name, channel, bus.bit_rate, data_rate, fd=bus.takes_fd)
 

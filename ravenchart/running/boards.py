@@ -17,7 +17,6 @@ from pathlib import Path
 from ravenchart.analysis.system.observed import Observation, merged, read_map
 from ravenchart.building.targets import Board, Emulator
 from ravenchart.failures import Unusable
-from ravenchart.gen.language.terms import Ns
 from ravenchart.hw_can.bench.peer import BenchError, Codec
 from ravenchart.hw_can.bench.runner import Progress, ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
@@ -26,6 +25,7 @@ from ravenchart.tools import children
 from . import board_bus, bus_log, runs
 from .process import STOP_MARGIN, Ended
 from .result import RunOutcome
+from .traces.reports import BEGIN, SAID
 
 SERIAL = "serial.txt"
 
@@ -36,9 +36,6 @@ Process = subprocess.Popen[str]
 
 PATIENCE = 60.0
 """How long a second of a run may take, and the start of the emulator, in s."""
-
-SAID = ("error: ", "warning: ")
-"""How lines begin that a controller says besides its report."""
 
 
 def run_board(board: Board, request: runs.RunRequest, progress: Progress) -> RunOutcome:
@@ -143,26 +140,35 @@ def _concluded(
     """What a run showed by the serial lines of its reports."""
     parts: dict[str, Observation] = {}
     for one in request.controllers:
-        home = _home(request, one)
-        report, trace = home / SERIAL, home / "trace.txt"
-        lines = report.read_text("ascii", "replace").splitlines() if report.is_file() else []
-        said = tuple(line for line in lines if line.startswith(SAID))
+        several = len(request.controllers) > 1
+        name = f"trace-{one.node}.txt" if several else "trace.txt"
+        trace = request.folder.absolute() / name
+        said = write_trace(_home(request, one) / SERIAL, trace, together=several)
         ended = replace(ended, warnings=(*ended.warnings, *said))
-        kept = [f"{line}\n" for line in lines if not line.startswith(SAID)]
-        trace.write_text("".join(kept), encoding="ascii")
         seen = runs.read(trace, read_map(*_map(one)), problems)
         if seen is not None:
             seen.host_latency = None
             parts[one.node] = seen
     whole = next(iter(parts.values()), None)
     if len(request.controllers) > 1 and whole is not None:
-        for part in parts.values():
-            part.start = Ns(0)  # the looks of all boards begin together
         whole = merged(parts) if len(parts) == len(request.controllers) else None
     chains = len(request.controllers) == 1
     return runs.concluded(
         title, plan, played, whole, ended, problems, request.analysis, chains=chains
     )
+
+
+def write_trace(serial: Path, trace: Path, *, together: bool) -> tuple[str, ...]:
+    """Write the trace of a board from its serial line; what the controller said besides.
+
+    ``together``: with other boards. Their looks begin together, whatever the clock of each says.
+    """
+    lines = serial.read_text("ascii", "replace").splitlines() if serial.is_file() else []
+    kept = [line for line in lines if not line.startswith(SAID)]
+    if together:
+        kept = ["E 0" if BEGIN.fullmatch(line) else line for line in kept]
+    trace.write_text("".join(f"{line}\n" for line in kept), encoding="ascii", errors="replace")
+    return tuple(line for line in lines if line.startswith(SAID))
 
 
 def command(

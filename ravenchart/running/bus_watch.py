@@ -109,7 +109,7 @@ class BusWatch:
     """Takes the frames of a bus in a thread of its own; anybody may look."""
 
     def __init__(self, analysis: Analysis, interface: BusEnd) -> None:
-        """The first bus of the model, at that interface; Unusable where there is none."""
+        """The bus of the model, at that interface; Unusable where there is none."""
         self._words = BusVocabulary.of(analysis.system)
         bus = self._words.bus.name
         known = [m for m in analysis.system.frames if m.bus == bus]

@@ -27,8 +27,9 @@ REAL_TIME = (os.SCHED_FIFO, os.SCHED_RR)
 
 VALUES_NOT_SEEN = "values of ports, data and events"
 OTHER_VALUES = "values of events, and of ports and data that `record` does not name"
+NO_LAST_RESPONSE = "the last response of a processor: it keeps the longest"
 NEVER_SEEN = (
-    "the last response of a processor: it keeps the longest",
+    NO_LAST_RESPONSE,
     VALUES_NOT_SEEN,
     "how many events wait in the queues of charts",
 )

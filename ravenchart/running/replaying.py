@@ -29,10 +29,13 @@ from ravenchart.analysis.system.observed import (
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.language.terms import NO_TIME, Ns
 
-from .monitored import LISTED, NO_COUNTS, NodeMonitor, WatchedNode, event_of
+from .monitored import LISTED, NO_COUNTS, NO_LAST_RESPONSE, NodeMonitor, WatchedNode, event_of
 from .snapshots import RECENT, Snapshot, Tally
 from .traces.files import NodeTrace
 from .traces.values import Point, Quantity, extremes
+
+SIMULATED = "times and faults, and messages and queues of ports: a simulation has none"
+"""What no simulation shows."""
 
 MOST_POINTS = 480
 """Of more points of a value some are left out."""
@@ -76,6 +79,7 @@ class ReplayedController:
         """``late``: how long after the first controller of all it started, in ns."""
         self.name, self.late = node, late
         self._analysis, self._seen = analysis, trace.seen
+        self._simulated = trace.simulated
         records = sorted((*trace.seen.records, *trace.seen.values), key=_time)
         self._of: defaultdict[tuple[int, int], list[TraceRecord]] = defaultdict(list)
         for one in records:
@@ -107,7 +111,10 @@ class ReplayedController:
         ended = now >= self._end
         shown = NodeMonitor(self._analysis, self.name).shown(snapshot, None if ended else 0)
         shown.now, shown.ended = now, ended and self._seen.complete
-        if not number:
+        if self._simulated:
+            shown.not_seen = [SIMULATED if one == NO_COUNTS else one for one in shown.not_seen]
+            shown.not_seen.remove(NO_LAST_RESPONSE)
+        elif not number:
             first = f"before {self._reports[0].at / 1e9:.3f} s" if self._reports else "at all"
             missing = f"counts of processors, faults and losses: the trace has none {first}"
             shown.not_seen = [missing if one == NO_COUNTS else one for one in shown.not_seen]

@@ -50,7 +50,7 @@ class BusVocabulary:
 
     @staticmethod
     def of(system: System) -> BusVocabulary:
-        """That of the first bus, the one that scenarios are played on; there is one."""
+        """That of the bus of a system, which has one at most (RV-0802)."""
         bus = system.buses[0]
         database = cantools.database.load_string(emit_dbc(system, bus), "dbc")
         assert isinstance(database, cantools.database.Database)

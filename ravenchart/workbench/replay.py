@@ -13,12 +13,11 @@ from typing import Any
 
 from ravenchart.analysis.system.observed import TraceError
 from ravenchart.building import checking
-from ravenchart.failures import Refused, Unusable
+from ravenchart.failures import Refused
 from ravenchart.gen.language.terms import Ns
 from ravenchart.running.monitoring import KEPT
 from ravenchart.running.replaying import STEPS, ReplayedController, ReplayedRun
-from ravenchart.running.traces.files import read_traces
-from ravenchart.running.traces.simulated import is_simulated
+from ravenchart.running.traces.sources import recorded_nodes
 
 from .motion import WINDOW, plotted, shown_node
 from .publishing import RefusedRequestError
@@ -36,15 +35,8 @@ class ReplayView:
     def __init__(self, path: Path, traces: Sequence[Path]) -> None:
         """For the model at ``path``. Refused where a trace is not of it, or cannot be read."""
         self._checked = checking.check(path, deadlines=False)
-        for trace in traces:
-            with trace.open(encoding="utf-8", errors="replace") as lines:
-                if is_simulated(next((line.strip() for line in lines if line.strip()), "")):
-                    raise Unusable(
-                        f"{trace} is of a simulation, and a replay shows a run: `ravenchart "
-                        "simulate MODEL --open` steps through the charts of a simulation"
-                    )
         try:
-            found = read_traces(self._checked, traces)
+            found = recorded_nodes(self._checked, traces)
         except TraceError as fault:
             raise Refused(str(fault)) from None
         self._replay = ReplayedRun(self._checked.analysis, found)
@@ -55,6 +47,10 @@ class ReplayView:
             "steps": {what: sum(one.count(what) for one in controllers) for what in STEPS},
             "gaps": [{"node": one.name} | asdict(gap) for one in controllers for gap in one.gaps],
             "cut": [one.name for one in controllers if not one.is_whole],
+            "said": [
+                {"node": node, "text": text} for node, one in found.items() for text in one.said
+            ],
+            "simulated": any(one.simulated for one in found.values()),
         }  # the same at each instant
         self._lock = Lock()
 

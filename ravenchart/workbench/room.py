@@ -11,6 +11,7 @@ question is no longer of use.
 from __future__ import annotations
 
 import json
+import os
 import sys
 from base64 import b64decode
 from collections.abc import Callable
@@ -34,11 +35,15 @@ from ravenchart.failures import Unusable
 PAUSE = 0.2
 """Seconds that lie at least between two answers to one question."""
 
+LESS_URGENT = 10
+"""Added to the niceness: a change in the page is analysed first where cores are few."""
+
 Say = Callable[[dict[str, Any]], None]
 
 
 def main() -> None:
-    """Answer until there are no more questions."""
+    """Answer until there are no more questions, when nothing more urgent has to be done."""
+    os.nice(LESS_URGENT)
     for line in sys.stdin:
         answer(json.loads(line), lambda told: print(json.dumps(told), flush=True))
 

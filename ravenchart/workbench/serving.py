@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import os
 import signal
 import socket
@@ -44,6 +45,8 @@ def serve(
     """
     with _bound(port) as listening:
         pages = made()
+        gc.collect()
+        gc.freeze()  # what is there now stays: no search for garbage in a change goes through it
         publisher = pages.publisher
         secret, number = token(), listening.getsockname()[1]
         address = f"http://{ADDRESS}:{number}/{secret}/"

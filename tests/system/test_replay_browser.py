@@ -5,7 +5,9 @@
 
 from __future__ import annotations
 
+import subprocess
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Locator, expect
@@ -13,7 +15,7 @@ from playwright.sync_api import Locator, expect
 from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
 from tests.support.recordings import report, write
 from tests.support.snapshot_files import PUMP, number, trace_map
-from tests.support.workbench import Running, running
+from tests.support.workbench import Running, command, environment, running
 
 pytestmark = IN_BROWSER
 
@@ -115,6 +117,39 @@ def test_a_run_is_replayed_by_keys_alone(pane: BrowserPage) -> None:
     page.keyboard.press("Tab")
     page.keyboard.press("Tab")
     expect(page.get_by_role("button", name="Previous", exact=True)).to_be_focused()
+
+
+def test_a_simulation_is_replayed(tmp_path: Path) -> None:
+    told = [str(PUMP), "--interpreter", "--events", str(PUMP.parent / "events.yaml")]
+    words = command(*told, name="simulate")
+    done = subprocess.run(words, env=environment(), capture_output=True, text=True, check=True)
+    out = tmp_path / "out.txt"
+    out.write_text(done.stdout)
+    with running(PUMP, "--replay", str(out)) as bench, launched() as browser:
+        pane = BrowserPage(browser, bench.address)
+        page = pane.page
+        live = page.get_by_role("region", name="Controller of Infusion_System")
+        expect(live).to_contain_text("simulated, 0.000 s")
+        page.get_by_role("button", name="Next", exact=True).click()
+        expect(live).to_contain_text("At this instant: transition bed.Keys pressed")
+        page.get_by_role("slider", name="Instant").fill("600")
+        expect(live.get_by_role("row", name="bed.Infusion.Sensor Sensor_Good")).to_be_visible()
+        live.get_by_role("button", name="bed.Infusion", exact=True).click()
+        expect(active(pane)).to_contain_text(["Self_Test"])
+        page.get_by_role("slider", name="Instant").press("End")
+        expect(live).to_contain_text("19.000 s, the last line is here")
+        assert serious(page) == []
+        pane.closed(bench.address)
+
+
+def test_why_a_board_has_ended_is_told(tmp_path: Path) -> None:
+    said = "error: control has ended by an exception: infusion_system-bed.adb:12"
+    trace = write(tmp_path / "board.txt", trace_map(), [f"T 1000 State {REGION} 0", "T 2", said])
+    with running(PUMP, "--replay", str(trace)) as bench, launched() as browser:
+        pane = BrowserPage(browser, bench.address)
+        expect(pane.page.locator(".player")).to_contain_text(f"The controller said: {said}")
+        expect(pane.page.locator(".player")).to_contain_text("The trace of board was cut off")
+        pane.closed(bench.address)
 
 
 def test_two_pages_show_one_instant(pane: BrowserPage, bench: Running) -> None:

@@ -16,6 +16,7 @@ from playwright.sync_api import Browser, Locator, expect
 
 from ravenchart.paths import ROOT
 from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
+from tests.support.can_frames import within
 from tests.support.workbench import Running, running
 from tests.support.workbench_models import hundred_activities
 
@@ -325,6 +326,29 @@ def test_a_change_of_a_hundred_activities_is_on_the_page_soon(
     print(f"median {statistics.median(taken):.0f} ms, longest {max(taken):.0f} ms")
     assert statistics.median(taken) < 1_000
 
+
+def test_a_change_is_drawn_once(pane: Pane) -> None:
+    """The state comes twice: as the answer, and in the stream, where the advice follows it."""
+    page = pane.page
+    page.evaluate(COUNTED)
+    field = page.locator(".declared .times .field:nth-child(2) input").first
+    field.fill("7 us")
+    field.press("Enter")
+    assert within(lambda: page.evaluate("window.advised"))
+    assert page.evaluate("window.drawn") == 1
+
+
+COUNTED = """() => {
+  const parse = JSON.parse;
+  window.drawn = 0;
+  JSON.parse = (text) => {
+    const found = parse(text);
+    if (found?.undo && found.room === null) window.drawn += 1;
+    if (found?.undo && found.room !== null) window.advised = true;
+    return found;
+  };
+}"""
+"""Counts how often a changed state is drawn before its advice."""
 
 CHANGE = """async (value) => {
   const field = document.querySelector(".declared .times .field:nth-child(2) input");

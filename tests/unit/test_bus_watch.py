@@ -27,12 +27,14 @@ from ravenchart.running import bus_text, bus_watch
 from ravenchart.running.bus_watch import BusWatch, WatchedBus, duration, most_in_a_second
 from ravenchart.running.vocabulary import BusVocabulary
 from ravenchart.workbench import live as live_module
+from ravenchart.workbench import serving
 from ravenchart.workbench.live import LiveView
 from tests.support.bus_server import BusServer
 from tests.support.can_frames import within
 
 PUMP = ROOT / "examples" / "pump" / "model.yaml"
 ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
+ALONE = ROOT / "examples" / "three_components" / "model.yaml"
 ANALYSIS = checking.check(PUMP, deadlines=False).analysis
 WORDS = BusVocabulary.of(ANALYSIS.system)
 DISPLAY: dict[str, Value] = {"given": 70, "lamp": "Steady", "buzzer": "False"}
@@ -191,6 +193,7 @@ def test_monitor_shows_a_bus_on_which_no_controller_of_this_machine_runs(
     [
         (["--interface", "virtual"], "--interface and --channel go together"),
         (["--interface", "nothing", "--channel", "x"], "python-can has no interface 'nothing'"),
+        (["--interface", "socketcan", "--channel", "nowhere0"], "nowhere0' cannot be opened"),
         ([], "or name its bus with --interface and --channel"),
     ],
 )
@@ -198,6 +201,49 @@ def test_what_cannot_be_watched_is_said(words: list[str], text: str, capsys: PRI
     assert main(["monitor", str(PUMP), "--once", *words]) == UNUSABLE
     said = capsys.readouterr().err
     assert text in said and said.count("error: ") == 1
+
+
+@pytest.mark.parametrize("command", ["monitor", "workbench", "run", "shell"])
+@pytest.mark.parametrize("option", ["--interface", "--channel"])
+def test_a_second_adapter_is_refused_and_takes_the_place_of_none(
+    command: str, option: str, capsys: PRINTED
+) -> None:
+    words = ["--interface", "virtual", "--channel", "one", option, "virtual"]
+    with pytest.raises(SystemExit) as ended:
+        main([command, str(PUMP), *words])
+    assert ended.value.code == UNUSABLE
+    assert f"{option}: is given twice, and a model has one bus" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["monitor", "workbench"])
+@pytest.mark.parametrize(
+    ("model", "interface", "text"),
+    [(PUMP, "nothing", "has no interface 'nothing'"), (ALONE, "virtual", "has no bus")],
+)
+def test_a_bus_that_there_cannot_be_ends_the_command_before_anything_starts(
+    command: str,
+    model: Path,
+    interface: str,
+    text: str,
+    capsys: PRINTED,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(serving, "serve", lambda made, *words, **more: made())
+    words = ["--interface", interface, "--channel", "x"]
+    assert main([command, str(model), *words]) == UNUSABLE
+    said = capsys.readouterr()
+    assert text in said.err and "http://" not in said.out
+
+
+def test_a_second_bus_is_an_error_of_the_model(tmp_path: Path, capsys: PRINTED) -> None:
+    """Every command on a bus relies on it; docs/monitor.md says so."""
+    text = PUMP.read_text(encoding="utf-8")
+    other = "bit_rate: 1 Mbit/s, driver_wcet: 1 us, receive_depth: 8, transmit_depth: 8"
+    model = tmp_path / "model.yaml"
+    model.write_text(text.replace("buses:\n", f"buses:\n  other: {{{other}}}\n"), encoding="utf-8")
+    words = ["--interface", "virtual", "--channel", "x", "--once"]
+    assert main(["monitor", str(model), *words]) == WRONG
+    assert "RV-0802" in capsys.readouterr().err
 
 
 def test_a_bus_that_goes_ends_the_monitor(

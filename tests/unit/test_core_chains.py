@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise, product
 from typing import Any
@@ -13,10 +14,11 @@ import pytest
 
 from ravenchart.analysis.core import holistic
 from ravenchart.analysis.core.bus import Bus, Frame
+from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.chains import ChainStep, HopKind, Latency, TimedChain, latency
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
-from ravenchart.analysis.core.responses import Reason
+from ravenchart.analysis.core.responses import Reason, Response
 from ravenchart.analysis.core.tasks import Task
 
 
@@ -165,9 +167,15 @@ def test_what_is_released_without_bound_takes_those_below_with_it() -> None:
         task("above", 1, 10, "y", priority=6),
         task("below", 1, 10, "y", priority=4),
     )
-    frames = {"bus": (Frame("p", 1, 10, 10, 1), Frame("m", 2, 10, 10, 1), Frame("n", 3, 10, 10, 1))}
     released = {"after": "late", "m": "late"}
-    found = holistic.analyse(Network(tasks, frames, {"bus": Bus(1)}, released)).responses
+
+    def analysed() -> Mapping[str, Response | FrameResponse]:
+        names = enumerate("pmn", 1)
+        frames = {"bus": tuple(Frame(name, rank, 10, 10, 1) for rank, name in names)}
+        return holistic.analyse(Network(tasks, frames, {"bus": Bus(1)}, released)).responses
+
+    found = analysed()
+    assert analysed() == found, "from the responses of the bus that are kept, of other frames"
     reasons = {name: response.reason for name, response in found.items()}
     assert reasons == {
         **dict.fromkeys(("full", "above", "p")),

@@ -12,6 +12,7 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
+import can
 import pytest
 
 from ravenchart.analysis.system.observed import TraceMap, read_map
@@ -139,11 +140,103 @@ def test_a_trace_that_does_not_fit_is_refused_before_a_page_is_served(
     assert path.read_bytes() == before
 
 
-def test_a_simulation_is_no_run_and_the_message_says_what_shows_it(tmp_path: Path) -> None:
-    path = tmp_path / "simulated.txt"
-    path.write_text("0.000 bed.Infusion: Self_Test.entry\n")
-    with pytest.raises(Unusable, match="`ravenchart simulate MODEL --open` steps through"):
+# --- Simulations
+
+
+def simulated(model: Path, events: Path, out: Path, capsys: PRINTED, *more: str) -> Path:
+    """What `simulate` prints, in a file."""
+    words = ["simulate", str(model), "--events", str(events), "--interpreter", *more]
+    assert main(words) == 0
+    out.write_text(capsys.readouterr().out)
+    return out
+
+
+@pytest.mark.parametrize("more", [(), ("--json",)], ids=["text", "json"])
+def test_a_simulation_is_replayed_without_the_program(
+    more: tuple[str, ...], tmp_path: Path, capsys: PRINTED
+) -> None:
+    model = Path(shutil.copy(PUMP, tmp_path))
+    events = PUMP.parent / "events.yaml"
+    view = ReplayView(model, [simulated(model, events, tmp_path / "out.txt", capsys, *more)])
+
+    def at(seconds: float) -> dict[str, str | None]:
+        view.do(wish("seek", at=round(seconds * SECOND)))
+        (node,) = view.look(trace_map().digest)["nodes"]
+        return {one["name"]: one["state"] for one in node["charts"]}
+
+    sensor, motor = "bed.Infusion.Sensor", "bed.Infusion.Motor"
+    tested = {"bed.Infusion": "Self_Test", "bed.Keys": "Listening"}
+    assert at(0.3) == {**tested, sensor: "Listening", motor: "Turning"}
+    assert at(0.6) == {**tested, sensor: "Sensor_Good", motor: "Turning"}
+    assert at(15.06)["bed.Infusion"] == "All_Given"
+    assert at(2) == {**tested, "bed.Infusion": "Filling", sensor: None, motor: None}
+    view.do(wish("next", what="event"))
+    found = view.look(trace_map().digest)
+    (node,) = found["nodes"]
+    chart = next(one for one in node["drawn"] if one["name"] == "bed.Infusion")
+    assert set(chart["active"]) == {"Infusing", "Running", "Giving", "Loading"}
+    assert chart["last"] == {"taken": ["filled_up"]}
+    assert (node["node"], found["replay"]["at"]) == ("Infusion_System", 2_550_000_000)
+    assert found["text"] == "" and found["replay"]["simulated"] and not found["replay"]["cut"]
+    assert (node["processors"], node["queues"], node["counted"]) == ([], [], None)
+    assert "a simulation has none" in "; ".join(node["not_seen"])
+    assert "longest" not in "; ".join(node["not_seen"])
+
+
+def test_what_a_simulation_records_is_drawn(tmp_path: Path, capsys: PRINTED) -> None:
+    events = tmp_path / "events.yaml"
+    events.write_text("- {until: 3 s}\n")
+    trace = simulated(recorded.MODEL, events, tmp_path / "out.txt", capsys)
+    lines = [one for one in trace.read_text().splitlines() if " giver.hue = " in one]
+    assert lines
+    view = ReplayView(recorded.MODEL, [trace])
+    view.do(wish("seek", at=3 * SECOND))
+    (node,) = view.look(None)["nodes"]
+    values = {one["name"]: (one["value"], one["count"]) for one in node["values"]}
+    assert values["giver.hue"] == (lines[-1].rpartition(" ")[2], len(lines))
+    assert len(node["plots"]["giver.hue"]["points"]) == len(lines)
+
+
+@pytest.mark.parametrize(("line", "problem"), [
+    ("0.000 bed.Nothing: Self_Test.entry", "no chart bed.Nothing"),
+    ("0.000 bed.Infusion: Nothing.entry", "has no behaviour Nothing.entry"),
+    ("0.000 bed.Infusion: nothing.effect", "has no behaviour nothing.effect"),
+    ("0.000 bed.Infusion: Alarm.exit", "Alarm is left, but was not active"),
+    ("0.000 bed.Infusion: Self_Test.entry\nT 5 State 1 0", "out.txt:2: error: not a line of"),
+])  # fmt: skip
+def test_a_simulation_of_another_model_is_refused(line: str, problem: str, tmp_path: Path) -> None:
+    path = tmp_path / "out.txt"
+    path.write_text(f"{line}\n")
+    with pytest.raises(Refused, match=problem):
         ReplayView(PUMP, [path])
+
+
+def test_a_simulation_stands_alone(trace: Path, tmp_path: Path) -> None:
+    path = tmp_path / "out.txt"
+    path.write_text("0.000 bed.Infusion: Self_Test.entry\n")
+    with pytest.raises(Unusable, match="a simulation has one trace for all nodes"):
+        ReplayView(PUMP, [trace, path])
+
+
+@pytest.mark.parametrize("suffix", [".blf", ".asc", ".log"])
+def test_a_log_of_a_bus_has_no_states_to_replay(suffix: str, tmp_path: Path) -> None:
+    log = tmp_path / f"bus{suffix}"
+    with can.Logger(log) as logger:
+        logger(can.Message(arbitration_id=0x111, is_extended_id=False, timestamp=1.0))
+    with pytest.raises(Unusable, match=r"bus\.... is a log of a bus: it has frames and no states"):
+        ReplayView(PUMP, [log])
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".json"])
+def test_what_a_trace_was_written_as_is_told_from_it(
+    suffix: str, trace: Path, tmp_path: Path, capsys: PRINTED
+) -> None:
+    out = tmp_path / f"run{suffix}"
+    assert main(["trace", str(PUMP), str(trace), "--out", str(out)]) == 0
+    with pytest.raises(Unusable, match="name the trace that it was made from"):
+        ReplayView(PUMP, [out])
+    assert main(["trace", str(PUMP), str(out), "--out", str(out)]) == 2
+    assert "name the trace that it was made from" in capsys.readouterr().err
 
 
 def test_a_model_without_its_program_has_no_names_and_the_command_in_the_message_writes_them(

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+import os
 import random
 import re
 import shutil
@@ -20,6 +21,7 @@ import pytest
 
 from ravenchart.paths import ROOT
 from ravenchart.workbench import guard
+from tests.support.can_frames import within
 from tests.support.progress import without_progress
 from tests.support.workbench import PATIENCE, Running, command, environment, running, until
 
@@ -336,6 +338,26 @@ def test_a_signal_ends_it_in_order_while_pages_are_open(
         assert "Traceback" not in "".join(bench.lines)
     children = Path("/proc").glob("[0-9]*/cmdline")
     assert not [path for path in children if _is_room(path, tmp_path)]
+
+
+def test_advice_leaves_the_processor_to_changes(tmp_path: Path) -> None:
+    copied(tmp_path)
+    with running(tmp_path / "model.yaml") as bench:
+        page = bench.stream()
+        until(page, 0)
+        own = os.getpriority(os.PRIO_PROCESS, bench.process.pid)
+
+        def aside() -> list[int]:
+            found = Path("/proc").glob("[0-9]*/cmdline")
+            return [int(path.parent.name) for path in found if _is_room(path, tmp_path)]
+
+        within(lambda: min(map(priority, aside()), default=own) > own)
+        assert {priority(process) - own for process in aside()} == {10}
+
+
+def priority(process: int) -> int:
+    """The niceness of a process."""
+    return os.getpriority(os.PRIO_PROCESS, process)
 
 
 def _is_room(path: Path, folder: Path) -> bool:

@@ -14,6 +14,8 @@ from ravenchart.building.checking import Checked
 from ravenchart.building.programs import TRACE_MAP, programs_of
 from ravenchart.failures import Unusable
 
+from .reports import report_lines
+
 COUNTS = frozenset("NPAHLWF")
 """The first letters of lines that count something."""
 
@@ -25,6 +27,10 @@ class NodeTrace:
     seen: Observation
     reports: list[list[str]] = field(default_factory=list)
     """The lines of each report of counts. It begins with an N line, where the trace has one."""
+    said: list[str] = field(default_factory=list)
+    """What the controller of a board said besides: why it ended, for example."""
+    simulated: bool = False
+    """Whether `ravenchart simulate` printed it: then nothing of it counts."""
 
 
 def read_traces(checked: Checked, paths: Sequence[Path]) -> dict[str, NodeTrace]:
@@ -45,10 +51,12 @@ def read_traces(checked: Checked, paths: Sequence[Path]) -> dict[str, NodeTrace]
             raise Unusable(f"{path}: {text} {checked.path}` writes them")
         trace_map = read_map(names_of.read_text(encoding="utf-8"), str(names_of))
         reports: list[list[str]] = []
+        said: list[str] = []
         with path.open(encoding="ascii", errors="replace") as lines:
-            seen = read_trace(_noting(lines, reports), trace_map, str(path))
+            report = report_lines(lines, said, str(path))
+            seen = read_trace(_noting(report, reports), trace_map, str(path))
         of_model(seen, checked.system.digest, str(path))
-        found[node] = NodeTrace(seen, reports)
+        found[node] = NodeTrace(seen, reports, said)
     return found
 
 

@@ -23,6 +23,9 @@ from ravenchart.gen.model.system import System
 from .timeline import Mark, Slice, Timeline, TraceRow, Track
 from .values import Point, Quantity, Series
 
+INITIAL = re.compile(r"initial\(\w+\)")
+"""The initial transition of a region."""
+
 NUMBER = re.compile(r"-?\d{1,19}")
 
 Charts = dict[tuple[str, str], ChartTree]
@@ -43,39 +46,29 @@ def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
     TraceError for a line that does not fit the model.
     """
     found = Timeline(system.name)
-    charts: Charts = {
-        (instance.name, region.name): ChartTree(region)
-        for instance in system.instances
-        for region in instance.component.regions
-    }
+    charts = charts_of(system)
     active: dict[tuple[str, str, RegionKey], tuple[str, Ns]] = {}
-    recorded = _Recorded(system)
+    recorded = RecordedSeries(system)
     now = NO_TIME
-    for number, record in _records(lines, file):
-        if record.at < now:
-            raise TraceError(f"{file}:{number}: error: the time is before that of the line above")
+    for where, record in records_of(charts, lines, file):
         now = record.at
         if isinstance(record, ValueRecord):
-            recorded.take(record, f"{file}:{number}: error:")
+            recorded.take(record, where)
             continue
-        tree = charts.get((record.instance, record.region))
+        tree = charts[record.instance, record.region]
         chart = f"{record.instance}.{record.region}"
-        if tree is None:
-            raise TraceError(f"{file}:{number}: error: the model has no chart {chart}")
         for behaviour in record.behaviours:
             found.rows.append(TraceRow(now, system.name, "behaviour", chart, behaviour))
             name, _, what = behaviour.rpartition(".")
             if what == "effect":
                 found.marks.append(Mark(_track(found, chart, TOP), name, "transition", now))
                 continue
-            if what not in ("entry", "exit") or name not in tree.states:
-                raise TraceError(f"{file}:{number}: error: {chart} has no behaviour {behaviour}")
             key = (record.instance, record.region, tree.slots[name])
             before = active.pop(key, None)
             if what == "entry":
                 active[key] = (name, now)
             elif before is None or before[0] != name:
-                raise TraceError(f"{file}:{number}: error: {name} is left, but was not active")
+                raise TraceError(f"{where} {name} is left, but was not active")
             else:
                 found.slices.append(Slice(_track(found, chart, key[2]), name, before[1], now))
     for (instance, region, place), (name, start) in active.items():
@@ -90,7 +83,48 @@ def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
     return found
 
 
-class _Recorded:
+def charts_of(system: System) -> Charts:
+    """All charts of a system."""
+    return {
+        (instance.name, region.name): ChartTree(region)
+        for instance in system.instances
+        for region in instance.component.regions
+    }
+
+
+def records_of(
+    charts: Charts, lines: Iterable[str], file: str
+) -> Iterator[tuple[str, StepRecord | ValueRecord]]:
+    """Each step and value in order of time, with the place that an error of it names.
+
+    TraceError for a line that is none, and for a behaviour that no chart has.
+    """
+    now = NO_TIME
+    for number, record in _records(lines, file):
+        place = f"{file}:{number}: error:"
+        if record.at < now:
+            raise TraceError(f"{place} the time is before that of the line above")
+        now = record.at
+        if isinstance(record, StepRecord):
+            tree = charts.get((record.instance, record.region))
+            chart = f"{record.instance}.{record.region}"
+            if tree is None:
+                raise TraceError(f"{place} the model has no chart {chart}")
+            for behaviour in record.behaviours:
+                if not _has(tree, behaviour):
+                    raise TraceError(f"{place} {chart} has no behaviour {behaviour}")
+        yield place, record
+
+
+def _has(tree: ChartTree, behaviour: str) -> bool:
+    """Whether a chart has a behaviour of that name."""
+    name, _, what = behaviour.rpartition(".")
+    if what == "effect":
+        return name in tree.transitions or INITIAL.fullmatch(name) is not None
+    return what in ("entry", "exit") and name in tree.states
+
+
+class RecordedSeries:
     """The values that a simulation has recorded, by element."""
 
     def __init__(self, system: System) -> None:

@@ -11,10 +11,10 @@ export function time(ns) {
   return `${Math.ceil(ns / 100) / 10} us`;
 }
 
-/** What a server answers: its JSON, or an Error with its text, findings and `late`. */
-async function answered(response) {
+/** What a server answers, or an Error with its text, findings and `late`. */
+async function answered(response, whole = (found) => found.json()) {
+  if (response.ok) return whole(response);
   const found = await response.json().catch(() => ({ error: `status ${response.status}` }));
-  if (response.ok) return found;
   throw Object.assign(new Error(found.error), found, { status: response.status });
 }
 
@@ -26,16 +26,22 @@ export async function get(path, query = {}) {
 export class Link {
   constructor(show, reached) {
     this.number = -1;
+    this.text = "";
     this.show = show;
     this.queue = Promise.resolve();
     const events = new EventSource("events");
-    events.addEventListener("state", (event) => this.take(JSON.parse(event.data)));
+    events.addEventListener("state", (event) => this.take(event.data));
     events.addEventListener("open", () => reached(true));
     events.addEventListener("error", () => reached(false));
   }
 
-  take(state) {
+  /** Shows a state. A change brings it twice, as its answer and in the stream: it is drawn once.
+      `again`: also the one that is shown, for people may have chosen something else. */
+  take(text, again = false) {
+    if (text === this.text && !again) return;
+    const state = JSON.parse(text);
     if (state.number < this.number) return; // an older one that came later
+    this.text = text;
     this.number = state.number;
     this.state = state;
     this.show(state);
@@ -47,11 +53,12 @@ export class Link {
     const sent = this.queue.then(async () => {
       const told = typeof message === "function" ? message(this.state) : message;
       if (!told) return this.state;
-      const body = JSON.stringify({ ...told, number: this.number });
+      const number = this.number;
+      const body = JSON.stringify({ ...told, number });
       const headers = { "content-type": "application/json" };
-      const state = await answered(await fetch("act", { method: "POST", headers, body }));
-      this.take(state);
-      return state;
+      const posted = await fetch("act", { method: "POST", headers, body });
+      this.take(await answered(posted, (found) => found.text()), this.number === number);
+      return this.state;
     });
     this.queue = sent.catch(() => {});
     return sent;

@@ -70,7 +70,7 @@ function Node({ of, replay, nodes }) {
   const { state } = useBench();
   const late = !replay && of.process !== null && of.age > LATE;
   return html`<section class="live" aria-label="Controller of ${of.node}">
-    <h3>${of.node}: ${replay ? recorded(of, nodes) : running(of)}
+    <h3>${of.node}: ${replay ? recorded(of, nodes, replay.simulated) : running(of)}
       ${late && html`<span class="error">no news for ${of.age.toFixed(1)} s</span>`}</h3>
     ${of.real_time === false && html`<p class="remark">No real-time priorities: responses are not comparable with bounds.</p>`}
     ${!replay && (state.dirty || state.stale) && html`<p class="remark">Bounds are those of the saved model.</p>`}
@@ -100,8 +100,9 @@ function running(of) {
   return `${doing}, ${seconds(of.now)} s, snapshot ${of.sequence}`;
 }
 
-function recorded(of, nodes) {
+function recorded(of, nodes, simulated) {
   if (of.starts !== null) return `starts at ${seconds(of.starts)} s`;
+  if (simulated) return `simulated, ${seconds(of.now)} s${of.process !== null ? "" : ", the last line is here"}`;
   const end = of.process !== null ? "" : of.ended ? ", ended in order" : ", the trace was cut off here";
   const counted = of.counted === null ? "" : `, counts of ${seconds(of.counted)} s`;
   return `${seconds(of.now)} s${nodes > 1 ? " after its start" : ""}${counted}${end}`;

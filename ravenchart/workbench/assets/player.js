@@ -83,6 +83,7 @@ export function Player({ of, nodes, look }) {
     </div>
     ${problem && html`<p class="error" role="alert">${problem}</p>`}
     ${of.gaps.length > 0 && html`<${Gaps} of=${of} nodes=${nodes} />`}
+    ${of.said.map((one, index) => html`<p key=${index} class="error">${nodes > 1 ? `${one.node}: ` : ""}The controller said: ${one.text}</p>`)}
     ${of.cut.map((node) => html`<p key=${node} class="error">The trace of ${node} was cut off: the counts of its end are missing.</p>`)}
   </div>`;
 }

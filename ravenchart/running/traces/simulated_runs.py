@@ -1,0 +1,172 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What `ravenchart simulate` printed, as the trace that a run would have of it.
+
+The lines say which states are entered and left, but neither final states nor where a chart
+terminates: these follow from the transitions. A step leaves one record of a state for each lane,
+as the step of a controller does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from operator import attrgetter
+
+from ravenchart.analysis.system.observed import (
+    VALUE,
+    NumberedElement,
+    Observation,
+    TraceError,
+    TraceMap,
+    TraceRecord,
+)
+from ravenchart.behaviour.interpreter.traces import StepRecord, ValueRecord
+from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
+from ravenchart.gen.model.statechart import Lane, PseudoKind, TransitionKind
+from ravenchart.gen.model.system import System
+
+from .simulated import RecordedSeries, charts_of, records_of
+
+
+def observed_simulation(system: System, lines: Iterable[str], file: str) -> Observation:
+    """States, transitions and values by number; TraceError where they do not fit the model."""
+    charts = charts_of(system)
+    trace_map = _map(system)
+    followed = {chart: FollowedChart(tree) for chart, tree in charts.items()}
+    elements = {(one.kind, one.name): one for one in trace_map.elements.values()}
+    recorded = RecordedSeries(system)
+    seen = Observation(trace_map, digest=system.digest, complete=True)
+    for place, record in records_of(charts, lines, file):
+        if isinstance(record, ValueRecord):
+            recorded.take(record, place)
+            continue
+        one = followed[record.instance, record.region]
+        chart = f"{record.instance}.{record.region}"
+        wrong = one.take(record)
+        if wrong is not None:
+            raise TraceError(f"{place} {wrong}")
+        top = elements["region", chart]
+        for name in one.taken:
+            number = top.transitions.index(name)
+            seen.records.append(TraceRecord(record.at, "transition", top, number))
+        for lane, leaf in one.leaves():
+            element = elements["region", _traced(chart, lane)]
+            number = element.leaves.index(leaf)
+            seen.records.append(TraceRecord(record.at, "state", element, number))
+    for series in recorded.series():
+        element = elements[VALUE, series.name]
+        seen.values += [TraceRecord(at, VALUE, element, number) for at, number in series.points]
+    seen.values.sort(key=attrgetter("time"))
+    return seen
+
+
+class FollowedChart:
+    """Which states of a chart are active, by the behaviours of its steps."""
+
+    def __init__(self, tree: ChartTree) -> None:
+        """Before its first step."""
+        self._tree = tree
+        self._active: dict[RegionKey, str] = {}
+        self._end: str | None = None
+        self.taken: list[str] = []
+        """The transitions of the last step, in order."""
+
+    def take(self, record: StepRecord) -> str | None:
+        """Go on by a step; what is wrong with it, if anything is."""
+        self.taken = []
+        for behaviour in record.behaviours:
+            name, _, what = behaviour.rpartition(".")
+            if what == "effect":
+                self._pass(name)
+            elif what == "entry":
+                self._active[self._tree.slots[name]] = name
+            elif self._active.get(self._tree.slots[name]) != name:
+                return f"{name} is left, but was not active"
+            else:
+                self._leave(name)
+        return None
+
+    def _leave(self, name: str) -> None:
+        """A state is left, and so is a final state in it, of which no line tells."""
+        del self._active[self._tree.slots[name]]
+        for place in self._tree.regions_of(name):
+            self._active.pop(place, None)
+
+    def _pass(self, name: str) -> None:
+        """A transition; one to a final state enters it, and one to a terminate ends the chart."""
+        transition = self._tree.transitions.get(name)
+        if transition is None:
+            return  # that of a region to its initial state
+        self.taken.append(name)
+        target = transition.target
+        if transition.kind is TransitionKind.INTERNAL:
+            return
+        if self._tree.kinds.get(target) is PseudoKind.TERMINATE:
+            self._end = target
+        elif target in self._tree.states and self._tree.states[target].final:
+            self._active[self._tree.slots[target]] = target
+
+    def leaves(self) -> Iterator[tuple[Lane, str]]:
+        """The active leaf of each lane that has one, the outer lanes first."""
+        if self._end is not None:
+            yield self._tree.lanes[-1], self._end
+            return
+        yield from self._leaves_in(TOP)
+
+    def _leaves_in(self, place: RegionKey) -> Iterator[tuple[Lane, str]]:
+        state = self._active.get(place) or self._default(place)
+        if state is None:
+            return
+        if self._tree.fills_lane(state):
+            yield self._tree.lane_at(place), state
+        for nested in self._tree.regions_of(state):
+            yield from self._leaves_in(nested)
+
+    def _default(self, place: RegionKey) -> str | None:
+        """The final state that a region begins with."""
+        region = self._tree.region
+        initial = region.initial if place == TOP else self._tree.nested[place].initial
+        state = self._tree.states.get(initial.target)
+        return initial.target if state is not None and state.final else None
+
+
+def _map(system: System) -> TraceMap:
+    """Regions and recorded values, numbered in the order of the model."""
+    elements: list[NumberedElement] = []
+    for (instance, name), tree in charts_of(system).items():
+        origin = str(tree.region.origin)
+        for lane in reversed(tree.lanes):
+            chart = f"{instance}.{name}"
+            elements.append(
+                NumberedElement(
+                    number=len(elements) + 1,
+                    name=_traced(chart, lane),
+                    kind="region",
+                    origin=origin,
+                    leaves=tuple(_leaves_of(tree, lane)),
+                    transitions=() if lane.owner else tuple(tree.transitions),
+                )
+            )
+    for one in system.recorded_values:
+        number, origin = len(elements) + 1, str(one.of.item.origin)
+        elements.append(
+            NumberedElement(
+                number, one.element, VALUE, origin, literals=one.literals, unit=one.unit
+            )
+        )
+    return TraceMap(system.name, system.digest, {one.number: one for one in elements})
+
+
+def _traced(chart: str, lane: Lane) -> str:
+    """The name of a lane in traces."""
+    return chart if lane.owner is None else f"{chart}.{lane.name}"
+
+
+def _leaves_of(tree: ChartTree, lane: Lane) -> Iterator[str]:
+    """The states of a lane that are leaves of it; where a chart terminates is one of the top."""
+    for state in tree.states:
+        if tree.lane_of[state] == lane and tree.fills_lane(state):
+            yield state
+    if lane.owner is None:
+        yield from (name for name, kind in tree.kinds.items() if kind is PseudoKind.TERMINATE)
