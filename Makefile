@@ -109,6 +109,9 @@ site: setup
 lock:
 	@.venv/bin/pip-compile --quiet --generate-hashes --strip-extras --allow-unsafe --extra dev \
 	   --no-header --no-emit-index-url --no-emit-find-links --output-file requirements.lock pyproject.toml
+	@echo 'asammdf>=8.8' | .venv/bin/pip-compile --quiet --generate-hashes --strip-extras --no-annotate \
+	   --unsafe-package numpy --unsafe-package lxml --constraint requirements.lock \
+	   --no-header --no-emit-index-url --no-emit-find-links --output-file requirements-mdf.lock -
 
 clean:
 	rm -rf build obj .venv
