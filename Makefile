@@ -14,7 +14,7 @@ ELSEWHERE  := tests/system/test_other_machines.py tests/system/test_codecs.py
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
 .PHONY: help setup setup-tests demo test test-all test-long coverage hw-test board-test check prove generate bench bench-proof
-.PHONY: mutate mutate-runtime docs site
+.PHONY: mutate mutate-runtime docs pictures site
 .PHONY: lock clean
 
 help:
@@ -33,6 +33,7 @@ help:
 	@echo 'make mutate    break generated code in small ways: who notices?'
 	@echo 'make mutate-runtime  the same of runtime and HAL; ARGS="--unit queues --all"'
 	@echo 'make docs      model reference, JSON Schemas, manual page and error list; pictures of the examples'
+	@echo 'make pictures  the pictures of local pages in the documentation, taken in Chromium'
 	@echo 'make site      the documentation as a site, which needs no network: build/site/docs/index.html'
 
 setup:
@@ -97,6 +98,10 @@ docs: setup
 	@$(PYTHON) -P -m tests.support.rooms
 	@for e in $(EXAMPLES); do \
 	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done
+
+pictures: setup
+	@scripts/setup.sh browser
+	@$(PYTHON) -P -m tests.support.page_pictures
 
 site: setup
 	@for e in pump cartesian_robot two_nodes; do \

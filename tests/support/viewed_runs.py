@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -104,28 +103,35 @@ class WorkingRobot:
     """The robot, built in a folder; it records values."""
 
     def __init__(self, folder: Path) -> None:
-        self._model = Path(shutil.copytree(ROBOT, folder / "robot")) / "model.yaml"
-        self._model.write_text(self._model.read_text("utf-8") + RECORDED, "utf-8")
-        self._checked = checking.check(self._model)
+        self.model = Path(shutil.copytree(ROBOT, folder / "robot")) / "model.yaml"
+        self.model.write_text(self.model.read_text("utf-8") + RECORDED, "utf-8")
+        self._checked = checking.check(self.model)
         generation.write_program(self._checked)
         (program,) = programs.programs_of(self._checked)
         self._executable = program.build()
 
     def works(self, seconds: float, *, view: bool) -> ViewedRun:
-        """Home, then move to and fro for about that long."""
+        """Work for about that long."""
+        if not view:
+            return ViewedRun(self.played(seconds))
+        with running(self.model) as bench, launched() as browser:
+            pane = BrowserPage(browser, bench.address)
+            pane.page.evaluate(NOTES_LOOKS)
+            pane.page.get_by_role("tab", name="Live").click()
+            expect(pane.page.locator("#outcome")).to_contain_text("No controller of")
+            outcome = self.played(seconds)
+            live = pane.page.get_by_role("region", name="Controller of controller")
+            expect(live.locator("h3")).to_contain_text("ended in order")
+            looks = pane.page.evaluate("window.looks")
+            pane.closed(bench.address)
+        return ViewedRun(outcome, looks)
+
+    def played(self, seconds: float) -> RunOutcome:
+        """Home, then move to and fro for about that long; the trace is in `out`, at the model."""
         cycles = round((seconds - HOMED_TIME) / CYCLE_TIME)
         drives = (ROBOT / "scenario.yaml").read_text("utf-8").partition("\nsteps:")[0]
-        scenario = self._model.with_name("long.yaml")
+        scenario = self.model.with_name("long.yaml")
         scenario.write_text(f"{drives}\nsteps:{HOMED}{CYCLE * cycles}{EXPECTED}", "utf-8")
-        if not view:
-            return ViewedRun(self._played(scenario))
-        with _page(self._model) as page:
-            outcome = self._played(scenario)
-            live = page.page.get_by_role("region", name="Controller of controller")
-            expect(live.locator("h3")).to_contain_text("ended in order")
-            return ViewedRun(outcome, page.page.evaluate("window.looks"))
-
-    def _played(self, scenario: Path) -> RunOutcome:
         generated = self._checked.generated
         return run_controller(
             self._executable,
@@ -133,18 +139,6 @@ class WorkingRobot:
             generated / "robot_bus.dbc",
             scenario,
             None,
-            self._model.parent / "out",
+            self.model.parent / "out",
             analysis=self._checked.analysis,
         )
-
-
-@contextmanager
-def _page(model: Path) -> Iterator[BrowserPage]:
-    """The tab Live, which looks for a controller."""
-    with running(model) as bench, launched() as browser:
-        pane = BrowserPage(browser, bench.address)
-        pane.page.evaluate(NOTES_LOOKS)
-        pane.page.get_by_role("tab", name="Live").click()
-        expect(pane.page.locator("#outcome")).to_contain_text("No controller of")
-        yield pane
-        pane.closed(bench.address)
