@@ -14,7 +14,7 @@ ELSEWHERE  := tests/system/test_other_machines.py tests/system/test_codecs.py
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
 .PHONY: help setup setup-tests demo test test-all test-long coverage hw-test board-test check prove generate bench bench-proof
-.PHONY: mutate mutate-runtime docs site
+.PHONY: mutate mutate-runtime docs pictures site
 .PHONY: lock clean
 
 help:
@@ -28,11 +28,12 @@ help:
 	@echo 'make check     style, types, warnings as errors'
 	@echo 'make prove     gnatprove on all records; ONLY="pump", or a group: runtime, examples, models'
 	@echo 'make generate  the examples'' generated/ from their models'
-	@echo 'make bench     figures: waits of a user, generated Ada, runtime, codecs (beside C), buses, charts, generator, analysis (beside a Rust crate)'
+	@echo 'make bench     figures: waits of a user, generated Ada, runtime, codecs (beside C), buses, charts, generator, analysis (beside a Rust crate), live view'
 	@echo 'make bench-proof  does the proof of a chart grow linearly?'
 	@echo 'make mutate    break generated code in small ways: who notices?'
 	@echo 'make mutate-runtime  the same of runtime and HAL; ARGS="--unit queues --all"'
 	@echo 'make docs      model reference, JSON Schemas, manual page and error list; pictures of the examples'
+	@echo 'make pictures  the pictures of local pages in the documentation, taken in Chromium'
 	@echo 'make site      the documentation as a site, which needs no network: build/site/docs/index.html'
 
 setup:
@@ -98,6 +99,10 @@ docs: setup
 	@for e in $(EXAMPLES); do \
 	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done
 
+pictures: setup
+	@scripts/setup.sh browser
+	@$(PYTHON) -P -m tests.support.page_pictures
+
 site: setup
 	@for e in pump cartesian_robot two_nodes; do \
 	   $(RAVENCHART) evidence examples/$$e/model.yaml --out build/site_extra/evidence/$$e \
@@ -109,6 +114,9 @@ site: setup
 lock:
 	@.venv/bin/pip-compile --quiet --generate-hashes --strip-extras --allow-unsafe --extra dev \
 	   --no-header --no-emit-index-url --no-emit-find-links --output-file requirements.lock pyproject.toml
+	@echo 'asammdf>=8.8' | .venv/bin/pip-compile --quiet --generate-hashes --strip-extras --no-annotate \
+	   --unsafe-package numpy --unsafe-package lxml --constraint requirements.lock \
+	   --no-header --no-emit-index-url --no-emit-find-links --output-file requirements-mdf.lock -
 
 clean:
 	rm -rf build obj .venv

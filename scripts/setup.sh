@@ -9,7 +9,7 @@
 # below build/guest and not installed, Debian's kernel, which only `make hw-test` needs.
 # With the word "board" the emulator and the compiler for `make board-test`; with the word
 # "browser" Chromium, in which the tests use the workbench; with the word "tests" Alire,
-# by which the tests build the crates.
+# by which the tests build the crates, and asammdf, by which they read MDF.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -103,6 +103,24 @@ if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$wanted" ]; then
       exit 2
    fi
    printf '%s' "$wanted" > "$stamp"
+fi
+
+# asammdf is in a folder of its own: python-can imports it, and pandas, wherever it finds it.
+if [ "${1:-}" = tests ]; then
+   stamp=.venv/mdf/.installed
+   wanted=$(cksum <requirements-mdf.lock)
+   if [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
+      say "installing asammdf in .venv/mdf from requirements-mdf.lock"
+      rm -rf .venv/mdf
+      if .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps \
+         --require-hashes --target .venv/mdf -r requirements-mdf.lock
+      then
+         printf '%s' "$wanted" > "$stamp"
+      else
+         rm -rf .venv/mdf
+         say "pip failed (above); goes on without asammdf"
+      fi
+   fi
 fi
 
 # -P: a file yaml.py in the working folder is not imported. SIGINT waits until Python can

@@ -115,6 +115,17 @@ def named_interface(options: argparse.Namespace) -> tuple[str, str] | None:
     return None if options.interface is None else (options.interface, options.channel)
 
 
+def add_snapshots(sub: argparse.ArgumentParser, use: str) -> None:
+    """The files of the snapshots of controllers; ``use`` says whose, or what for."""
+    from ravenchart.running.snapshots import VARIABLE
+
+    sub.add_argument(
+        "--file", action="append", default=[], metavar="[NODE=]FILE",
+        help=f"the file that {VARIABLE} named to a controller: {use}; once for each of several "
+        "nodes, with its name",
+    )  # fmt: skip
+
+
 def add_log(sub: argparse.ArgumentParser) -> None:
     """Where what is on the bus is written."""
     from ravenchart.running import bus_log

@@ -74,6 +74,9 @@ class ShellResult(Result):
     """Its lines that were carried out, the last one perhaps without success."""
     status: dict[str, dict[str, int | float | str]]
     """The last values of each message that came, by field."""
+    charts: dict[str, str | None]
+    """The active leaf state of each chart whose controller's snapshots are seen; null where the
+    state around its region is not active."""
 
 
 @dataclass(slots=True)

@@ -17,11 +17,12 @@ from pathlib import Path
 from ravenchart import terminal
 from ravenchart.building import programs
 from ravenchart.building.checking import Checked
-from ravenchart.failures import OK, WRONG, Refused
+from ravenchart.failures import OK, WRONG, Refused, Unusable
 from ravenchart.hw_can.bench.forms import DriveForm
 from ravenchart.hw_can.bench.peer import BenchError
-from ravenchart.running import judge, scenarios
+from ravenchart.running import judge, monitoring, scenarios
 from ravenchart.running.attaching import spoken_bus
+from ravenchart.running.monitoring import WatchedController
 from ravenchart.running.process import Ended, StartError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem, connected
 from ravenchart.running.shell import Shell
@@ -43,6 +44,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--drives", type=Path, metavar="FILE", help="simulate the drives of this scenario"
     )
     common.add_log(sub)
+    common.add_snapshots(sub, "with --interface, the states of charts are read there")
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -51,13 +53,15 @@ def execute(options: argparse.Namespace) -> int:
     system = checked.system
     spoken_bus(system)
     interface = common.interface(options, system)
+    if options.file and interface is None:
+        raise Unusable("--file goes with --interface: the shell knows those that it starts")
     drives = scenarios.checked(options.drives, system).drives if options.drives else {}
     ended: Sequence[Ended] = ()
     with ExitStack() as stack:
         if interface is None:
             robot, ended = _started(options, checked, drives, stack)
         else:
-            robot = connected(system, interface, drives, options.log)
+            robot = connected(checked, interface, drives, options.log, options.file)
         session = _Session(options, stack.enter_context(robot))
         passed = session.typed() if sys.stdin.isatty() else session.script()
         if drives and robot.skipped:
@@ -81,12 +85,26 @@ def _started(
     folder = programs.build_home(checked, programs.default_driver(checked)) / "shell"
     vocabulary = BusVocabulary.of(checked.system)
     try:
-        peer, ended = stack.enter_context(
+        made = stack.enter_context(
             started(built, checked.analysis, vocabulary, folder, options.log)
         )
-        return RemoteSystem(vocabulary, peer, drives), ended
     except (StartError, BenchError) as fault:
         raise Refused(f"ravenchart: error: {fault}") from None
+    watched = _watched(options, checked, made.snapshots, stack)
+    return RemoteSystem(vocabulary, made.peer, drives, watched=watched), made.ended
+
+
+def _watched(
+    options: argparse.Namespace, checked: Checked, snapshots: Sequence[str], stack: ExitStack
+) -> Sequence[WatchedController]:
+    """The controllers whose charts are seen; none, with a note, where their snapshots are not."""
+    try:
+        files = monitoring.given(checked, snapshots)
+        return stack.enter_context(monitoring.watching(checked, files))
+    except (Refused, Unusable, OSError) as fault:
+        why = str(fault).removeprefix("ravenchart: error: ")
+        say(options.answer, f"note: the states of charts are not seen: {why}", severity="note")
+        return ()
 
 
 class _Session:
@@ -98,7 +116,7 @@ class _Session:
         self._out = terminal.console()
         self._shell = Shell(robot, self._out)
         self._began = time.monotonic()
-        self._result = run_results.ShellResult([], {})
+        self._result = run_results.ShellResult([], {}, {})
         self._answer.result = self._result
 
     def script(self) -> bool:
@@ -142,6 +160,7 @@ class _Session:
             step = run_results.PlayedStep(began, line.strip(), not fault, fault or "done")
             self._result.commands.append(step)
         self._result.status = self._robot.status
+        self._result.charts = {name: one.state for name, one in self._robot.charts.items()}
         return goes_on, fault
 
 

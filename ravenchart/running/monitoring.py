@@ -93,6 +93,8 @@ class WatchedController:
         self.name = program.node
         self.last: deque[WatchedEvent] = deque(maxlen=KEPT)
         self.is_new = False
+        self.made = float("-inf")
+        """When the last snapshot was made, on the clock of `time.monotonic`, in s."""
         self._file = SnapshotFile(path)
         if self._file.owner() is None:
             self.close()
@@ -133,6 +135,7 @@ class WatchedController:
         self.is_new = snapshot.sequence != self._sequence
         if self.is_new:
             self._sequence, self._came = snapshot.sequence, time.monotonic()
+            self.made = (snapshot.seen.start + (snapshot.seen.now or 0)) / 1e9
         self.node = self._monitor.shown(snapshot, process)
         self.last.extend(self.node.events)
         return True

@@ -91,9 +91,10 @@ class ControllerProcess:
         """
         told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace), **environment}
         given = snapshots.VARIABLE in told
-        self._snapshots = None if given else snapshots.new_file(executable)
-        if self._snapshots is not None:
-            told[snapshots.VARIABLE] = str(self._snapshots)
+        self.snapshots = None if given else snapshots.new_file(executable)
+        """The file that a monitor finds, where this one has made it."""
+        if self.snapshots is not None:
+            told[snapshots.VARIABLE] = str(self.snapshots)
         try:
             self._process = children.popen(
                 [executable.absolute()],
@@ -191,8 +192,8 @@ class ControllerProcess:
         return Ended(self._process.returncode, killed, self._real_time, warnings, stolen)
 
     def _unlink_snapshots(self) -> None:
-        if self._snapshots is not None:
-            self._snapshots.unlink(missing_ok=True)
+        if self.snapshots is not None:
+            self.snapshots.unlink(missing_ok=True)
 
     def _early_end(self) -> str:
         """What happened when the output ended before the port was known."""

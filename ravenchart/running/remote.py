@@ -10,8 +10,9 @@
         await robot.state("robot_status.condition", "Ready", timeout=2)
         robot.status["robot_status"]
 
-All that is known of the controller is what its frames say. Names and values are those of the
-model; numbers count what the CAN database counts.
+All that is known of the controller is what its frames say and, of one that runs on this machine,
+the states of its charts. Names and values are those of the model; numbers count what the CAN
+database counts.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, field
@@ -36,13 +37,19 @@ from ravenchart.hw_can.bench.interfaces import BusEnd
 from ravenchart.hw_can.bench.peer import BenchError, FrameValues, MalformedFrameError, Peer, Value
 from ravenchart.hw_can.bench.replay import from_outside, read_log
 
-from . import bus_log, scenarios
+from . import bus_log, monitoring, scenarios
 from .attaching import attached, interface_of
+from .chart_names import NamedChart
+from .chart_states import ChartWatch, SeenChart, in_words
 from .process import separate_cores
+from .snapshots import VARIABLE
 from .vocabulary import BusVocabulary, WordError, hint_of
 
 PATIENCE = 10.0
 """How long an answer is waited for unless it is said, in s."""
+
+LOOKS = 0.02
+"""Seconds between two looks for the state of a chart; a controller reports each 0.1 s."""
 
 Outcome = TypeVar("Outcome")
 
@@ -77,8 +84,40 @@ class _Waiting:
         return found or self.came.done()
 
 
+@dataclass(frozen=True, slots=True)
+class _WaitingChart:
+    """Who waits for a state of a chart, and since when."""
+
+    chart: NamedChart
+    state: Value
+    leaves: frozenset[str]
+    began: float
+    end: float
+
+    def look(self, seen: Mapping[str, SeenChart], sent_at: float) -> bool:
+        """Whether the chart is there, after the last message; NoAnswerError where it is not."""
+        now = time.monotonic()
+        last = seen.get(self.chart.name)
+        if last is not None and last.at > sent_at and last.state in self.leaves:
+            return True
+        unanswered = f"{self.chart.name} was not {self.state} within {self.end - self.began:g} s"
+        if last is None:
+            why = f"the snapshots of {self.chart.node} have no such chart"
+            raise NoAnswerError(f"{unanswered}: {why}\n  hint: give the node the key `trace`")
+        if last.ended or now > self.end:
+            raise NoAnswerError(f"{unanswered}: {_last(last)}")
+        return False
+
+
+def _last(seen: SeenChart) -> str:
+    lost = f"; {seen.lost} trace records were lost" if seen.lost else ""
+    if seen.ended:
+        return f"the controller has ended; last {in_words(seen)}{lost}"
+    return f"last {in_words(seen)}, seen {time.monotonic() - seen.at:.2f} s ago{lost}"
+
+
 class RemoteSystem:
-    """The controllers of a model, as their bus shows them.
+    """The controllers of a model, as their bus shows them, and their snapshots.
 
     Any thread may call. A thread of its own, the bench, receives and sends; it simulates the
     drives too, where there are any.
@@ -90,13 +129,19 @@ class RemoteSystem:
         peer: Peer,
         drives: Mapping[str, DriveForm] | None = None,
         resources: ExitStack | None = None,
+        watched: Sequence[monitoring.WatchedController] = (),
     ) -> None:
-        """Be on the bus of ``peer`` until `close`, which closes the ``resources`` too."""
+        """Be on the bus of ``peer`` until `close`, which closes the ``resources`` too.
+
+        The states of charts are those of the ``watched`` controllers.
+        """
         self.vocabulary = vocabulary
         self.malformed = 0
         """Frames with the identifier of a message, and other data."""
         self._resources = resources or ExitStack()
         self._resources.callback(peer.close)
+        self._charts = ChartWatch(watched)
+        self._resources.callback(self._charts.close)
         self._bench = Bench(peer, drives or {}, tracks=False)
         self._bench.on_message = self._take
         self._lock = threading.Lock()
@@ -131,6 +176,11 @@ class RemoteSystem:
         """The last values of every message that came, by the names of messages and fields."""
         with self._lock:
             return {name: dict(values) for name, (_, values) in sorted(self._last.items())}
+
+    @property
+    def charts(self) -> dict[str, SeenChart]:
+        """The states of the charts that snapshots show, by `instance.Region`."""
+        return self._charts.look()
 
     @property
     def skipped(self) -> int:
@@ -170,13 +220,19 @@ class RemoteSystem:
         return self._called(sending)
 
     def wait_for(self, name: str, value: Value, timeout: float = PATIENCE) -> float:
-        """Wait until a field has a value, at most ``timeout`` s; how long it took, in s.
+        """Wait until a field has a value, or a chart is in a state; how long it took, in s.
 
         The field is `message.field`, or its name alone where one message of the controller has
-        it. A frame counts that came after the last message sent here, so no answer is missed.
-        Raises WordError for a field or value that there is not, NoAnswerError after ``timeout``,
+        it; the chart is `instance.Region`, or the region alone where one instance has it. A frame
+        or snapshot counts that came after the last message sent here, so no answer is missed.
+        Raises WordError for a name or value that there is not, NoAnswerError after ``timeout`` s,
         BenchError where the bus is gone.
         """
+        chart = self._awaited_chart(name, value, timeout)
+        if chart is not None:
+            while not self._is_there(chart):
+                time.sleep(LOOKS)
+            return time.monotonic() - chart.began
         waiting = self._awaited(name, value)
         try:
             return waiting.came.result(timeout)
@@ -187,6 +243,11 @@ class RemoteSystem:
 
     async def state(self, name: str, value: Value, timeout: float = PATIENCE) -> float:
         """The same as `wait_for`, for a coroutine: others go on meanwhile."""
+        chart = self._awaited_chart(name, value, timeout)
+        if chart is not None:
+            while not self._is_there(chart):
+                await asyncio.sleep(LOOKS)
+            return time.monotonic() - chart.began
         waiting = self._awaited(name, value)
         try:
             return await asyncio.wait_for(asyncio.wrap_future(waiting.came), timeout)
@@ -271,8 +332,31 @@ class RemoteSystem:
         if not self._thread.is_alive():
             raise BenchError("the bus was left")
 
+    def _awaited_chart(self, name: str, value: Value, timeout: float) -> _WaitingChart | None:
+        """None where no chart is meant; WordError where its states cannot be seen."""
+        chart = self.vocabulary.chart(name)
+        if chart is None:
+            return None
+        leaves = self.vocabulary.leaves(chart, value)
+        if chart.node not in self._charts.nodes:
+            sent = ", ".join(self.vocabulary.sent_by(chart))
+            field_hint = f"wait for a field: {chart.instance} sends {sent}"
+            raise WordError(
+                f"the states of the chart `{chart.name}` are not seen: no snapshots of the node "
+                f"{chart.node} are read",
+                f"on this machine, start its controller with {VARIABLE}=FILE, and give `--file "
+                f"FILE` (`files` of `connect`); elsewhere, "
+                + (field_hint if sent else "have a message carry the state"),
+            )
+        began = time.monotonic()
+        return _WaitingChart(chart, value, leaves, began, began + timeout)
+
+    def _is_there(self, waiting: _WaitingChart) -> bool:
+        self._check_alive()
+        return waiting.look(self._charts.look(), self._sent_at)
+
     def _awaited(self, name: str, value: Value) -> _Waiting:
-        message, signal = self.vocabulary.signal(name)
+        message, signal = self.vocabulary.signal(name, or_chart=True)
         if isinstance(value, bool) and signal.choices is not None:
             value = str(value)
         misfit = self.vocabulary.misfit(message, signal, value, by_name=True)
@@ -339,24 +423,33 @@ def connect(
     channel: str,
     drives: Path | None = None,
     log: Path | None = None,
+    files: Sequence[str | Path] = (),
 ) -> RemoteSystem:
     """The controllers of a model that run on a bus: any interface of python-can, and its channel.
 
     ``drives`` is a scenario whose drives are simulated. ``log`` gets the frames, in the format
-    that its suffix names. Raises Refused for a model or scenario with errors, Unusable where
-    there is no such bus.
+    that its suffix names. ``files`` are those that RAVENCHART_MONITOR names to controllers on this
+    machine, as `NODE=FILE` where there are several nodes: they show the states of charts. Raises
+    Refused for a model or scenario with errors, Unusable where there is no such bus or controller.
     """
-    system = checking.check(Path(model)).system
-    forms = scenarios.checked(drives, system).drives if drives is not None else {}
-    return connected(system, interface_of(system, interface, channel), forms, log)
+    checked = checking.check(Path(model))
+    forms = scenarios.checked(drives, checked.system).drives if drives is not None else {}
+    end = interface_of(checked.system, interface, channel)
+    return connected(checked, end, forms, log, [str(file) for file in files])
 
 
 def connected(
-    system: System, end: BusEnd, drives: Mapping[str, DriveForm], log: Path | None = None
+    checked: checking.Checked,
+    end: BusEnd,
+    drives: Mapping[str, DriveForm],
+    log: Path | None = None,
+    files: Sequence[str] = (),
 ) -> RemoteSystem:
-    """The same of a model that was read, at an interface; Unusable where there is no such bus."""
+    """The same of a model that was read, at an interface."""
     with ExitStack() as stack:
-        vocabulary = BusVocabulary.of(system)
+        vocabulary = BusVocabulary.of(checked.system)
+        named = monitoring.given(checked, files)
+        watched = stack.enter_context(monitoring.watching(checked, named))
         record = stack.enter_context(bus_log.recorded(log, vocabulary.bus.name))
         peer = attached(end, vocabulary, record)
-        return RemoteSystem(vocabulary, peer, drives, stack.pop_all())
+        return RemoteSystem(vocabulary, peer, drives, stack.pop_all(), watched)

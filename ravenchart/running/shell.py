@@ -23,18 +23,19 @@ from rich.table import Table
 from ravenchart.hw_can.bench.peer import FrameValues, Value
 from ravenchart.hw_can.bench.quantities import time_of
 
+from .chart_states import in_words
 from .remote import PATIENCE, RemoteSystem
 from .vocabulary import BusVocabulary, WordError, hint_of
 
 USAGES: Mapping[str, tuple[str, str]] = {
     "send": ("NAME [FIELD=VALUE ...]", "send a message, or a command of one"),
-    "wait_for": ("FIELD VALUE [TIME]", f"wait for a value (at most {PATIENCE:g} s)"),
+    "wait_for": ("NAME VALUE [TIME]", f"wait for a value or state (at most {PATIENCE:g} s)"),
     "wait": ("TIME", "let time pass: 500 ms, 2 s"),
-    "status": ("[MESSAGE ...]", "the last values of all messages, or of these"),
+    "status": ("[NAME ...]", "last values of messages, states of charts"),
     "replay": ("FILE", "send the frames of a log that come from outside"),
     "pull": ("DRIVE low|high", "press a limit switch of a simulated drive"),
     "release": ("DRIVE", "let go of its limit switches"),
-    "help": ("[NAME]", "show this, or the fields of a message"),
+    "help": ("[NAME]", "show this, or the fields or states of a name"),
     "quit": ("", "end (Ctrl-D)"),
 }
 """Each command: what stands behind it, and what it does."""
@@ -108,20 +109,39 @@ class Shell:
         time.sleep(_time(self._at_least("wait", told, 1), "wait"))
 
     def _status(self, told: Sequence[str]) -> None:
-        for name in told:
-            if name not in self.words.messages:
-                raise WordError(f"there is no message `{name}`", hint_of(name, self.words.messages))
-        last = self.robot.status
-        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
-        table.add_column("message", no_wrap=True)
-        table.add_column("age s", justify="right", no_wrap=True)
-        table.add_column("values", overflow="fold")
-        own = [*told] or [one for one in self.words.messages if one in last or self._is_sent(one)]
-        for name in own:
+        messages, charts = self._named(told)
+        last, seen = self.robot.status, self.robot.charts
+        if not told:
+            messages = [m for m in self.words.messages if m in last or self._is_sent(m)]
+            charts = [*seen]
+        table = _columns("message", "age s", "values")
+        for name in messages:
             age = f"{self.robot.age(name):.2f}" if name in last else "-"
             values = self._with_units(name, last[name]) if name in last else "none came"
             table.add_row(name, age, escape(values))
-        self.out.print(table)
+        if messages:
+            self.out.print(table)
+        table = _columns("chart", "age s", "state")
+        for name in charts:
+            age = f"{time.monotonic() - seen[name].at:.2f}" if name in seen else "-"
+            table.add_row(name, age, in_words(seen[name]) if name in seen else "not seen")
+        if charts:
+            self.out.print(table)
+
+    def _named(self, told: Sequence[str]) -> tuple[list[str], list[str]]:
+        """The messages and the charts of these names."""
+        messages: list[str] = []
+        charts: list[str] = []
+        for name in told:
+            chart = None if name in self.words.messages else self.words.chart(name)
+            if chart is not None:
+                charts.append(chart.name)
+            elif name in self.words.messages:
+                messages.append(name)
+            else:
+                known = [*self.words.messages, *self.words.charts]
+                raise WordError(f"there is no message or chart `{name}`", hint_of(name, known))
+        return messages, charts
 
     def _replay(self, told: Sequence[str]) -> None:
         (file,) = self._exactly("replay", told, 1)
@@ -146,6 +166,7 @@ class Shell:
                 self._say(f"{f'{verb} {arguments}':<31} {does}")
             self._say(f"\nto send: {', '.join([*words.commands, *words.outside()]) or 'nothing'}")
             own = [one for one in words.observable() if self._is_sent(one.partition(".")[0])]
+            own += self.words.charts
             self._say(f"to wait for: {', '.join(own) or 'nothing'}")
             return
         for name in told:
@@ -156,9 +177,12 @@ class Shell:
                 self._say(f"{message}:")
                 for field, signal in words.fields(message).items():
                     self._say(f"  {field}: {words.range_of(message, signal)}")
+            elif (chart := words.chart(name)) is not None:
+                self._say(f"{chart.name}: one of {', '.join(chart.states)}")
             else:
-                known = [*USAGES, *words.commands, *words.messages]
-                raise WordError(f"there is no command or message `{name}`", hint_of(name, known))
+                known = [*USAGES, *words.commands, *words.messages, *words.charts]
+                wrong = f"there is no command, message or chart `{name}`"
+                raise WordError(wrong, hint_of(name, known))
 
     # --- what they share
 
@@ -211,13 +235,13 @@ class Shell:
                 own = words.commands.get(name, ("", ""))[1]
                 return [f"{one}=" for one in fields if one != own and one not in given]
             case ("wait_for", []):
-                return words.observable()
+                return [*words.observable(), *words.charts]
             case ("wait_for", [name]):
                 return self._values(name)
             case ("status", _):
-                return words.messages
+                return [*words.messages, *words.charts]
             case ("help", _):
-                return [*USAGES, *words.commands, *words.messages]
+                return [*USAGES, *words.commands, *words.messages, *words.charts]
             case ("pull", []) | ("release", []):
                 return self.robot.drives
             case ("pull", [_]):
@@ -225,12 +249,23 @@ class Shell:
         return []
 
     def _values(self, name: str) -> list[str]:
-        """The names that a field's values have."""
+        """The names that a field's values have, or the states of a chart."""
         try:
+            chart = self.words.chart(name)
+            if chart is not None:
+                return [*chart.states]
             _, signal = self.words.signal(name)
         except WordError:
             return []
         return [str(choice) for choice in (signal.choices or {}).values()]
+
+
+def _columns(name: str, age: str, what: str) -> Table:
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
+    table.add_column(name, no_wrap=True)
+    table.add_column(age, justify="right", no_wrap=True)
+    table.add_column(what, overflow="fold")
+    return table
 
 
 def usage(verb: str) -> str:

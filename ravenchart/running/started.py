@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ravenchart.analysis.system.timing import Analysis
@@ -19,6 +20,18 @@ from .runs import Controller, bus_words, joining, joins_a_server
 from .vocabulary import BusVocabulary
 
 
+@dataclass(frozen=True, slots=True)
+class StartedControllers:
+    """The controllers that were started, by what is seen of them."""
+
+    peer: Peer
+    """On their bus."""
+    snapshots: list[str] = field(default_factory=list)
+    """The files of their snapshots, `NODE=FILE`."""
+    ended: list[Ended] = field(default_factory=list)
+    """How they ended, afterwards."""
+
+
 @contextmanager
 def started(
     controllers: Sequence[Controller],
@@ -26,10 +39,10 @@ def started(
     vocabulary: BusVocabulary,
     folder: Path,
     log: Path | None = None,
-) -> Iterator[tuple[Peer, list[Ended]]]:
-    """A peer on the bus of the controllers, which run for the time of a block.
+) -> Iterator[StartedControllers]:
+    """The controllers, which run for the time of a block.
 
-    How they ended is in the list afterwards. Their traces go to the folder, as those of a run.
+    Their traces go to the folder, as those of a run.
     Raises StartError and BenchError, ToolMissing and ToolFailed where the bus cannot be built.
     """
     folder.mkdir(parents=True, exist_ok=True)
@@ -57,7 +70,15 @@ def started(
             processes.append(ControllerProcess(controllers[0].executable, traces[0], core))
             peer = Peer.connect(processes[0].wait_for_port(), vocabulary.codec, record)
         stack.callback(peer.close)
-        yield peer, ended
+        yield StartedControllers(
+            peer,
+            [
+                f"{one.node}={process.snapshots}"
+                for one, process in zip(controllers, processes, strict=True)
+                if process.snapshots is not None
+            ],
+            ended,
+        )
 
 
 def _stop(processes: Sequence[ControllerProcess], ended: list[Ended], grace: float) -> None:

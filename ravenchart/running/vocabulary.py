@@ -3,8 +3,9 @@
 
 """What is said on the bus of a model: its messages, their fields and values, by the model's names.
 
-Scenarios, the shell and `RemoteSystem` look their words up here. The messages are those of the
-bus's CAN database, which is what the bench speaks.
+With them are the charts, whose states snapshots show. Scenarios, the shell and `RemoteSystem` look
+their words up here. The messages are those of the bus's CAN database, which is what the bench
+speaks.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.naming import as_in_model
 from ravenchart.hw_can.bench.peer import OUTSIDE, Codec, Value
 from ravenchart.hw_can.bench.protection import HEADER
+
+from .chart_names import NamedChart, charts_of
 
 TRUTH = {"False", "True"}
 """The names of the values of a Boolean: none of them is a command."""
@@ -47,6 +50,8 @@ class BusVocabulary:
     """Fields, by message, that have values without a name; these are numbers."""
     commands: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     """Literals that tell what to do: each is a value of one field, of one message from outside."""
+    charts: Mapping[str, NamedChart] = field(default_factory=dict)
+    """The charts of all instances, by `instance.Region`."""
 
     @staticmethod
     def of(system: System) -> BusVocabulary:
@@ -58,7 +63,8 @@ class BusVocabulary:
         partial = {(m.name, s.name) for m in system.messages for s in m.signals if s.other}
         messages = {message.name: message for message in database.messages}
         commands = dict(_commands(messages.values()))
-        return BusVocabulary(system, bus, messages, Codec(database), frozenset(partial), commands)
+        codec, charts = Codec(database), charts_of(system)
+        return BusVocabulary(system, bus, messages, codec, frozenset(partial), commands, charts)
 
     def outside(self) -> list[str]:
         """The messages that no node of the model sends."""
@@ -111,36 +117,80 @@ class BusVocabulary:
             return []
         return [one for one in self.fields(message) if one not in given]
 
-    def signal(self, text: str) -> tuple[str, DbcSignal]:
-        """The message and the field of `message.field`, or of a field of one message; WordError."""
+    def signal(self, text: str, *, or_chart: bool = False) -> tuple[str, DbcSignal]:
+        """The message and the field of `message.field`, or of a field of one message; WordError.
+
+        Where it may also be a chart, the error says so.
+        """
         message, dot, name = text.partition(".")
         if dot and message in self.messages and name in self.fields(message):
             return message, self.fields(message)[name]
-        own = [one for one in self.messages if one not in self.outside()]
-        owners = [one for one in own if not dot and text in self.fields(one)]
+        owners = [] if dot else self._owners(text)
         if len(owners) == 1:
             return owners[0], self.fields(owners[0])[text]
         if owners:
             told = f"`{text}` is a field of {' and '.join(owners)}"
             raise WordError(told, f"write `{owners[0]}.{text}`")
+        if or_chart:
+            hint = hint_of(text, [*self.observable(), *self.charts], self._short())
+            raise WordError(f"there is no field or chart `{text}`", hint)
         raise WordError(f"no message has a field `{text}`", self._instead(text))
+
+    def _owners(self, field_name: str) -> list[str]:
+        """The messages of the controller that have a field."""
+        outside = self.outside()
+        return [m for m in self.messages if m not in outside and field_name in self.fields(m)]
 
     def _instead(self, text: str) -> str:
         """Which field may be meant: of a chart, those that its instance sends."""
-        for instance in self.system.instances:
-            regions = [region.name for region in instance.component.regions]
-            if text in regions or text in [f"{instance.name}.{one}" for one in regions]:
-                sent = [
-                    message.name
-                    for message in self.system.messages
-                    if message.source is not None
-                    and message.source.instance == instance.name
-                    and message.name in self.messages
-                ]
-                fields = ", ".join(f"{one}.{name}" for one in sent for name in self.fields(one))
+        for chart in self.charts.values():
+            if text == chart.name or chart.name.endswith(f".{text}"):
                 told = f"the states of the chart {text} are in no message"
-                return f"{told}; {instance.name} sends {fields}" if fields else told
+                fields = self.sent_by(chart)
+                return f"{told}; {chart.instance} sends {', '.join(fields)}" if fields else told
         return hint_of(text, self.observable())
+
+    def chart(self, text: str) -> NamedChart | None:
+        """The chart of `instance.Region`, or of an end of one such name; None: no chart is meant.
+
+        Raises WordError where the text may mean several things.
+        """
+        if text in self.observable():
+            return None
+        names = [text] if text in self.charts else self._short().get(text, [])
+        places = [] if "." in text else [f"{one}.{text}" for one in self._owners(text)]
+        if not names or (len(names) == 1 and not places):
+            return self.charts[names[0]] if names else None
+        several = " or ".join(f"`{one}`" for one in (*places, *names))
+        raise WordError(f"`{text}` may be several things", f"write {several}")
+
+    def _short(self) -> dict[str, list[str]]:
+        """Charts by each end of their names that begins behind a dot."""
+        found: dict[str, list[str]] = {}
+        for name in self.charts:
+            end = name
+            while "." in end:
+                end = end.partition(".")[2]
+                found.setdefault(end, []).append(name)
+        return found
+
+    def leaves(self, chart: NamedChart, state: Value) -> frozenset[str]:
+        """The leaf states that a state of a chart has inside it; WordError for no state of it."""
+        if state not in chart.states:
+            hint = hint_of(str(state), chart.states)
+            raise WordError(f"`{chart.name}` has no state `{state}`", hint)
+        return chart.states[str(state)]
+
+    def sent_by(self, chart: NamedChart) -> list[str]:
+        """The fields of all messages that the instance of a chart sends."""
+        return [
+            f"{message.name}.{name}"
+            for message in self.system.messages
+            if message.source is not None
+            and message.source.instance == chart.instance
+            and message.name in self.messages
+            for name in self.fields(message.name)
+        ]
 
     def misfit(
         self, message: str, signal: DbcSignal, value: Value, *, by_name: bool = False
@@ -187,10 +237,11 @@ def _commands(messages: Iterable[DbcMessage]) -> Iterator[tuple[str, tuple[str, 
             yield literal, places[0]
 
 
-def hint_of(name: str, known: Iterable[str]) -> str:
-    """What may be meant by a name that is not known."""
+def hint_of(name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
+    """What may be meant by a name that is not known; ``more`` are names that are not listed."""
     names = [*known]
-    near = get_close_matches(name, names, 1) or [n for n in names if n.lower() == name.lower()]
+    every = [*names, *more]
+    near = get_close_matches(name, every, 1) or [n for n in every if n.lower() == name.lower()]
     if near:
         return f"did you mean `{near[0]}`?"
     return f"one of {', '.join(names)}" if names else ""

@@ -29,6 +29,7 @@ from . import codecs as bench_codecs
 from . import commands as bench_commands
 from . import generated as bench_generated
 from . import timing as bench_timing
+from . import viewed as bench_viewed
 from . import waiting as bench_waiting
 from .large_models import large_model
 
@@ -99,6 +100,7 @@ def main() -> None:
     generator()
     large_models()
     bench_timing.main()
+    bench_viewed.main()
 
 
 if __name__ == "__main__":

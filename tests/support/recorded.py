@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,6 @@ from typing import Any
 import pytest
 
 from ravenchart.paths import ROOT
-from ravenchart.running.traces.mdf import INSTALL
 
 FOLDER = ROOT / "tests" / "feature" / "recorded"
 MODEL = FOLDER / "model.yaml"
@@ -59,9 +59,12 @@ def grouped(rows: Sequence[tuple[str, str]]) -> Values:
 def asammdf() -> Any:
     """The package; without it the test is skipped, and says how to get it.
 
-    It is not installed for the tests: python-can would import it, and pandas, in each process.
+    `scripts/setup.sh tests` installs it in a folder of its own: python-can would import it, and
+    pandas, in each process.
     """
-    return pytest.importorskip("asammdf", reason=f"asammdf is not installed: {INSTALL}")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "path", [*sys.path, str(ROOT / ".venv" / "mdf")])
+        return pytest.importorskip("asammdf", reason="`scripts/setup.sh tests` installs asammdf")
 
 
 def read_back(path: Path, element: str) -> list[tuple[int, int]]:

@@ -39,9 +39,11 @@ def number(name: str, kind: str) -> int:
     return trace_map().named(name, kind).number
 
 
-def snapshot(sequence: int, *lines: str, digest: str | None = None) -> str:
-    """A whole snapshot with these lines of a report."""
-    head = ["E 84385114343632", f"M {digest or trace_map().digest}"]
+def snapshot(
+    sequence: int, *lines: str, digest: str | None = None, start: int = 84385114343632
+) -> str:
+    """A whole snapshot with these lines of a report; ``start`` is the machine's clock at its 0."""
+    head = [f"E {start}", f"M {digest or trace_map().digest}"]
     last = f"S {sequence:010}"
     body = "".join(f"{line}\n" for line in (*head, *lines, last))
     return f"{last} {FIRST_LINE + len(body):08}\n{body}"

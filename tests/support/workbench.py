@@ -127,10 +127,18 @@ def environment() -> dict[str, str]:
 
 
 @contextmanager
-def running(model: Path, *words: str, name: str = "workbench") -> Iterator[Running]:
-    """A page of a model for the time of a block, without a browser; that of the workbench."""
+def running(
+    model: Path, *words: str, name: str = "workbench", installed: Path | None = None
+) -> Iterator[Running]:
+    """A page of a model for the time of a block, without a browser; that of the workbench.
+
+    The program is that of the checkout, or the ``installed`` one.
+    """
+    told = (str(model), "--no-open", *words)
+    call = [str(installed), name, *told] if installed else command(*told, name=name)
     process = subprocess.Popen(
-        command(str(model), "--no-open", *words, name=name), env=environment(), cwd=model.parent,
+        call, cwd=model.parent,
+        env={**os.environ, "PYTHONPATH": ""} if installed else environment(),
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
     assert process.stdout is not None
@@ -150,6 +158,20 @@ def running(model: Path, *words: str, name: str = "workbench") -> Iterator[Runni
         if process.poll() is None:
             process.terminate()
             process.wait(PATIENCE)  # its streams end with it
+
+
+def pieces(bench: Running) -> dict[str, bytes]:
+    """What a browser loads for the page: its style and, one from the other, its modules."""
+    found: dict[str, bytes] = {}
+    wanted = re.findall(r'(?:src|href)="([\w.]+)"', bench.request("").body.decode())
+    while wanted:
+        name = wanted.pop()
+        if name not in found:
+            answer = bench.request(name)
+            assert answer.status == 200, name
+            found[name] = answer.body
+            wanted += re.findall(r'^import .* from "\./([\w.]+)";', answer.body.decode(), re.M)
+    return found
 
 
 def until(told: queue.Queue[Any], number: int) -> Any:

@@ -145,6 +145,29 @@ def test_the_event_file_is_saved_and_replayed(shown: BrowserPage, tmp_path: Path
     assert page.locator(".lines").text_content() == done.stdout.rstrip("\n")
 
 
+def test_the_event_file_is_copied(shown: BrowserPage) -> None:
+    page = shown.page
+    shown.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.keyboard.press("F8")
+    page.get_by_role("button", name="Put line").click()
+    page.keyboard.press("F9")
+    page.get_by_role("tab", name="Event file").click()
+    expect(page.locator(".lines")).to_contain_text("put: bed.line")
+    page.get_by_role("button", name="Copy").click()
+    expect(page.get_by_text("Copied.")).to_be_visible()
+    copied = page.evaluate("navigator.clipboard.readText()")
+    assert copied == page.locator(".lines").text_content() and "put: bed.line" in copied
+
+
+def test_a_browser_that_refuses_to_copy_says_what_to_do(shown: BrowserPage) -> None:
+    page = shown.page
+    page.evaluate("() => { navigator.clipboard.writeText = () => Promise.reject(new Error()); }")
+    page.keyboard.press("F8")
+    page.get_by_role("tab", name="Event file").click()
+    page.get_by_role("button", name="Copy").click()
+    expect(page.get_by_text("The browser refuses: select the text")).to_be_visible()
+
+
 def test_the_end_is_told(shown: BrowserPage, served: Running) -> None:
     assert served.end() == 130
     expect(shown.page.get_by_role("alert")).to_contain_text("ravenchart simulate has ended")

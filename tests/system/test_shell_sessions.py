@@ -41,6 +41,16 @@ wait_for condition Ready 8 s
 status robot_status
 """
 
+OWN_MOVES = """\
+send Home x=0 y=0 z=0
+wait_for Mission Homing 2 s
+wait_for Mission Ready 8 s
+send Move x=100_000
+wait_for joint_x.Motion Cruising 4 s
+wait_for Mission Ready 8 s
+status robot_status Mission
+"""
+
 Robot = tuple[checking.Checked, Path]
 
 
@@ -85,11 +95,11 @@ def on_bus(robot: Robot) -> Path:
 
 
 @contextmanager
-def bus_of(on_bus: Path, folder: Path) -> Iterator[str]:
+def bus_of(on_bus: Path, folder: Path, **environment: str) -> Iterator[str]:
     """A bus server with the controller on it, two processes of their own; the channel."""
     with server.running("port=0") as (_, place):
         named = {"RAVENCHART_BUS_PORT": place.rpartition(":")[2], "RAVENCHART_BUS_NAME": "robot"}
-        with controller(on_bus, folder, **named) as process:
+        with controller(on_bus, folder, **named, **environment) as process:
             process.wait_until_joined()
             yield place
 
@@ -98,12 +108,14 @@ def bus_of(on_bus: Path, folder: Path) -> Iterator[str]:
 def test_a_script_leads_the_controller_that_the_shell_starts(robot: Robot, tmp_path: Path) -> None:
     log = tmp_path / "shell.blf"
     words = ("shell", MODEL, "--drives", SCENARIO, "--log", log)
-    out = played(lambda: called(*words, given=MOVES))
+    out = played(lambda: called(*words, given=OWN_MOVES))
     first = next(n for n, line in enumerate(out) if line.startswith("sent robot_command: "))
     assert out[first] == "sent robot_command: kind Home, x 0, y 0, z 0"
-    assert out[first + 2] == "sent robot_command: kind Move, x 100000, y 0, z 0"
-    told = out[-1].split("condition ")[1].split(", ")
+    assert out[first + 3] == "sent robot_command: kind Move, x 100000, y 0, z 0"
+    told = out[-3].split("condition ")[1].split(", ")
     assert told[0] == "Ready" and abs(int(told[1].split()[1]) - 100_000) < 5_000
+    name, age, state, *_ = out[-1].split()
+    assert (name, state) == ("coordinator.Mission", "Ready") and float(age) < 1
     assert max(map(len, out[first:])) <= 80
     with can.LogReader(log) as frames:
         assert {0x080, 0x120, 0x180} <= {frame.arbitration_id for frame in frames}
@@ -125,18 +137,26 @@ def test_the_shell_joins_a_controller_on_a_bus_server(on_bus: Path, tmp_path: Pa
 
 @pytest.mark.slow
 def test_a_program_in_python_does_the_same(on_bus: Path, tmp_path: Path) -> None:
+    live = tmp_path / "live"
+
     def play() -> str:
+        live.write_text("")
         with (
-            bus_of(on_bus, tmp_path) as channel,
-            connect(MODEL, interface="ravenchart", channel=channel, drives=SCENARIO) as robot,
+            bus_of(on_bus, tmp_path, RAVENCHART_MONITOR=str(live)) as channel,
+            connect(
+                MODEL, interface="ravenchart", channel=channel, drives=SCENARIO, files=[live]
+            ) as robot,
         ):
             try:
                 robot.send("Home", x=0, y=0, z=0)
                 asyncio.run(robot.state("robot_status.condition", "Ready", timeout=8))
+                asyncio.run(robot.state("Mission", "Ready", timeout=2))
                 assert robot.status["robot_status"]["condition"] == "Ready"
+                assert robot.charts["joint_x.Motion"].state == "Idle"
                 robot.pull("x", "low")
                 robot.send("Move", x=50_000)
                 robot.wait_for("condition", "Failed", 5)
+                assert robot.wait_for("Mission", "Failed", 5) < 1
             except NoAnswerError:
                 if robot.skipped:
                     return HELD_UP

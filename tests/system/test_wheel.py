@@ -19,6 +19,9 @@ import pytest
 
 from ravenchart.paths import ROOT
 from tests.support.progress import without_progress
+from tests.support.workbench import pieces, running
+
+ASSETS = ROOT / "ravenchart" / "workbench" / "assets"
 
 SOURCES = (
     *("ravenchart", "gen", "analysis", "behaviour", "hw_can", "spark_runtime", "proofs"),
@@ -92,6 +95,8 @@ def test_a_wheel_has_one_import_package_and_all_that_a_program_needs(wheel: Path
     ada = {path.relative_to(ROOT) for path in ROOT.glob("spark_runtime/*/*.ad[bsc]")}
     ada |= {path.relative_to(ROOT) for path in ROOT.glob("hw_can/**/*.ad[bs]")}
     assert {f"ravenchart/{path}" for path in ada} <= set(names)
+    assets = {f"ravenchart/workbench/assets/{path.name}" for path in ASSETS.iterdir()}
+    assert assets and assets <= set(names)
     assert not [name for name in names if "/tests/" in name or "mutation" in name]
 
 
@@ -133,6 +138,19 @@ def test_the_bus_serves_and_the_loopback_test_passes(away: Path) -> None:
     finally:
         server.terminate()
         server.wait()
+
+
+def test_the_pages_of_workbench_and_simulate_are_served_whole(away: Path) -> None:
+    _called(away, "new", "paged")
+    model, program = away / "work" / "paged" / "model.yaml", away / "env" / "bin" / "ravenchart"
+    loaded: dict[str, bytes] = {}
+    for name in ("workbench", "simulate"):
+        with running(model, name=name, installed=program) as page:
+            loaded |= pieces(page)
+            assert page.request("state").status == 200
+    assert {name: (ASSETS / name).read_bytes() for name in loaded} == loaded
+    others = {"page.html", "play.html", "preact.LICENSE.txt"}
+    assert {path.name for path in ASSETS.iterdir()} == {*loaded} | others
 
 
 def test_doctor_tells_where_it_is_and_the_version_is_one(away: Path) -> None:

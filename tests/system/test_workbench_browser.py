@@ -137,6 +137,88 @@ def test_arrow_keys_go_from_one_outcome_to_the_next(pane: Pane) -> None:
     expect(page.get_by_role("tab", name="Chains")).to_have_attribute("aria-selected", "true")
 
 
+def test_a_move_by_keys_changes_the_bound_and_is_saved_by_keys(pane: Pane, folder: Path) -> None:
+    page, row, model = pane.page, "joint_x.Monitoring", folder / "model.yaml"
+    before = pane.bound("trajectory").text_content() or ""
+    assert before == "R 865 us of 5 ms"
+    pane.row(row).focus()
+    page.keyboard.press("Shift+ArrowLeft")
+    expect(pane.bound("trajectory")).not_to_have_text(before)
+    expect(pane.bound("trajectory")).to_contain_text("saved 865 us")
+    assert model.read_text(encoding="utf-8").count(row) == 1
+    page.keyboard.press("Control+s")
+    save = page.get_by_role("dialog").get_by_role("button", name="Save", exact=True)
+    expect(save).to_be_enabled()
+    for _ in range(10):
+        if save.evaluate("button => button === document.activeElement"):
+            break
+        page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    expect(page.get_by_role("button", name="Save …")).to_be_disabled()
+    line = f"      - {row}  # watches the drive\n      - joint_y.trajectory_step\n"
+    assert line in model.read_text(encoding="utf-8")
+    page.keyboard.press("Control+z")
+    expect(pane.bound("trajectory")).to_contain_text("R 865 us of 5 ms, saved ")
+
+
+def test_a_move_changes_chains_and_messages_in_their_tabs(pane: Pane) -> None:
+    page = pane.page
+    panel = page.get_by_role("tabpanel")
+    page.get_by_role("tab", name="Chains").click()
+    chain = panel.get_by_role("row", name=re.compile("^x_loop reaction"))
+    expect(chain.locator("td.number")).to_have_text(["22.145 ms", "22.145 ms", "25 ms"])
+    pane.row("joint_x.position_control").drag_to(pane.row("joint_x.trajectory_step"))
+    expect(page.get_by_role("tab", name="Findings")).to_have_attribute("aria-selected", "true")
+    page.get_by_role("tab", name="Chains").click()
+    expect(chain.locator("td.number")).to_have_text(["32.36 ms", "22.145 ms", "25 ms"])
+    expect(chain.locator(".word")).to_have_text("MISS")
+    page.get_by_role("tab", name="Buses").click()
+    message = panel.get_by_role("row", name=re.compile("^x_set_point"))
+    expect(message.locator("td.number").nth(2)).to_have_text("3.3 ms")
+    expect(message.locator("td.number.moved")).to_have_text("4.3 ms")
+    page.keyboard.press("Control+z")
+    expect(message.locator("td.number").nth(2)).to_have_text("4.3 ms")
+    expect(message.locator("td.number.moved")).to_have_count(0)
+
+
+@pytest.mark.parametrize(
+    ("label", "value", "line", "wrong"),
+    [
+        ("Period", "20 ms", "period: 20 ms", "soon"),
+        ("Priority", "3", "priority: 3", "high"),
+        ("Deadline", "8 ms", "deadline: 8 ms", "-1 ms"),
+    ],
+)
+def test_a_field_of_a_processor_is_changed_saved_and_taken_back(
+    pane: Pane, folder: Path, label: str, value: str, line: str, wrong: str
+) -> None:
+    page, model = pane.page, folder / "model.yaml"
+    before = model.read_text(encoding="utf-8")
+    shown = page.locator('[data-processor="supervision"]')
+    field = shown.get_by_label(label, exact=True)
+    follows = field.get_attribute("placeholder")
+    field.fill(wrong)
+    field.press("Enter")
+    expect(field).to_have_attribute("aria-invalid", "true")
+    assert page.get_by_role("button", name="Save …").is_disabled()
+    field.fill(value)
+    field.press("Enter")
+    expect(page.get_by_role("button", name="Save …")).to_be_enabled()
+    expect(field).to_have_value(value)
+    page.get_by_role("button", name="Save …").click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog.locator(".added")).to_contain_text([line])
+    assert model.read_text(encoding="utf-8") == before
+    field.evaluate("input => input.blur()")
+    dialog.get_by_role("button", name="Cancel").click()
+    field.fill("")
+    field.press("Enter")
+    expect(page.get_by_role("button", name="Save …")).to_be_disabled()
+    assert field.get_attribute("placeholder") == follows
+    assert model.read_text(encoding="utf-8") == before
+
+
 def test_the_buttons_of_a_selected_row_do_the_same(pane: Pane) -> None:
     page = pane.page
     row = "joint_x.Monitoring"

@@ -145,10 +145,7 @@ def test_without_an_answer_the_error_says_what_came_last(near: RemoteSystem, far
 @pytest.mark.parametrize(
     ("name", "value", "text"),
     [
-        ("Mission", "Ready", "no message has a field `Mission`\n  hint: the states of the chart"
-         " Mission are in no message; coordinator sends robot_status.condition, robot_status.x,"
-         " robot_status.y"),
-        ("robot_status.conditoin", "Ready", "no message has a field `robot_status.conditoin`\n"
+        ("robot_status.conditoin", "Ready", "there is no field or chart `robot_status.conditoin`\n"
          "  hint: did you mean `robot_status.condition`?"),
         ("mode", "Enabled", "`mode` is a field of x_set_point and y_set_point and z_set_point\n"
          "  hint: write `x_set_point.mode`"),

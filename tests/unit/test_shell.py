@@ -19,10 +19,11 @@ from ravenchart.commands import running
 from ravenchart.commands import shell as shell_command
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.interfaces import BusEnd, joined_peer
-from ravenchart.hw_can.bench.peer import BenchError, Peer
+from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.running.process import Ended, StartError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem
 from ravenchart.running.shell import USAGES, Shell, value_of
+from ravenchart.running.started import StartedControllers
 from ravenchart.running.vocabulary import BusVocabulary, WordError
 from tests.support.answers import answered
 from tests.support.bus_server import BusServer
@@ -87,6 +88,8 @@ def test_help_fits_a_terminal_and_names_everything(shell: Shell) -> None:
     assert said(shell, "help Move")[:2] == [
         "robot_command:", "  kind: one of Halt, Home, Move, Reset",
     ]  # fmt: skip
+    assert said(shell, "help Mission")[0].startswith("coordinator.Mission: one of Active, ")
+    assert "joint_z.Monitoring, coordinator.Mission" in " ".join(lines)
     assert said(shell, "help pull") == [
         "pull DRIVE low|high: press a limit switch of a simulated drive"
     ]
@@ -108,10 +111,15 @@ def test_help_fits_a_terminal_and_names_everything(shell: Shell) -> None:
                    "  hint: write `wait TIME`"),
         ("wait -1 s", "`-1 s` is no time: it must be at least 0 s\n  hint: write `wait TIME`"),
         ("wait_for condition", "`wait_for` is incomplete\n"
-                               "  hint: write `wait_for FIELD VALUE [TIME]`"),
-        ("status foo", "there is no message `foo`\n  hint: one of robot_command, robot_status, "
-                       "x_set_point, y_set_point, z_set_point, x_feedback, y_feedback, z_feedback"),
-        ("help Mov", "there is no command or message `Mov`\n  hint: did you mean `Move`?"),
+                               "  hint: write `wait_for NAME VALUE [TIME]`"),
+        ("status foo", "there is no message or chart `foo`\n  hint: one of robot_command, "
+                       "robot_status, x_set_point, y_set_point, z_set_point, x_feedback, "
+                       "y_feedback, z_feedback, joint_x.Motion, joint_x.Monitoring, "
+                       "joint_y.Motion, joint_y.Monitoring, joint_z.Motion, joint_z.Monitoring, "
+                       "coordinator.Mission"),
+        ("status Motion", "`Motion` may be several things\n  hint: write `joint_x.Motion` or "
+                          "`joint_y.Motion` or `joint_z.Motion`"),
+        ("help Mov", "there is no command, message or chart `Mov`\n  hint: did you mean `Move`?"),
         ("pull x up", "there is no limit switch `up`\n  hint: write `pull DRIVE low|high`"),
         ("release x", "there is no simulated drive `x`\n"
                       "  hint: simulate some: `--drives FILE`, or `drives` of `connect`"),
@@ -148,9 +156,14 @@ def test_quit_ends(shell: Shell, line: str) -> None:
         ("send x_set_point ", "", []),
         ("wait_for ", "robot_status.c", ["robot_status.condition"]),
         ("wait_for condition ", "R", ["Ready"]),
+        ("wait_for ", "coo", ["coordinator.Mission"]),
+        ("wait_for Mission ", "R", ["Ready", "Recovering"]),
+        ("wait_for Motion ", "", []),
         ("wait_for nothing ", "", []),
         ("status ", "y", ["y_feedback", "y_set_point"]),
+        ("status ", "joint_x", ["joint_x.Monitoring", "joint_x.Motion"]),
         ("help ", "pu", ["pull"]),
+        ("help ", "coo", ["coordinator.Mission"]),
         ("pull ", "", []),
         ("pull x ", "", ["high", "low"]),
         ("nothing ", "", []),
@@ -250,16 +263,17 @@ def test_a_model_without_a_bus_is_status_2(capsys: PRINTED) -> None:
     assert "Three_Components has no bus\n" in capsys.readouterr().err
 
 
-def stopped(controller: Ended) -> Callable[..., AbstractContextManager[tuple[Peer, list[Ended]]]]:
+def stopped(controller: Ended) -> Callable[..., AbstractContextManager[StartedControllers]]:
     """In place of what starts the controllers: one that ends like this."""
 
     @contextmanager
     def started(
         _built: object, _analysis: object, words: BusVocabulary, *_: object
-    ) -> Iterator[tuple[Peer, list[Ended]]]:
+    ) -> Iterator[StartedControllers]:
         if controller.killed:
             raise StartError("the controller did not open its bus within 10 s")
-        yield joined_peer(BusEnd("virtual", "own"), words.codec), [controller]
+        peer = joined_peer(BusEnd("virtual", "own"), words.codec)
+        yield StartedControllers(peer, ended=[controller])
 
     return started
 
