@@ -115,6 +115,17 @@ def named_interface(options: argparse.Namespace) -> tuple[str, str] | None:
     return None if options.interface is None else (options.interface, options.channel)
 
 
+def add_snapshot_files(sub: argparse.ArgumentParser) -> None:
+    """The files of controllers that the user, or a service manager, has started."""
+    from ravenchart.running.snapshots import VARIABLE
+
+    sub.add_argument(
+        "--file", action="append", default=[], metavar="[NODE=]FILE",
+        help=f"the file that {VARIABLE} named to a controller (default: those of `run`, `shell` "
+        "and `measure`); once for each of several nodes, with its name",
+    )  # fmt: skip
+
+
 def add_log(sub: argparse.ArgumentParser) -> None:
     """Where what is on the bus is written."""
     from ravenchart.running import bus_log

@@ -38,11 +38,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     common.add_model(sub)
     sub.add_argument("--once", action="store_true", help="show one snapshot, and end")
     common.add_interface(sub, "watch the bus", builds=False)
-    sub.add_argument(
-        "--file", action="append", default=[], metavar="[NODE=]FILE",
-        help=f"the file that {VARIABLE} named to a controller (default: those of `run`, `shell` "
-        "and `measure`); once for each of several nodes, with its name",
-    )  # fmt: skip
+    common.add_snapshot_files(sub)
 
 
 def execute(options: argparse.Namespace) -> int:

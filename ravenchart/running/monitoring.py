@@ -59,7 +59,10 @@ def none_runs(checked: Checked) -> str:
 
 
 def given(checked: Checked, words: Sequence[str]) -> list[NodeFile]:
-    """The files in the form ``[NODE=]FILE``; Unusable where a node is missing or unknown."""
+    """The files in the form ``[NODE=]FILE``.
+
+    Unusable where a node is missing or unknown, or has two files.
+    """
     made = programs.programs_of(checked)
     by_name = {one.node.lower(): one for one in made}
     files: list[NodeFile] = []
@@ -72,6 +75,9 @@ def given(checked: Checked, words: Sequence[str]) -> list[NodeFile]:
         else:
             known = ", ".join(f"{one.node}=FILE" for one in made)
             raise Unusable(f"--file {word} names no node: the model has {known}")
+        name = files[-1][0].node
+        if name in (program.node for program, _ in files[:-1]):
+            raise Unusable(f"--file {word}: the node {name} has a file already")
     return files
 
 

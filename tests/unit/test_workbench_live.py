@@ -13,6 +13,9 @@ import pytest
 
 from ravenchart.building import programs
 from ravenchart.building.checking import check
+from ravenchart.command_line import main
+from ravenchart.failures import UNUSABLE, WRONG
+from ravenchart.paths import ROOT
 from ravenchart.running.monitored import WatchedValue
 from ravenchart.workbench.live import LiveView
 from ravenchart.workbench.motion import LastValues
@@ -25,6 +28,9 @@ from tests.support.snapshot_files import (
     snapshot,
     trace_map,
 )
+from tests.support.workbench import running
+
+TWO_NODES = ROOT / "examples" / "two_nodes" / "model.yaml"
 
 SECOND = 1_000_000_000
 
@@ -105,3 +111,66 @@ def test_the_values_of_the_time_of_a_plot_are_kept_with_the_one_that_holds_on_in
     assert [at for at, _ in points] == [second * SECOND for second in range(69, 100)]
     quantity, points = lines["giver.reading.warm"]
     assert quantity.text(points[-1][1]) == "True"
+
+
+# --- Files that the user names ------------------------------------------------------
+
+
+def restarted(text: str) -> str:
+    """The same of a controller that was started later."""
+    return text.replace("E 84385114343632", "E 84385114343633")
+
+
+@pytest.mark.slow
+def test_the_controller_of_a_file_is_shown_and_so_is_the_next_one_there(
+    model: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "pump.live"
+    file.write_text(snapshot(1, *processors(40)))
+    live = LiveView(model, None, [f"board={file}"])
+    digest = trace_map().digest
+    with held(file) as process:
+        live.begin(digest)
+        found = live.look(digest)
+        assert [node["process"] for node in found["nodes"]] == [process]
+    ended = live.look(digest)
+    assert ended["text"] == f"{file}: no controller writes this file now"
+    assert [node["process"] for node in ended["nodes"]] == [None]
+    file.unlink()
+    assert live.look(digest)["text"] == f"{file}: no such file or directory"
+    file.write_text(restarted(snapshot(7, *processors(41))))
+    with held(file) as process:
+        (node,) = live.look(digest)["nodes"]
+        assert (node["process"], node["sequence"]) == (process, 7)
+    live.close()
+
+
+def test_a_file_is_refused_before_a_page_is_served(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "pump.live"
+    words = ["workbench", str(PUMP), "--no-open", "--file", str(file)]
+    assert main(words) == UNUSABLE
+    assert "no such file" in capsys.readouterr().err
+    file.write_text(snapshot(1, *processors(40), digest="0" * 64))
+    assert main(words) == UNUSABLE
+    assert "no controller writes this file now" in capsys.readouterr().err
+    assert main([*words, "--file", f"board={file}"]) == UNUSABLE
+    assert "the node board has a file already" in capsys.readouterr().err
+    assert main([*words, "--replay", str(file)]) == UNUSABLE
+    assert "leave --file out" in capsys.readouterr().err
+    assert main(["workbench", str(TWO_NODES), "--no-open", "--file", str(file)]) == UNUSABLE
+    assert "names no node: the model has" in capsys.readouterr().err
+    with held(file):
+        assert main(words) == WRONG
+    captured = capsys.readouterr()
+    assert "was generated from another model" in captured.err
+    assert "http://" not in captured.out
+
+
+def test_the_page_shows_the_controller_of_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "pump.live"
+    file.write_text(snapshot(3, *processors(40)))
+    with held(file) as process, running(PUMP, "--file", str(file)) as bench:
+        found = bench.request("live").json
+        assert [(one["process"], one["sequence"]) for one in found["nodes"]] == [(process, 3)]
