@@ -19,6 +19,7 @@ from ravenchart.failures import Failure, said_of
 from ravenchart.running import monitoring
 from ravenchart.running.attaching import interface_of
 from ravenchart.running.bus_watch import BusWatch
+from ravenchart.running.monitor_text import overlooked_in_words
 from ravenchart.running.monitoring import WatchedController
 
 from .motion import LastValues, shown_node
@@ -90,10 +91,16 @@ class LiveView:
         self._on_bus.close()
 
     def _nodes(self) -> Iterator[dict[str, Any]]:
-        for one, values in zip(self._watched, self._values, strict=True):
+        for number, one in enumerate(self._watched):
             assert self._checked is not None
-            lines = values.look(one.node)
-            yield shown_node(self._checked.system, one.node, one.last, lines) | {"age": one.age}
+            system = self._checked.system
+            if self._values[number].start != one.start:
+                self._values[number] = LastValues(system, one.start)
+            lines = self._values[number].look(one.node)
+            yield shown_node(system, one.node, one.last, lines) | {
+                "age": one.age,
+                "overlooked": overlooked_in_words(one.overlooked),
+            }
 
     def _join(self) -> None:
         """Watch the bus, or watch it again where it was gone; say why not where that cannot be."""
@@ -146,7 +153,7 @@ class LiveView:
             watched = made.enter_context(monitoring.watching(self._checked, files))
             self._stack.close()
             self._stack, self._watched = made.pop_all(), watched
-            self._values = [LastValues(self._checked.system) for _ in watched]
+            self._values = [LastValues(self._checked.system, one.start) for one in watched]
         return ""
 
 
