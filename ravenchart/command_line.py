@@ -18,7 +18,7 @@ from importlib import import_module
 from typing import NoReturn
 
 from .building.garbage import without_collector
-from .failures import INTERNAL, INTERNAL_TEXT, STATUSES, UNUSABLE, Failure
+from .failures import INTERNAL, INTERNAL_TEXT, STATUSES, UNUSABLE, Failure, said_of
 from .paths import version
 
 COMMANDS = {
@@ -179,13 +179,6 @@ class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
         print(f"ravenchart {version()}")
         parser.exit()
-
-
-def said_of(problem: OSError) -> str:
-    """What the system says of a file, with its name and without a number."""
-    reason = problem.strerror or str(problem)
-    reason = f"{reason[:1].lower()}{reason[1:]}"
-    return reason if problem.filename is None else f"{problem.filename}: {reason}"
 
 
 def whole_parser() -> argparse.ArgumentParser:

@@ -56,6 +56,13 @@ class Unusable(Failure):
         return f"ravenchart: error: {self}"
 
 
+def said_of(problem: OSError) -> str:
+    """What the system says of a file, with its name and without a number."""
+    reason = problem.strerror or str(problem)
+    reason = f"{reason[:1].lower()}{reason[1:]}"
+    return reason if problem.filename is None else f"{problem.filename}: {reason}"
+
+
 MEANINGS: Mapping[str, str] = {
     "0": "done; every deadline and limit is kept, the proof or the run passed",
     "1": "the model cannot be read, or it, its proof, its timing or its run has errors",

@@ -113,7 +113,9 @@ class _Seen:
     def tables(self) -> RenderableType:
         """For a terminal."""
         nodes = [
-            monitor_text.tables(f"{self._name} on {one.name}", one.node, tuple(one.last), one.age)
+            monitor_text.tables(
+                f"{self._name} on {one.name}", one.node, tuple(one.last), one.age, one.overlooked
+            )
             for one in self.controllers
         ]
         return Group(*nodes, *map(bus_text.tables, self.on_buses))

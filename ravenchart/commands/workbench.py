@@ -23,6 +23,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         help="show a recorded run in place of running controllers: trace.txt, or what `simulate` "
         "printed; once for each of several nodes, trace-NODE.txt",
     )  # fmt: skip
+    common.add_snapshots(sub, "by default those of `run`, `shell` and `measure`")
     common.add_interface(sub, "show in Live the bus", builds=False)
     common.add_scheduler(sub)
     sub.add_argument("--no-open", action="store_true", help="print the address, open no browser")
@@ -32,6 +33,7 @@ def execute(options: argparse.Namespace) -> int:
     """Serve until it is stopped; the exit status."""
     from ravenchart.running.attaching import interface_of
     from ravenchart.workbench.hub import Hub
+    from ravenchart.workbench.live import LiveView
     from ravenchart.workbench.replay import ReplayView
     from ravenchart.workbench.server import WorkbenchPages
     from ravenchart.workbench.session import Session
@@ -39,16 +41,23 @@ def execute(options: argparse.Namespace) -> int:
     bus = common.named_interface(options)
     if bus is not None and options.replay:
         raise Unusable("--replay shows a recorded run: leave --interface out")
+    if options.file and options.replay:
+        raise Unusable("--replay shows a recorded run: leave --file out")
 
     def made() -> WorkbenchPages:
         with progress(f"read and analyse {options.model}"):
             session = Session(options.model)
-        if bus is not None and session.saved.analysis is not None:
-            interface_of(session.saved.analysis.system, *bus)
-        if not options.replay:
-            return WorkbenchPages(Hub(session, bus=bus, scheduler=options.scheduler))
-        with progress("read the trace"):
-            return WorkbenchPages(Hub(session, ReplayView(options.model, options.replay)))
+        if options.replay:
+            with progress("read the trace"):
+                return WorkbenchPages(Hub(session, ReplayView(options.model, options.replay)))
+        saved = session.saved.analysis
+        if bus is not None and saved is not None:
+            interface_of(saved.system, *bus)
+        live = LiveView(options.model, bus, options.file)
+        if options.file and saved is not None:
+            with progress("look for the controllers"):
+                live.begin(saved.system.digest)
+        return WorkbenchPages(Hub(session, live, options.scheduler))
 
     common.serve(
         options,

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from ravenchart.analysis.units import microseconds
 
-from .monitored import WatchedEvent, WatchedNode, WatchedProcessor
+from .monitored import Overlooked, WatchedEvent, WatchedNode, WatchedProcessor
 from .summary import columns
 
 LATE = 1.0
@@ -21,7 +21,11 @@ LATE = 1.0
 
 
 def tables(
-    title: str, node: WatchedNode, last: Sequence[WatchedEvent], age: float
+    title: str,
+    node: WatchedNode,
+    last: Sequence[WatchedEvent],
+    age: float,
+    overlooked: Overlooked,
 ) -> RenderableType:
     """One node; ``last`` are its last transitions and faults, ``age`` is that of the snapshot."""
     parts: list[RenderableType] = [_head(title, node, age)]
@@ -36,8 +40,18 @@ def tables(
         parts.append(_traffic(node))
     if node.values:
         parts.append(_values(node))
+    if overlooked.snapshots or overlooked.events:
+        parts.append(Text(overlooked_in_words(overlooked)))
     parts.append(Text(f"not seen: {'; '.join(node.not_seen)}", style="dim"))
     return Group(*parts)
+
+
+def overlooked_in_words(of: Overlooked) -> str:
+    """How much of the controller was not looked at, and not listed."""
+    return (
+        f"snapshots not looked at: {of.snapshots} of {of.of}; transitions and faults not listed: "
+        f"{of.events}"
+    )
 
 
 def state_of(node: WatchedNode) -> str:

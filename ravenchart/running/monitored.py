@@ -175,7 +175,9 @@ class WatchedNode(Described):
     events: list[WatchedEvent]
     """Transitions and faults that no line before had, the oldest first."""
     unlisted: int
-    """How many more there were since the line before: too many for a snapshot."""
+    """How many more there were since the line before: no snapshot that was looked at lists them."""
+    missed: int
+    """How many snapshots were written since the line before and not looked at."""
     traffic: list[WatchedTraffic]
     """In the order of the model."""
     queues: list[WatchedQueue]
@@ -190,6 +192,24 @@ class WatchedNode(Described):
     """What a monitor cannot see of this controller."""
 
 
+@dataclass(slots=True)
+class Overlooked:
+    """How much was not seen of a controller since its first snapshot that was looked at."""
+
+    of: int = 0
+    """How many snapshots it has written since then, that one included."""
+    snapshots: int = 0
+    """How many of these were not looked at."""
+    events: int = 0
+    """How many transitions and faults no snapshot lists that was looked at."""
+
+    def add(self, node: WatchedNode, *, new: bool) -> None:
+        """One look more; ``new``: at another snapshot than the look before."""
+        self.of += node.missed + new
+        self.snapshots += node.missed
+        self.events += node.unlisted
+
+
 class NodeMonitor:
     """Turns the snapshots of one node into what is shown; it knows what was shown before."""
 
@@ -198,6 +218,7 @@ class NodeMonitor:
         self._system = analysis.system
         self._node = node
         self._listed: int | None = None
+        self._sequence: int | None = None
         self._processors = {p.name.lower(): p for p in self._system.processors}
 
     def shown(self, snapshot: Snapshot, process: int | None) -> WatchedNode:
@@ -205,6 +226,8 @@ class NodeMonitor:
         seen = snapshot.seen
         now = seen.now or 0
         events, unlisted = self._new(snapshot)
+        before = snapshot.sequence if self._sequence is None else self._sequence
+        self._sequence = snapshot.sequence
         tallies = {(t.last.element.name, t.last.kind): t for t in snapshot.tallies}
         return WatchedNode(
             node=self._node,
@@ -227,6 +250,7 @@ class NodeMonitor:
             charts=list(self._charts(snapshot, tallies)),
             events=[event_of(one, tuple(seen.faults)) for one in events],
             unlisted=unlisted,
+            missed=max(0, snapshot.sequence - before - 1),
             traffic=[
                 WatchedTraffic(
                     t.last.element.name, t.last.element.kind, t.last.kind, t.count, t.last.time,

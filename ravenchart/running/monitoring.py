@@ -15,8 +15,9 @@ from ravenchart.analysis.system.observed import TraceError, of_model, read_map
 from ravenchart.building import programs
 from ravenchart.building.checking import Checked
 from ravenchart.failures import Refused, Unusable
+from ravenchart.gen.language.terms import Ns
 
-from .monitored import NodeMonitor, WatchedEvent, WatchedNode
+from .monitored import NodeMonitor, Overlooked, WatchedEvent, WatchedNode
 from .snapshots import SnapshotFile, parsed_snapshot, snapshot_files
 
 PERIOD = 0.1
@@ -59,7 +60,10 @@ def none_runs(checked: Checked) -> str:
 
 
 def given(checked: Checked, words: Sequence[str]) -> list[NodeFile]:
-    """The files in the form ``[NODE=]FILE``; Unusable where a node is missing or unknown."""
+    """The files in the form ``[NODE=]FILE``.
+
+    Unusable where a node is missing or unknown, or has two files.
+    """
     made = programs.programs_of(checked)
     by_name = {one.node.lower(): one for one in made}
     files: list[NodeFile] = []
@@ -72,11 +76,17 @@ def given(checked: Checked, words: Sequence[str]) -> list[NodeFile]:
         else:
             known = ", ".join(f"{one.node}=FILE" for one in made)
             raise Unusable(f"--file {word} names no node: the model has {known}")
+        name = files[-1][0].node
+        if name in (program.node for program, _ in files[:-1]):
+            raise Unusable(f"--file {word}: the node {name} has a file already")
     return files
 
 
 class WatchedController:
-    """The controller of a node: its file, and what was last seen there."""
+    """The controller of a node: its file, and what was last seen there.
+
+    Where another controller of the model writes the file later, it is watched from then on.
+    """
 
     node: WatchedNode
     """There once `look` has found a snapshot."""
@@ -86,19 +96,27 @@ class WatchedController:
         names = program.generated / programs.TRACE_MAP
         with _readable():
             self._map = read_map(names.read_text("utf-8"), str(names))
-        self._digest = checked.system.digest
-        self._monitor = NodeMonitor(checked.analysis, program.node)
-        self._sequence = 0
+        self._checked = checked
         self._came = time.monotonic()
         self.name = program.node
         self.last: deque[WatchedEvent] = deque(maxlen=KEPT)
         self.is_new = False
         self.made = float("-inf")
         """When the last snapshot was made, on the clock of `time.monotonic`, in s."""
+        self.start: Ns | None = None
+        self._begin(None)
         self._file = SnapshotFile(path)
         if self._file.owner() is None:
             self.close()
             raise Unusable(f"{path}: no controller writes this file now")
+
+    def _begin(self, start: Ns | None) -> None:
+        """Nothing was seen yet of the controller that started then."""
+        self.start = start
+        self._monitor = NodeMonitor(self._checked.analysis, self.name)
+        self._sequence = 0
+        self.last.clear()
+        self.overlooked = Overlooked()
 
     def close(self) -> None:
         """Give the file back."""
@@ -120,23 +138,29 @@ class WatchedController:
         Refused where it is not of this model.
         """
         process = self._file.owner()  # first: what it wrote before its end is seen then
+        if process is None:
+            self._file.follow()
+            process = self._file.owner()
         text = self._file.text()
         if text is None and not self._sequence:
             return False
         if text is None:  # torn for good: the writer was killed
             self.is_new = False
-            self.node.process, self.node.events, self.node.unlisted = process, [], 0
+            self.node.process, self.node.events = process, []
+            self.node.unlisted = self.node.missed = 0
             return True
         with _readable():
             snapshot = parsed_snapshot(text, self._map, str(self._file.path))
-            if not self._sequence:
-                for digest in (self._digest, self._map.digest):
+            if snapshot.seen.start != self.start:
+                for digest in (self._checked.system.digest, self._map.digest):
                     of_model(snapshot.seen, digest, str(self._file.path))
+                self._begin(snapshot.seen.start)
         self.is_new = snapshot.sequence != self._sequence
         if self.is_new:
             self._sequence, self._came = snapshot.sequence, time.monotonic()
             self.made = (snapshot.seen.start + (snapshot.seen.now or 0)) / 1e9
         self.node = self._monitor.shown(snapshot, process)
+        self.overlooked.add(self.node, new=self.is_new)
         self.last.extend(self.node.events)
         return True
 

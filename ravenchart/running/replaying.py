@@ -182,10 +182,10 @@ class ReplayedController:
                     times = Ns(before.at + self.late), Ns(after.at + self.late)
                     yield LostRecords(*times, what, count)
 
-    def points(self, value: str, first: Ns, last: Ns) -> tuple[Quantity, Sequence[Point]]:
+    def points(self, value: str, first: Ns, last: Ns) -> tuple[Quantity, Sequence[Point], int]:
         """What a value was in a time, with the point before it that holds on into it.
 
-        Of very many points there are those that show their extremes.
+        Of very many points there are those that show their extremes; the number is that of all.
         """
         element = self._seen.map.named(value, VALUE)
         quantity = Quantity.of(element.literals, element.unit)
@@ -193,15 +193,16 @@ class ReplayedController:
         start = max(0, bisect_right(records, first, key=_time) - 1)
         end = bisect_right(records, last, key=_time)
         if end - start <= MOST_POINTS:
-            return quantity, [(one.time, one.value) for one in records[start:end]]
+            points = [(one.time, one.value) for one in records[start:end]]
+            return quantity, points, len(points)
         grain = 4 * (last - first) // MOST_POINTS
-        points: list[Point] = []
+        points, recorded = [], end - start
         while start < end:
             place = records[start].time // grain
             later = bisect_left(records, (place + 1) * grain, lo=start, key=_time)
             points += self._extremes(element.number, start, min(later, end))
             start = later
-        return quantity, points
+        return quantity, points, recorded
 
     def _extremes(self, number: int, start: int, end: int) -> list[Point]:
         """Those of some records of a value; kept, since a plot that moves asks again for most."""

@@ -85,6 +85,16 @@ class SnapshotFile:
         """Give the file back."""
         os.close(self._file)
 
+    def follow(self) -> None:
+        """Read from now on the file that has its name now, where that is another one."""
+        with suppress(OSError):
+            file = os.open(self.path, os.O_RDONLY | os.O_CLOEXEC)
+            if os.path.samestat(os.fstat(file), os.fstat(self._file)):
+                os.close(file)
+            else:
+                os.close(self._file)
+                self._file = file
+
     def owner(self) -> int | None:
         """The number of the process that writes it; None where there is none any more.
 

@@ -53,20 +53,18 @@ class Hub(Publisher):
     def __init__(
         self,
         session: Session,
-        replay: ReplayView | None = None,
-        *,
-        bus: tuple[str, str] | None = None,
+        live: LiveView | ReplayView,
         scheduler: str | None = None,
     ) -> None:
         """For one session; to be made before the event loop runs.
 
-        ``bus``: as of `LiveView`, where there is no replay. ``scheduler``: the address of a Dask
-        scheduler whose workers rank tables.
+        ``live`` is closed with it. ``scheduler``: the address of a Dask scheduler whose workers
+        rank tables.
         """
         self._scheduler = scheduler
         self.session = session
-        self.replay = replay
-        self.live = LiveView(session.path, bus) if replay is None else replay
+        self.live = live
+        self.replay = live if isinstance(live, ReplayView) else None
         self._room: tuple[int, list[str]] = (-1, [])
         self._search: Search | None = None
         super().__init__(session)

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
@@ -15,10 +15,11 @@ from typing import Any
 
 from ravenchart.building import checking
 from ravenchart.building.checking import Checked
-from ravenchart.failures import Failure
+from ravenchart.failures import Failure, said_of
 from ravenchart.running import monitoring
 from ravenchart.running.attaching import interface_of
 from ravenchart.running.bus_watch import BusWatch
+from ravenchart.running.monitor_text import overlooked_in_words
 from ravenchart.running.monitoring import WatchedController
 
 from .motion import LastValues, shown_node
@@ -30,9 +31,15 @@ PAUSE = 1.0
 class LiveView:
     """What pages see of the controllers and of the bus; any thread may look."""
 
-    def __init__(self, path: Path, bus: tuple[str, str] | None = None) -> None:
-        """For the model at ``path``; ``bus`` is an interface of python-can and its channel."""
+    def __init__(
+        self, path: Path, bus: tuple[str, str] | None = None, files: Sequence[str] = ()
+    ) -> None:
+        """For the model at ``path``; ``bus`` is an interface of python-can and its channel.
+
+        ``files``: as of `monitoring.given`, in place of the controllers that are found.
+        """
         self._path = path
+        self._given = files
         self._named = bus
         self._bus: BusWatch | None = None
         self._bus_text = ""
@@ -45,6 +52,11 @@ class LiveView:
         self._watched: list[WatchedController] = []
         self._values: list[LastValues] = []
 
+    def begin(self, digest: str) -> None:
+        """Watch the controllers of the saved model, as `monitoring.watching` does."""
+        with self._lock:
+            self._attach(digest)
+
     def look(self, digest: str | None) -> dict[str, Any]:
         """The nodes and the bus as they are now; ``text`` says why there is none, or no other.
 
@@ -52,8 +64,12 @@ class LiveView:
         """
         with self._lock:
             text = ""
-            for one in self._watched:
-                one.look()
+            try:
+                for one in self._watched:
+                    one.look()
+            except Failure:  # a file is that of another program now: `_found` says so
+                self._watched, self._values, self._next_look = [], [], 0.0
+                self._stack.close()
             if digest is None:
                 text = "The saved model has errors: its controllers are not looked for."
             elif all(one.node.process is None for one in self._watched) or digest != self._digest:
@@ -75,10 +91,16 @@ class LiveView:
         self._on_bus.close()
 
     def _nodes(self) -> Iterator[dict[str, Any]]:
-        for one, values in zip(self._watched, self._values, strict=True):
+        for number, one in enumerate(self._watched):
             assert self._checked is not None
-            lines = values.look(one.node)
-            yield shown_node(self._checked.system, one.node, one.last, lines) | {"age": one.age}
+            system = self._checked.system
+            if self._values[number].start != one.start:
+                self._values[number] = LastValues(system, one.start)
+            lines = self._values[number].look(one.node)
+            yield shown_node(system, one.node, one.last, lines) | {
+                "age": one.age,
+                "overlooked": overlooked_in_words(one.overlooked),
+            }
 
     def _join(self) -> None:
         """Watch the bus, or watch it again where it was gone; say why not where that cannot be."""
@@ -92,36 +114,48 @@ class LiveView:
             watch = BusWatch(self._checked.analysis, interface)
         except Failure as problem:
             if self._bus is None:
-                self._bus_text = str(problem).removeprefix("ravenchart: error: ")
+                self._bus_text = _without_prefix(problem)
             return
         self._on_bus.close()
         self._bus, self._bus_text = watch, ""
         self._on_bus.callback(watch.close)
 
     def _found(self, digest: str) -> str:
-        """As `_attached`; beside a bus, at which pages look all the time, not more often."""
+        """As `_attach`, or why that fails.
+
+        Beside a bus, at which pages look all the time, it is not done more often.
+        """
         now = time.monotonic()
         if self._bus is None or digest != self._digest or now >= self._next_look:
             self._next_look = now + PAUSE
-            self._text = self._attached(digest)
+            try:
+                self._text = self._attach(digest)
+            except Failure as problem:
+                self._text = _without_prefix(problem)
+            except OSError as problem:
+                self._text = said_of(problem)
         return self._text
 
-    def _attached(self, digest: str) -> str:
+    def _attach(self, digest: str) -> str:
         """Watch what runs now, in place of what has ended; why there is nothing to watch."""
-        try:
-            if self._checked is None or digest != self._digest:
-                self._checked, self._digest = None, digest
-                self._leave()
-                self._checked = checking.check(self._path, deadlines=False)
+        if self._checked is None or digest != self._digest:
+            self._checked, self._digest = None, digest
+            self._leave()
+            self._checked = checking.check(self._path, deadlines=False)
+        if self._given:
+            files = monitoring.given(self._checked, self._given)
+        else:
             files = monitoring.found(self._checked, lambda text: None)
-            if not files:
-                text = monitoring.none_runs(self._checked)
-                return f"{text[0].upper()}{text[1:]}."
-            with ExitStack() as made:
-                watched = made.enter_context(monitoring.watching(self._checked, files))
-                self._stack.close()
-                self._stack, self._watched = made.pop_all(), watched
-                self._values = [LastValues(self._checked.system) for _ in watched]
-        except (Failure, OSError) as problem:
-            return str(problem).removeprefix("ravenchart: error: ")
+        if not files:
+            text = monitoring.none_runs(self._checked)
+            return f"{text[0].upper()}{text[1:]}."
+        with ExitStack() as made:
+            watched = made.enter_context(monitoring.watching(self._checked, files))
+            self._stack.close()
+            self._stack, self._watched = made.pop_all(), watched
+            self._values = [LastValues(self._checked.system, one.start) for one in watched]
         return ""
+
+
+def _without_prefix(problem: Failure) -> str:
+    return str(problem).removeprefix("ravenchart: error: ")

@@ -24,8 +24,11 @@ WINDOW = Ns(30_000_000_000)
 MOST_PLOTS = 24
 """Values that are plotted: the first ones of the model."""
 
-Lines = Mapping[str, tuple[Quantity, Sequence[Point]]]
-"""Of each value what its numbers mean, and what it was when."""
+Lines = Mapping[str, tuple[Quantity, Sequence[Point], int]]
+"""Of each value what its numbers mean, what it was when, and how many were recorded in that time.
+
+There are fewer points where not all of them are known, or are drawn.
+"""
 
 
 def shown_node(
@@ -45,20 +48,25 @@ def plotted(system: System) -> Sequence[RecordedValue]:
     return system.recorded_values[:MOST_PLOTS]
 
 
-def _plot(quantity: Quantity, points: Sequence[Point]) -> Json:
+def _plot(quantity: Quantity, points: Sequence[Point], recorded: int) -> Json:
     value = int if quantity.literals else quantity.value
     drawn = [(at, value(number)) for at, number in points]
-    return {"literals": list(quantity.literals), "points": drawn}
+    return {"literals": list(quantity.literals), "points": drawn, "recorded": recorded}
 
 
 class LastValues:
-    """What was looked at of the values of a running controller, in the time of a plot."""
+    """What was looked at of the values of a running controller, in the time of a plot.
 
-    def __init__(self, system: System) -> None:
+    A snapshot has the last value only: those between two snapshots are counted.
+    """
+
+    def __init__(self, system: System, start: Ns | None) -> None:
+        """``start``: that of the controller, by the clock of its machine."""
+        self.start = start
         self._quantities = {
             one.element: Quantity.of(one.literals, one.unit) for one in plotted(system)
         }
-        self._points: defaultdict[str, deque[Point]] = defaultdict(deque)
+        self._points: defaultdict[str, deque[tuple[Point, int]]] = defaultdict(deque)
 
     def look(self, node: WatchedNode) -> Lines:
         """The values with those of a node as it is now."""
@@ -67,12 +75,17 @@ class LastValues:
             if quantity is None:
                 continue
             points = self._points[one.name]
-            if not points or points[-1][0] != one.last:
-                points.append((Ns(one.last), quantity.number(one.value)))
-            while len(points) > 1 and points[1][0] <= node.now - WINDOW:
+            if not points or points[-1][1] != one.count:
+                points.append(((Ns(one.last), quantity.number(one.value)), one.count))
+            while len(points) > 1 and points[1][0][0] <= node.now - WINDOW:
                 points.popleft()
         return {
-            name: (self._quantities[name], tuple(found)) for name, found in self._points.items()
+            name: (
+                self._quantities[name],
+                [point for point, _ in found],
+                found[-1][1] - found[0][1] + 1,
+            )
+            for name, found in self._points.items()
         }
 
 

@@ -10,8 +10,9 @@ import shutil
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Locator, expect
 
+from ravenchart.analysis.system.observed import read_map
 from ravenchart.building import checking, generation, programs
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.paths import ROOT
@@ -21,6 +22,7 @@ from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
 from tests.support.bus_server import BusServer
 from tests.support.far_end import FarEnd
 from tests.support.recorded import FOLDER
+from tests.support.snapshot_files import held, snapshot
 from tests.support.workbench import running
 
 pytestmark = [*IN_BROWSER, pytest.mark.live]
@@ -33,6 +35,14 @@ def built(model: Path) -> Path:
     checked = checking.check(model)
     generation.write_program(checked)
     return programs.programs_of(checked)[0].build()
+
+
+def _numbers(where: Locator, pattern: str) -> tuple[int, int]:
+    """Both numbers of a text there, as soon as it is there."""
+    expect(where).to_contain_text(re.compile(pattern))
+    found = re.search(pattern, where.text_content() or "")
+    assert found is not None
+    return int(found[1]), int(found[2])
 
 
 def test_the_live_tab_follows_a_controller_to_its_end(tmp_path: Path) -> None:
@@ -69,15 +79,64 @@ def test_recorded_values_move_in_the_live_tab(tmp_path: Path) -> None:
         pane.page.get_by_role("tab", name="Live").click()
         process = ControllerProcess(executable, tmp_path / "trace.txt", 0)
         try:
+            live = pane.page.get_by_role("region", name="Controller of board")
             plot = pane.page.get_by_role("img", name="giver.height over time")
             line = plot.locator("path")
             expect(line).to_have_attribute("d", re.compile(r"^M(\S+ ?)+H\S+V\S+H300$"))
             first = line.get_attribute("d") or ""
             expect(line).not_to_have_attribute("d", first)
+            row = live.get_by_role("row", name="giver.height", exact=False)
+            drawn, recorded = _numbers(row, r"(\d+) of (\d+) values drawn")
+            assert 2 * drawn < recorded  # there are five in the period of a snapshot
+            missed, of = _numbers(live, r"snapshots not looked at: (\d+) of (\d+)")
+            assert of > 1 and of - missed >= drawn
             assert serious(pane.page) == []
         finally:
             ended = process.stop(0.0)
         assert ended.exit_code == 0, ended.warnings
+        pane.closed(bench.address)
+
+
+def test_the_live_tab_says_what_it_did_not_look_at(tmp_path: Path) -> None:
+    """Of five snapshots the page looks at the first and the last one."""
+    model = Path(shutil.copytree(FOLDER, tmp_path / "recorded")) / "model.yaml"
+    generation.write_program(checking.check(model))
+    text = (model.parent / "generated" / "trace.json").read_text(encoding="utf-8")
+    names = read_map(text)
+    heat = names.named("taker.heat", "value").number
+    chart = names.named("taker.Counting", "region").number
+
+    def written(sequence: int, values: int, transitions: int, listed: int) -> str:
+        first = transitions - listed
+        lines = [f"T {first + k} Transition {chart} 0" for k in range(listed)]
+        lines.append(f"C TRANSITION {chart} {transitions} {transitions} 0")
+        lines.append(f"C VALUE {heat} {values} {values * 1000} {values}")
+        return snapshot(sequence, f"N {sequence * 10**8}", *lines, digest=names.digest)
+
+    file = tmp_path / "recorded.live"
+    file.write_text(written(1, 1, 3, 3))
+    with (
+        held(file),
+        running(model, "--file", str(file)) as bench,
+        launched() as browser,
+    ):
+        pane = BrowserPage(browser, bench.address)
+        pane.page.get_by_role("tab", name="Live").click()
+        live = pane.page.get_by_role("region", name="Controller of board")
+        expect(live.locator("h3")).to_contain_text("snapshot 1")
+        expect(live).to_contain_text("snapshots not looked at: 0 of 1; transitions and faults not")
+        plot = live.get_by_role("row", name="taker.heat")
+        expect(plot).not_to_contain_text("drawn")
+        file.write_text(written(5, 41, 42, 32))
+        expect(live.locator("h3")).to_contain_text("snapshot 5")
+        expect(live).to_contain_text(
+            "snapshots not looked at: 3 of 5; transitions and faults not listed: 7"
+        )
+        expect(plot).to_contain_text("2 of 41 values drawn")
+        expect(live.get_by_role("columnheader", name=re.compile("^last 30 s"))).to_have_text(
+            "last 30 s: one value of each snapshot"
+        )
+        assert serious(pane.page) == []
         pane.closed(bench.address)
 
 

@@ -27,6 +27,7 @@ from ravenchart.running.monitored import (
     OTHER_VALUES,
     VALUES_NOT_SEEN,
     NodeMonitor,
+    Overlooked,
     WatchedNode,
 )
 from ravenchart.running.snapshots import parsed_snapshot
@@ -109,6 +110,22 @@ def test_the_first_snapshot_does_not_count_what_was_long_ago(analysis: Analysis)
     assert (len(node.events), node.unlisted) == (RECENT, 0)
 
 
+def test_snapshots_that_were_not_looked_at_are_counted(analysis: Analysis) -> None:
+    monitor, overlooked = NodeMonitor(analysis, "board"), Overlooked()
+    looks = [(40, 3), (40, 3), (41, 4), (45, 5 + RECENT + 7)]
+    missed: list[tuple[int, int]] = []
+    for sequence, transitions in looks:
+        lines = taken(transitions, listed=min(transitions, RECENT))
+        node = seen(monitor, *lines, sequence=sequence)
+        overlooked.add(node, new=len(missed) != 1)
+        missed.append((node.missed, node.unlisted))
+    assert missed == [(0, 0), (0, 0), (0, 0), (3, 8)]
+    assert overlooked == Overlooked(of=6, snapshots=3, events=8)  # 40 .. 45
+    said = "snapshots not looked at: 3 of 6; transitions and faults not listed: 8"
+    assert said in printed(node, overlooked=overlooked)
+    assert not any("not looked at" in line for line in printed(node, overlooked=Overlooked(9)))
+
+
 def test_a_fault_has_its_name(analysis: Analysis) -> None:
     element = number("bed.panel", "port")
     line = f"T 5000 Fault {element} 2"
@@ -146,7 +163,7 @@ def test_the_last_recorded_value_is_shown_in_its_unit(tmp_path: Path) -> None:
     found = list(monitor_text.lines(node, "", counts=True))
     assert "1.000 taker.heat value -39.7 degC" in found and "1.000 giver.hue value Blue" in found
     console = Console(width=80, file=io.StringIO())
-    console.print(monitor_text.tables("System", node, [], 0.0))
+    console.print(monitor_text.tables("System", node, [], 0.0, Overlooked()))
     shown = console.file.getvalue()  # type: ignore[attr-defined]
     (line,) = [line for line in shown.splitlines() if line.startswith("taker.heat")]
     assert line.split() == ["taker.heat", "-39.7", "degC", "7", "1.0"]
@@ -168,10 +185,13 @@ def test_what_is_not_seen_is_said(analysis: Analysis) -> None:
     assert empty.charts == []
 
 
-def printed(node: WatchedNode, height: int | None = None) -> list[str]:
+def printed(
+    node: WatchedNode, height: int | None = None, overlooked: Overlooked | None = None
+) -> list[str]:
     """The lines of the tables, in 80 columns."""
     out = Console(width=80, height=height or 500, file=io.StringIO(), force_terminal=False)
-    whole = monitor_text.tables("Infusion_System on board", node, node.events, 0.0)
+    name = "Infusion_System on board"
+    whole = monitor_text.tables(name, node, node.events, 0.0, overlooked or Overlooked())
     out.print(whole if height is None else Cropped(whole))
     assert isinstance(out.file, io.StringIO)
     return out.file.getvalue().splitlines()

@@ -11,6 +11,7 @@ import { Plot } from "./plot.js";
 import { Player, seconds } from "./player.js";
 
 const PERIOD = 100; // ms, as between two snapshots
+const SHORTEST = 20; // ms between an answer and the next look
 const PATIENCE = 1000; // ms until the next look where nothing runs
 const LATE = 1; // s
 
@@ -27,6 +28,7 @@ export function Live() {
     look.current = async () => {
       clearTimeout(next);
       const mine = asked += 1;
+      const begun = performance.now();
       let pause = PATIENCE;
       try {
         const live = await get("live");
@@ -40,7 +42,7 @@ export function Live() {
       } catch (error) {
         if (wanted) setProblem(error.message);
       }
-      if (wanted && mine === asked) next = setTimeout(look.current, pause);
+      if (wanted && mine === asked) next = setTimeout(look.current, Math.max(SHORTEST, begun + pause - performance.now()));
     };
     look.current();
     return () => { wanted = false; clearTimeout(next); setRunning([]); };
@@ -81,12 +83,14 @@ function Node({ of, replay, nodes }) {
       html`<${Word} met=${one.word === "ok"} text=${one.word} />`])} />
     ${!(replay && of.counted === null) && html`<p class=${any(of.faults) ? "error" : ""}>faults: ${counts(of.faults)}</p>
     <p class=${any(of.lost) ? "error" : ""}>lost: ${counts(of.lost)}</p>`}
+    ${!replay && html`<p class="remark">${of.overlooked}</p>`}
     <${Table} names=${["chart", "state", "for>", "transitions>"]} rows=${of.charts.map((one) => [
       html`<${Chart} name=${one.name} of=${of.drawn} />`, one.state ?? "-",
       one.since === null ? "-" : `${((of.now - one.since) / 1e9).toFixed(1)} s`, one.transitions])} />
     <${Table} names=${["last transitions and faults", "", "at>"]} rows=${of.last.map((one) => [
       one.element, one.kind === "fault" ? `FAULT ${one.what}` : one.what, `${seconds(one.at)} s`])} />
-    <${Table} names=${["recorded value", "last>", "", "recorded>", "at>", `last ${Number((of.window / 1e9).toFixed(1))} s`]} rows=${of.values.map((one) => [
+    <${Table} names=${["recorded value", "last>", "", "recorded>", "at>",
+      `last ${Number((of.window / 1e9).toFixed(1))} s${replay ? "" : ": one value of each snapshot"}`]} rows=${of.values.map((one) => [
       one.name, one.value, one.unit, one.count, `${((of.now - one.last) / 1e9).toFixed(1)} s ago`,
       html`<${Plot} of=${of.plots[one.name]} now=${of.now} span=${of.window} name=${one.name} />`])} />
     <${Table} names=${["queue", "waiting>"]} rows=${of.queues.map((one) => [one.name, `${one.waiting ?? "?"} of ${one.depth}`])} />
