@@ -52,6 +52,7 @@ def test_every_listing_has_a_language_that_is_checked() -> None:
 PROGRAMS = {
     "cantools": "of the Python package of that name",
     "[": "of the shell",
+    "cat": "of the system",
     "cd": "of the shell",
     "code": "of Visual Studio Code",
     "cp": "of the system",
@@ -63,6 +64,7 @@ PROGRAMS = {
     "npm": "of Node.js",
     "npx": "of Node.js",
     "printf": "of the shell",
+    "stty": "of the system",
     "./infusion_system_main": "the program of the pump",
     "build/.../checks/NAME_main": "the program of a model",
     "build/by_hand_main": "the program of the example",

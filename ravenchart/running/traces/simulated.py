@@ -46,7 +46,7 @@ def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
     TraceError for a line that does not fit the model.
     """
     found = Timeline(system.name)
-    charts = charts_of(system)
+    charts = trees_by_chart(system)
     active: dict[tuple[str, str, RegionKey], tuple[str, Ns]] = {}
     recorded = RecordedSeries(system)
     now = NO_TIME
@@ -83,7 +83,7 @@ def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
     return found
 
 
-def charts_of(system: System) -> Charts:
+def trees_by_chart(system: System) -> Charts:
     """All charts of a system."""
     return {
         (instance.name, region.name): ChartTree(region)

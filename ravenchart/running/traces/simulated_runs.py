@@ -26,12 +26,12 @@ from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
 from ravenchart.gen.model.statechart import Lane, PseudoKind, TransitionKind
 from ravenchart.gen.model.system import System
 
-from .simulated import RecordedSeries, charts_of, records_of
+from .simulated import RecordedSeries, trees_by_chart, records_of
 
 
 def observed_simulation(system: System, lines: Iterable[str], file: str) -> Observation:
     """States, transitions and values by number; TraceError where they do not fit the model."""
-    charts = charts_of(system)
+    charts = trees_by_chart(system)
     trace_map = _map(system)
     followed = {chart: FollowedChart(tree) for chart, tree in charts.items()}
     elements = {(one.kind, one.name): one for one in trace_map.elements.values()}
@@ -134,7 +134,7 @@ class FollowedChart:
 def _map(system: System) -> TraceMap:
     """Regions and recorded values, numbered in the order of the model."""
     elements: list[NumberedElement] = []
-    for (instance, name), tree in charts_of(system).items():
+    for (instance, name), tree in trees_by_chart(system).items():
         origin = str(tree.region.origin)
         for lane in reversed(tree.lanes):
             chart = f"{instance}.{name}"
