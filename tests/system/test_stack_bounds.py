@@ -207,7 +207,8 @@ TOUCHED = """      Sized (1) := 'x';
         ("", RECURSION, "RV-1502", "recursion: Devices_Feature.Servo.Activities.Damped -> "),
         (POINTER, "      if Wanted = 7 then\n         return Made (Wanted);\n      end if;\n",
          "RV-1503", "Devices_Feature.Servo.Activities.Damped calls through a pointer"),
-        (DYNAMIC, TOUCHED, "RV-1504", "the size of the frame of Devices_Feature.Servo.Activities.Damped has"),
+        (DYNAMIC, TOUCHED,
+         "RV-1504", "the size of the frame of Devices_Feature.Servo.Activities.Damped has"),
     ],
     ids=["recursion", "pointer", "dynamic"],
 )  # fmt: skip
