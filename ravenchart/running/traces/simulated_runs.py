@@ -26,7 +26,7 @@ from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
 from ravenchart.gen.model.statechart import Lane, PseudoKind, TransitionKind
 from ravenchart.gen.model.system import System
 
-from .simulated import RecordedSeries, trees_by_chart, records_of
+from .simulated import RecordedSeries, records_of, trees_by_chart
 
 
 def observed_simulation(system: System, lines: Iterable[str], file: str) -> Observation:
