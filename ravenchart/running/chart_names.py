@@ -28,6 +28,12 @@ class NamedChart:
     """Each state, and the leaf states that are inside it, or itself."""
 
 
+def traced_chart(instance: str, region: str, lane: Lane) -> str:
+    """The name in traces of a lane of a region."""
+    inside = "" if lane.owner is None else f".{lane.name}"
+    return f"{instance}.{region}{inside}"
+
+
 def charts_of(system: System) -> dict[str, NamedChart]:
     """The charts of a model by their names, in its order."""
     found: dict[str, NamedChart] = {}
@@ -35,8 +41,7 @@ def charts_of(system: System) -> dict[str, NamedChart]:
         node = system.nodes[0].name if len(system.nodes) == 1 else instance.node
         for region in instance.component.regions:
             for lane in reversed(region.lanes()):
-                inside = "" if lane.owner is None else f".{lane.name}"
-                name = f"{instance.name}.{region.name}{inside}"
+                name = traced_chart(instance.name, region.name, lane)
                 found[name] = NamedChart(name, instance.name, node, dict(_states(region, lane)))
     return found
 

@@ -8,12 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+import can
 import pytest
 
 from ravenchart.analysis.present import report
 from ravenchart.evidence import records
 from tests.support import evidence
 from tests.support.bus_server import BusServer
+from tests.support.far_end import FarEnd, obedient, robot
 
 
 @pytest.fixture(scope="module")
@@ -28,6 +30,14 @@ def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def server() -> Iterator[BusServer]:
     """A stand-in for the bus server."""
     one = BusServer()
+    yield one
+    one.close()
+
+
+@pytest.fixture
+def far(request: pytest.FixtureRequest) -> Iterator[FarEnd]:
+    """The controller's end of a bus of this test alone."""
+    one = FarEnd(can.Bus(request.node.name, "virtual"), robot(), obedient)
     yield one
     one.close()
 

@@ -14,7 +14,6 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
-import can
 import pytest
 from rich.console import Console
 
@@ -29,7 +28,7 @@ from ravenchart.running.remote import NoAnswerError, RemoteSystem, connect
 from ravenchart.running.shell import Shell
 from ravenchart.running.vocabulary import BusVocabulary, WordError
 from tests.support.answers import answered
-from tests.support.far_end import ROBOT, FarEnd, obedient, robot, system_of
+from tests.support.far_end import ROBOT, FarEnd, system_of
 from tests.support.snapshot_files import held, snapshot
 
 MODEL = ROBOT / "model.yaml"
@@ -66,13 +65,6 @@ class Controller:
         os.pwrite(file, text.encode(), 0)
         os.ftruncate(file, len(text))
         os.close(file)
-
-
-@pytest.fixture
-def far(request: pytest.FixtureRequest) -> Iterator[FarEnd]:
-    one = FarEnd(can.Bus(request.node.name, "virtual"), robot(), obedient)
-    yield one
-    one.close()
 
 
 @pytest.fixture

@@ -20,18 +20,10 @@ from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem, Sent, connect
 from ravenchart.running.vocabulary import WordError
 from tests.support.bus_server import BusServer
-from tests.support.far_end import ROBOT, FarEnd, obedient, robot, status
+from tests.support.far_end import ROBOT, FarEnd, robot, status
 
 MODEL = ROBOT / "model.yaml"
 ZERO = {"x": 0, "y": 0, "z": 0}
-
-
-@pytest.fixture
-def far(request: pytest.FixtureRequest) -> Iterator[FarEnd]:
-    """The controller's end of a bus of this test alone."""
-    one = FarEnd(can.Bus(request.node.name, "virtual"), robot(), obedient)
-    yield one
-    one.close()
 
 
 @pytest.fixture

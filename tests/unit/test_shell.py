@@ -34,13 +34,6 @@ PRINTED = pytest.CaptureFixture[str]
 
 
 @pytest.fixture
-def far(request: pytest.FixtureRequest) -> Iterator[FarEnd]:
-    one = FarEnd(can.Bus(request.node.name, "virtual"), robot(), obedient)
-    yield one
-    one.close()
-
-
-@pytest.fixture
 def shell(far: FarEnd, request: pytest.FixtureRequest) -> Iterator[Shell]:
     words = robot()
     with RemoteSystem(words, joined_peer(BusEnd("virtual", request.node.name), words.codec)) as it:

@@ -25,14 +25,15 @@ from ravenchart.behaviour.interpreter.traces import StepRecord, ValueRecord
 from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
 from ravenchart.gen.model.statechart import Lane, PseudoKind, TransitionKind
 from ravenchart.gen.model.system import System
+from ravenchart.running.chart_names import traced_chart
 
-from .simulated import RecordedSeries, records_of, trees_by_chart
+from .simulated import Charts, RecordedSeries, records_of, trees_by_chart
 
 
 def observed_simulation(system: System, lines: Iterable[str], file: str) -> Observation:
     """States, transitions and values by number; TraceError where they do not fit the model."""
     charts = trees_by_chart(system)
-    trace_map = _map(system)
+    trace_map = _map(system, charts)
     followed = {chart: FollowedChart(tree) for chart, tree in charts.items()}
     elements = {(one.kind, one.name): one for one in trace_map.elements.values()}
     recorded = RecordedSeries(system)
@@ -42,16 +43,15 @@ def observed_simulation(system: System, lines: Iterable[str], file: str) -> Obse
             recorded.take(record, place)
             continue
         one = followed[record.instance, record.region]
-        chart = f"{record.instance}.{record.region}"
         wrong = one.take(record)
         if wrong is not None:
             raise TraceError(f"{place} {wrong}")
-        top = elements["region", chart]
+        top = elements["region", f"{record.instance}.{record.region}"]
         for name in one.taken:
             number = top.transitions.index(name)
             seen.records.append(TraceRecord(record.at, "transition", top, number))
         for lane, leaf in one.leaves():
-            element = elements["region", _traced(chart, lane)]
+            element = elements["region", traced_chart(record.instance, record.region, lane)]
             number = element.leaves.index(leaf)
             seen.records.append(TraceRecord(record.at, "state", element, number))
     for series in recorded.series():
@@ -131,17 +131,16 @@ class FollowedChart:
         return initial.target if state is not None and state.final else None
 
 
-def _map(system: System) -> TraceMap:
+def _map(system: System, charts: Charts) -> TraceMap:
     """Regions and recorded values, numbered in the order of the model."""
     elements: list[NumberedElement] = []
-    for (instance, name), tree in trees_by_chart(system).items():
+    for (instance, name), tree in charts.items():
         origin = str(tree.region.origin)
         for lane in reversed(tree.lanes):
-            chart = f"{instance}.{name}"
             elements.append(
                 NumberedElement(
                     number=len(elements) + 1,
-                    name=_traced(chart, lane),
+                    name=traced_chart(instance, name, lane),
                     kind="region",
                     origin=origin,
                     leaves=tuple(_leaves_of(tree, lane)),
@@ -156,11 +155,6 @@ def _map(system: System) -> TraceMap:
             )
         )
     return TraceMap(system.name, system.digest, {one.number: one for one in elements})
-
-
-def _traced(chart: str, lane: Lane) -> str:
-    """The name of a lane in traces."""
-    return chart if lane.owner is None else f"{chart}.{lane.name}"
 
 
 def _leaves_of(tree: ChartTree, lane: Lane) -> Iterator[str]:
