@@ -39,8 +39,8 @@ export function Field({ label, value, follows, width = 8, optional = false, send
     setText(value ?? "");
     setError("");
   }, [value]);
-  async function commit() {
-    const wanted = text.trim();
+  async function commit(event) {
+    const wanted = event.currentTarget.value.trim(); // `text` may be of before the last key
     if (wanted === last.current) return;
     if (wanted === "" && !optional) return void setText(last.current);
     try {
@@ -51,7 +51,7 @@ export function Field({ label, value, follows, width = 8, optional = false, send
     }
   }
   function key(event) {
-    if (event.key === "Enter") commit();
+    if (event.key === "Enter") commit(event);
     if (event.key === "Escape") {
       setText(last.current);
       setError("");
