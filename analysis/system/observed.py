@@ -27,6 +27,12 @@ KINDS = frozenset(
 )
 """What a T line may tell, in lower case."""
 
+FAULTS = (
+    "Deadline_Miss", "Overrun", "Queue_Overflow", "Stale_Input", "Can_Error_Passive", "Can_Bus_Off",
+    "Silence", "Protection_Error",
+)  # fmt: skip
+"""The faults in the order of their numbers, which is that of Ravenchart.Health.Fault_Kind."""
+
 TRACE = "trace"
 """What an L line calls the records that found the trace full."""
 
@@ -217,13 +223,8 @@ def read_trace(lines: Iterable[str], trace_map: TraceMap, file: str = "trace") -
     """What the lines tell; TraceError names the first line that cannot be read."""
     seen = Observation(trace_map)
     for number, line in enumerate(lines, start=1):
-        words = line.split()
-        if not words:
-            continue
         try:
-            if seen.complete:
-                raise ValueError("nothing may follow END")
-            _take(words, seen)
+            take_line(line, seen)
         except ValueError as fault:
             raise TraceError(f"{file}:{number}: error: {fault}") from None
     return seen
@@ -270,8 +271,16 @@ def merged(parts: Mapping[str, Observation]) -> Observation:
     return whole
 
 
-def _take(words: list[str], seen: Observation) -> None:
+def take_line(line: str, seen: Observation) -> None:
     """Add one line to what was seen; ValueError says what is wrong with it."""
+    words = line.split()
+    if words and seen.complete:
+        raise ValueError("nothing may follow END")
+    if words:
+        _take(words, seen)
+
+
+def _take(words: list[str], seen: Observation) -> None:
     match words:
         case ["T", time, kind, element, value]:
             if kind.lower() == VALUE:

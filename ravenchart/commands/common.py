@@ -116,13 +116,13 @@ def named_interface(options: argparse.Namespace) -> tuple[str, str] | None:
 
 
 def add_snapshots(sub: argparse.ArgumentParser, use: str) -> None:
-    """The files of the snapshots of controllers; ``use`` says whose, or what for."""
+    """The files of the snapshots of controllers; ``use`` is a sentence: whose without it, or what for."""
     from ravenchart.running.snapshots import VARIABLE
 
     sub.add_argument(
         "--file", action="append", default=[], metavar="[NODE=]FILE",
-        help=f"the file that {VARIABLE} named to a controller: {use}; once for each of several "
-        "nodes, with its name",
+        help=f"the file that {VARIABLE} named to a controller, or the serial line of a board, "
+        f"PORT[@RATE]; once for each of several nodes, with its name. {use}",
     )  # fmt: skip
 
 

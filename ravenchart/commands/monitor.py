@@ -22,8 +22,8 @@ from ravenchart.building.checking import Checked
 from ravenchart.failures import OK, WRONG, Unusable
 from ravenchart.running import bus_text, monitor_text, monitoring
 from ravenchart.running.bus_watch import WINDOW, BusWatch
-from ravenchart.running.monitoring import WatchedController
 from ravenchart.running.snapshots import VARIABLE
+from ravenchart.running.watched import WatchedController
 
 from . import common
 from .answer import say
@@ -38,7 +38,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     common.add_model(sub)
     sub.add_argument("--once", action="store_true", help="show one snapshot, and end")
     common.add_interface(sub, "watch the bus", builds=False)
-    common.add_snapshots(sub, "by default those of `run`, `shell` and `measure`")
+    common.add_snapshots(sub, "Without it: those of `run`, `shell` and `measure`")
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -192,7 +192,7 @@ class Cropped:
 def _status(options: argparse.Namespace, seen: _Seen) -> int:
     """WRONG where a controller has ended without its report, or the bus is gone."""
     wrong = [
-        f"the controller of {one.name} has ended without its report"
+        one.end_in_words
         for one in seen.controllers
         if one.node.process is None and not one.node.ended
     ]

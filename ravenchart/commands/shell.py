@@ -22,12 +22,12 @@ from ravenchart.hw_can.bench.forms import DriveForm
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.running import judge, monitoring, scenarios
 from ravenchart.running.attaching import spoken_bus
-from ravenchart.running.monitoring import WatchedController
 from ravenchart.running.process import Ended, StartError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem, connected
 from ravenchart.running.shell import Shell
 from ravenchart.running.started import started
 from ravenchart.running.vocabulary import BusVocabulary, WordError
+from ravenchart.running.watched import WatchedController
 
 from . import common, run_results, running
 from .answer import say
@@ -44,7 +44,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--drives", type=Path, metavar="FILE", help="simulate the drives of this scenario"
     )
     common.add_log(sub)
-    common.add_snapshots(sub, "with --interface, the states of charts are read there")
+    common.add_snapshots(sub, "With --interface: the states of charts")
 
 
 def execute(options: argparse.Namespace) -> int:

@@ -23,7 +23,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         help="show a recorded run in place of running controllers: trace.txt, or what `simulate` "
         "printed; once for each of several nodes, trace-NODE.txt",
     )  # fmt: skip
-    common.add_snapshots(sub, "by default those of `run`, `shell` and `measure`")
+    common.add_snapshots(sub, "Without it: those of `run`, `shell` and `measure`")
     common.add_interface(sub, "show in Live the bus", builds=False)
     common.add_scheduler(sub)
     sub.add_argument("--no-open", action="store_true", help="print the address, open no browser")

@@ -13,7 +13,9 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from .monitoring import WatchedController
+from ravenchart.analysis.system.observed import TRACE
+
+from .watched import WatchedController
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +60,7 @@ def _seen(controller: WatchedController) -> Iterator[SeenChart]:
     node = controller.node
     for chart in node.charts:
         since = None if chart.since is None else controller.made - (node.now - chart.since) / 1e9
-        lost = node.lost.get("trace", 0)
+        lost = sum(n for what, n in node.lost.items() if what.rpartition(".")[2] == TRACE)
         ended = node.process is None
         yield SeenChart(chart.name, chart.state, controller.made, since, lost, ended)
 

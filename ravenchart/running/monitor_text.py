@@ -42,6 +42,7 @@ def tables(
         parts.append(_values(node))
     if overlooked.snapshots or overlooked.events:
         parts.append(Text(overlooked_in_words(overlooked)))
+    parts += [Text(text, style="bold red") for text in node.said]
     parts.append(Text(f"not seen: {'; '.join(node.not_seen)}", style="dim"))
     return Group(*parts)
 
@@ -56,9 +57,11 @@ def overlooked_in_words(of: Overlooked) -> str:
 
 def state_of(node: WatchedNode) -> str:
     """How the controller is doing, in words."""
-    if node.process is not None:
-        return f"process {node.process}" if node.process else "running"
-    return "ended in order" if node.ended else "ENDED WITHOUT ITS REPORT"
+    if node.ended:
+        return "ended in order"
+    if node.process is None:
+        return "ENDED WITHOUT ITS REPORT"
+    return f"process {node.process}" if node.process else "running"
 
 
 def lines(node: WatchedNode, name: str, *, counts: bool) -> Iterator[str]:
@@ -89,6 +92,8 @@ def lines(node: WatchedNode, name: str, *, counts: bool) -> Iterator[str]:
         yield f"{where}{now} {value.name} value {value.value}{unit}"
     for what, number in node.lost.items():
         yield f"{where}{now} {what} lost {number}"
+    for text in node.said:
+        yield f"{where}{now} {text}"
 
 
 def _head(title: str, node: WatchedNode, age: float) -> Text:

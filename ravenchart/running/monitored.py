@@ -6,12 +6,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ravenchart.analysis.present.report import compare
-from ravenchart.analysis.system.observed import VALUE, TraceRecord
+from ravenchart.analysis.system.observed import FAULTS, VALUE, TraceRecord
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.described import Described
 from ravenchart.gen.model.component import PortKind
@@ -190,6 +190,8 @@ class WatchedNode(Described):
     """What was lost: trace records, frames, and what found no room in the snapshot."""
     not_seen: list[str]
     """What a monitor cannot see of this controller."""
+    said: list[str] = field(default_factory=list)
+    """What the controller of a board said besides: why it ended, for example."""
 
 
 @dataclass(slots=True)
@@ -213,11 +215,12 @@ class Overlooked:
 class NodeMonitor:
     """Turns the snapshots of one node into what is shown; it knows what was shown before."""
 
-    def __init__(self, analysis: Analysis, node: str) -> None:
+    def __init__(self, analysis: Analysis, node: str, listed: int | None = None) -> None:
+        """``listed``: how many transitions and faults it has shown; None where others may have."""
         self._analysis = analysis
         self._system = analysis.system
         self._node = node
-        self._listed: int | None = None
+        self._listed = listed
         self._sequence: int | None = None
         self._processors = {p.name.lower(): p for p in self._system.processors}
 
@@ -248,7 +251,7 @@ class NodeMonitor:
                 for name, longest in seen.executions.items()
             ],
             charts=list(self._charts(snapshot, tallies)),
-            events=[event_of(one, tuple(seen.faults)) for one in events],
+            events=[event_of(one) for one in events],
             unlisted=unlisted,
             missed=max(0, snapshot.sequence - before - 1),
             traffic=[
@@ -348,11 +351,11 @@ def _value(tally: Tally) -> WatchedValue:
     return WatchedValue(last.element.name, text, quantity.unit, tally.count, last.time)
 
 
-def event_of(record: TraceRecord, faults: Sequence[str]) -> WatchedEvent:
-    """``faults`` are the names of faults, in the order of their numbers."""
+def event_of(record: TraceRecord) -> WatchedEvent:
+    """A transition or fault, with its name."""
     what = record.text
-    if record.kind == "fault" and 0 <= record.value < len(faults):
-        what = faults[record.value]
+    if record.kind == "fault" and 0 <= record.value < len(FAULTS):
+        what = FAULTS[record.value]
     return WatchedEvent(record.time, record.element.name, what, record.kind)
 
 

@@ -44,6 +44,7 @@ from .chart_states import ChartWatch, SeenChart, in_words
 from .process import separate_cores
 from .snapshots import VARIABLE
 from .vocabulary import BusVocabulary, WordError, hint_of
+from .watched import WatchedController
 
 PATIENCE = 10.0
 """How long an answer is waited for unless it is said, in s."""
@@ -129,7 +130,7 @@ class RemoteSystem:
         peer: Peer,
         drives: Mapping[str, DriveForm] | None = None,
         resources: ExitStack | None = None,
-        watched: Sequence[monitoring.WatchedController] = (),
+        watched: Sequence[WatchedController] = (),
     ) -> None:
         """Be on the bus of ``peer`` until `close`, which closes the ``resources`` too.
 

@@ -30,7 +30,7 @@ from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.language.terms import NO_TIME, Ns
 
 from .monitored import LISTED, NO_COUNTS, NO_LAST_RESPONSE, NodeMonitor, WatchedNode, event_of
-from .snapshots import RECENT, Snapshot, Tally
+from .snapshots import KINDS, RECENT, Snapshot, Tally
 from .traces.files import NodeTrace
 from .traces.values import Point, Quantity, extremes
 
@@ -42,11 +42,6 @@ MOST_POINTS = 480
 
 MOST_KEPT = 100_000
 """So many times are kept of which the extremes are known."""
-
-KINDS = (
-    "sent", "arrived", "handled", "raised", "activity", "transition", "state", "fault", VALUE,
-)  # fmt: skip
-"""The kinds of records in the order in which a snapshot counts them."""
 
 STEPS: Mapping[str, tuple[str, ...]] = {"event": LISTED, "value": (VALUE,), "record": KINDS}
 """What a step can lead to, and the kinds of records that it stands for."""
@@ -147,16 +142,14 @@ class ReplayedController:
     def _before_reports(self) -> Observation:
         """No counts. Where the first report has lost trace records, those before it have gaps."""
         lost = {TRACE: self._reports[0].seen.trace_lost} if self._reports else {}
-        faults = dict.fromkeys(self._seen.faults, 0)  # their names
-        return Observation(self._seen.map, faults=faults, counts=lost)
+        return Observation(self._seen.map, counts=lost)
 
     def records(self, at: int) -> Iterator[tuple[str, str, str]]:
         """The records of an instant: kind, element, and what is said of it."""
         records, now = self._steps["record"], at - self.late
-        faults = tuple(self._seen.faults)
         first, end = bisect_left(records, now, key=_time), bisect_right(records, now, key=_time)
         for one in records[first:end]:
-            yield one.kind, one.element.name, _said(one, faults)
+            yield one.kind, one.element.name, _said(one)
 
     def step(self, at: int, what: str, *, back: bool) -> Ns | None:
         """The next instant that has such a record, or the one before; None where there is none."""
@@ -221,12 +214,12 @@ def _report(trace: Observation, lines: Sequence[str]) -> _Report:
     return _Report(trace.end if seen.now is None else seen.now, seen)
 
 
-def _said(record: TraceRecord, faults: Sequence[str]) -> str:
+def _said(record: TraceRecord) -> str:
     """What a record says, in its unit."""
     if record.kind == VALUE:
         quantity = Quantity.of(record.element.literals, record.element.unit)
         return f"{quantity.text(record.value)} {quantity.unit}".rstrip()
-    return "" if record.kind == "activity" else event_of(record, faults).what
+    return "" if record.kind == "activity" else event_of(record).what
 
 
 class ReplayedRun:

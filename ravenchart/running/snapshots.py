@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ravenchart.analysis.system.observed import (
+    VALUE,
     Observation,
     TraceError,
     TraceMap,
@@ -39,6 +40,11 @@ FIRST_LINE = 22
 
 RECENT = 32
 """So many transitions and faults a snapshot lists at the most."""
+
+KINDS = (
+    "sent", "arrived", "handled", "raised", "activity", "transition", "state", "fault", VALUE,
+)  # fmt: skip
+"""The kinds of records in the order in which a snapshot counts them."""
 
 TRIES = 20
 """So often a snapshot is read that is being written."""

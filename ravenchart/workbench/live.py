@@ -20,7 +20,7 @@ from ravenchart.running import monitoring
 from ravenchart.running.attaching import interface_of
 from ravenchart.running.bus_watch import BusWatch
 from ravenchart.running.monitor_text import overlooked_in_words
-from ravenchart.running.monitoring import WatchedController
+from ravenchart.running.watched import WatchedController
 
 from .motion import LastValues, shown_node
 
@@ -36,7 +36,8 @@ class LiveView:
     ) -> None:
         """For the model at ``path``; ``bus`` is an interface of python-can and its channel.
 
-        ``files``: as of `monitoring.given`, in place of the controllers that are found.
+        ``files``: as of `monitoring.given`, in place of the controllers that are found. The serial
+        lines of boards are among them.
         """
         self._path = path
         self._given = files
@@ -45,6 +46,8 @@ class LiveView:
         self._bus_text = ""
         self._next_join = self._next_look = 0.0
         self._text = ""
+        self._other = ""
+        """What was said of a program of another model, while nothing else is heard."""
         self._lock = Lock()
         self._checked: Checked | None = None
         self._digest: str | None = None
@@ -67,16 +70,19 @@ class LiveView:
             try:
                 for one in self._watched:
                     one.look()
-            except Failure:  # a file is that of another program now: `_found` says so
+            except Failure as problem:  # it is another program now: watched until it is ours again
                 self._watched, self._values, self._next_look = [], [], 0.0
                 self._stack.close()
+                self._other = _without_prefix(problem)
             if digest is None:
                 text = "The saved model has errors: its controllers are not looked for."
             elif all(one.node.process is None for one in self._watched) or digest != self._digest:
                 text = self._found(digest)
+            if any(one.sequence for one in self._watched):
+                self._other = ""
             self._join()
             buses = [] if self._bus is None else [asdict(self._bus.look())]
-            text = " ".join(part for part in (text, self._bus_text) if part)
+            text = " ".join(part for part in (text or self._other, self._bus_text) if part)
             return {"text": text, "nodes": list(self._nodes()), "buses": buses}
 
     def close(self) -> None:

@@ -15,9 +15,9 @@ from ravenchart.analysis.system.observed import TraceError
 from ravenchart.building import checking
 from ravenchart.failures import Refused
 from ravenchart.gen.language.terms import Ns
-from ravenchart.running.monitoring import KEPT
 from ravenchart.running.replaying import STEPS, ReplayedController, ReplayedRun
 from ravenchart.running.traces.sources import recorded_nodes
+from ravenchart.running.watched import KEPT
 
 from .motion import WINDOW, plotted, shown_node
 from .publishing import RefusedRequestError

@@ -12,8 +12,7 @@ from pathlib import Path
 from ravenchart.analysis.system.observed import TraceMap
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.running.monitored import NodeMonitor, WatchedNode
-from ravenchart.running.replaying import KINDS
-from ravenchart.running.snapshots import RECENT, parsed_snapshot
+from ravenchart.running.snapshots import KINDS, RECENT, parsed_snapshot
 from tests.support.snapshot_files import snapshot
 
 LISTED = ("Transition", "Fault")

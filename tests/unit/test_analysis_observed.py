@@ -6,12 +6,21 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravenchart.analysis.system.observed import Observation, TraceError, Visit, read_map, read_trace
+from ravenchart.analysis.system.observed import (
+    FAULTS,
+    Observation,
+    TraceError,
+    Visit,
+    read_map,
+    read_trace,
+)
+from ravenchart.paths import ROOT
 from tests.support.robot_files import trace_map
 
 MAP = read_map(trace_map(["x"]))
@@ -140,3 +149,10 @@ def test_any_text_is_read_or_refused_in_words(lines: list[str]) -> None:
         read_trace(lines, MAP)
     except TraceError as fault:
         assert str(fault).startswith("trace:")
+
+
+def test_faults_have_the_names_and_the_order_of_the_runtime() -> None:
+    spec = (ROOT / "spark_runtime" / "src" / "ravenchart-health.ads").read_text(encoding="utf-8")
+    kinds = re.search(r"type Fault_Kind is\s*\(([^)]*)\)", spec)
+    assert kinds is not None
+    assert tuple(name.strip() for name in kinds[1].split(",")) == FAULTS

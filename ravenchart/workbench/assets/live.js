@@ -96,11 +96,13 @@ function Node({ of, replay, nodes }) {
     <${Table} names=${["queue", "waiting>"]} rows=${of.queues.map((one) => [one.name, `${one.waiting ?? "?"} of ${one.depth}`])} />
     <${Table} names=${["port, event, message", "", "count>", "last>"]} rows=${of.traffic.map((one) => [
       one.name, one.state ?? one.what, one.count, `${((of.now - one.last) / 1e9).toFixed(1)} s ago`])} />
+    ${of.said.map((text) => html`<p class="error">${text}</p>`)}
     <p class="remark">Not seen: ${of.not_seen.join("; ")}.</p></section>`;
 }
 
 function running(of) {
-  const doing = of.process !== null ? `process ${of.process}` : of.ended ? "ended in order" : "ENDED WITHOUT ITS REPORT";
+  const lives = of.process ? `process ${of.process}` : "running";
+  const doing = of.ended ? "ended in order" : of.process !== null ? lives : "ENDED WITHOUT ITS REPORT";
   return `${doing}, ${seconds(of.now)} s, snapshot ${of.sequence}`;
 }
 

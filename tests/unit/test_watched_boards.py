@@ -1,0 +1,299 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A board that is watched over its serial line: a pseudo-terminal, or an emulator's socket."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import socket
+import tty
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+
+from ravenchart.building import programs
+from ravenchart.building.checking import Checked, check
+from ravenchart.command_line import main
+from ravenchart.failures import UNUSABLE, WRONG, Refused, Unusable
+from ravenchart.running import watched_boards
+from ravenchart.running.monitoring import given, watching
+from ravenchart.running.watched_boards import NOT_STARTED, SerialLine, WatchedBoard, line_of
+from ravenchart.workbench.live import LiveView
+from tests.support.can_frames import within
+from tests.support.recordings import monitored, random_trace
+from tests.support.snapshot_files import GENERATED, PUMP, number, trace_map
+
+HEAD = ("E 71234", f"M {trace_map().digest}")
+BOOT = ("Xilinx First Stage Boot Loader", "E is no start, nor is", "T 1 State 0 0")
+
+
+@pytest.fixture(scope="module")
+def checked() -> Checked:
+    """The pump, whose program is generated."""
+    return check(PUMP, deadlines=False)
+
+
+class Board:
+    """The far end of a serial line."""
+
+    def __init__(self) -> None:
+        self.end, inner = os.openpty()
+        tty.setraw(inner)
+        self.port = os.ttyname(inner)
+        self._inner = inner
+
+    def says(self, *lines: str) -> None:
+        """Write these lines."""
+        self.writes("".join(f"{line}\r\n" for line in lines))
+
+    def writes(self, text: str) -> None:
+        """Write this, a line or not; the watcher reads meanwhile."""
+        rest = text.encode()
+        while rest:
+            rest = rest[os.write(self.end, rest[:512]) :]
+
+    def unplugged(self) -> None:
+        """The device is gone."""
+        os.close(self.end)
+        self.end = -1
+
+    def close(self) -> None:
+        """Give all back."""
+        if self.end >= 0:
+            os.close(self.end)
+        os.close(self._inner)
+
+
+@pytest.fixture
+def board() -> Iterator[Board]:
+    """A board that says nothing yet."""
+    found = Board()
+    yield found
+    found.close()
+
+
+@contextmanager
+def watched(checked: Checked, port: str) -> Iterator[WatchedBoard]:
+    """Its controller, watched."""
+    with watching(checked, given(checked, [port])) as (found,):
+        assert isinstance(found, WatchedBoard)
+        yield found
+
+
+def looked(board: WatchedBoard, now: int) -> None:
+    """Look until a record of that time was shown."""
+
+    def is_there() -> bool:
+        board.look()
+        return board.node.now >= now
+
+    assert within(is_there)
+
+
+def test_nothing_is_shown_until_the_board_names_its_model(checked: Checked, board: Board) -> None:
+    with watched(checked, board.port) as found:
+        board.says(*BOOT)
+        assert within(lambda: found.look() and found.is_new)
+        assert found.node.not_seen == [NOT_STARTED]
+        assert (found.node.process, found.node.charts, found.node.lost) == (0, [], {})
+        board.says(*HEAD, f"T 5000 State {number('bed.Keys', 'region')} 0")
+        looked(found, 5000)
+        assert [one.name for one in found.node.charts if one.state is not None] == ["bed.Keys"]
+        assert NOT_STARTED not in found.node.not_seen
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_it_shows_what_a_snapshot_of_the_same_records_does(
+    checked: Checked, board: Board, seed: int
+) -> None:
+    lines = random_trace(trace_map(), seed)
+    last = max(int(line.split()[1]) for line in lines if line[0] in "TVN")
+    wanted = monitored(checked.analysis, trace_map(), lines, last)
+    with watched(checked, board.port) as found:
+        board.says(*BOOT, *HEAD, *lines)
+        looked(found, last)
+        assert within(lambda: found.look() and found.node.ended)
+        assert _shown(asdict(found.node)) == _shown(asdict(wanted))
+        assert found.node.lost == wanted.lost
+
+
+def _shown(node: dict[str, object]) -> dict[str, object]:
+    """What both have: how often and when somebody looked is not it."""
+    return {
+        key: value
+        for key, value in node.items()
+        if key not in ("node", "sequence", "unlisted", "missed", "not_seen", "events")
+    }
+
+
+def test_each_transition_is_shown_once_or_counted(checked: Checked, board: Board) -> None:
+    region = number("bed.Infusion", "region")
+    with watched(checked, board.port) as found:
+        board.says(*HEAD)
+        shown = 0
+        for part in range(3):
+            times = range(100 * part + 1, 100 * part + 51)
+            board.says(*(f"T {at} Transition {region} 0" for at in times))
+
+            def is_there(last: int = times[-1]) -> bool:
+                nonlocal shown
+                found.look()
+                shown += len(found.node.events) + found.node.unlisted
+                return found.node.now >= last
+
+            assert within(is_there)
+        assert shown == 150
+
+
+def test_a_board_that_starts_again_is_another_one(checked: Checked, board: Board) -> None:
+    region = number("bed.Keys", "region")
+    with watched(checked, board.port) as found:
+        board.says(*HEAD, f"T 9000 Transition {region} 0")
+        looked(found, 9000)
+        first = found.start
+        board.says("error: the task control has ended", *HEAD, f"T 20 State {region} 0")
+        assert within(lambda: found.look() and found.start != first and found.node.now == 20)
+        assert found.node.charts[0].transitions == 0 and found.node.said == []
+
+
+def test_why_a_controller_ended_is_said(checked: Checked, board: Board) -> None:
+    why = "error: CONSTRAINT_ERROR : the stack of control is too small"
+    with watched(checked, board.port) as found:
+        board.says(*HEAD, why)
+        assert within(lambda: found.look() and found.node.said == [why])
+
+
+def test_lines_that_cannot_be_read_are_counted(checked: Checked, board: Board) -> None:
+    with watched(checked, board.port) as found:
+        board.says(*HEAD, "T 12 Sta\x00te 1 0", "T 13 State 99999 0", "half a li")
+        board.says(f"T 14 State {number('bed.Keys', 'region')} 0")
+        looked(found, 14)
+        assert found.node.lost == {"serial line.trace": 3}
+        assert all(queue.waiting is None for queue in found.node.queues)
+
+
+def test_what_finds_no_room_is_counted(
+    checked: Checked, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(watched_boards, "MOST_WAITING", 10)
+    region = number("bed.Keys", "region")
+    with watched(checked, board.port) as found:
+        board.says(*HEAD, *(f"T {at} State {region} 0" for at in range(1, 31)))
+        board.writes("x" * (watched_boards.LINE_BYTES + 1) + "\n")
+
+        def is_counted() -> bool:
+            found.look()
+            return found.node.lost.get("serial line.trace", 0) >= 22
+
+        assert within(is_counted)
+
+
+def test_the_program_of_another_model_is_refused(checked: Checked, board: Board) -> None:
+    with watched(checked, board.port) as found:
+        board.says("E 0", f"M {'0' * 64}", "T 1 State 0 0")
+        with pytest.raises(Refused, match="was generated from another model"):
+            within(lambda: found.look() and False)
+
+
+def test_an_unplugged_line_is_told(checked: Checked, board: Board) -> None:
+    with watched(checked, board.port) as found:
+        board.says(*HEAD)
+        assert within(lambda: found.look() and found.is_new)
+        board.unplugged()
+        assert within(lambda: found.look() and found.node.process is None)
+        assert found.end_in_words.startswith(f"nothing comes from {board.port} any more: ")
+
+
+def test_the_line_of_an_emulator_is_a_socket(checked: Checked) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        with watched(checked, f"board=socket://127.0.0.1:{port}") as found:
+            peer, _ = server.accept()
+            with peer:
+                peer.sendall("".join(f"{one}\n" for one in (*HEAD, "END")).encode())
+                assert within(lambda: found.look() and found.node.ended)
+                assert found.node.process == 0
+            assert within(lambda: found.look() and found.node.process is None)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("/dev/ttyUSB1", SerialLine("/dev/ttyUSB1", 115_200)),
+        ("/dev/ttyUSB1@9600", SerialLine("/dev/ttyUSB1", 9600)),
+        ("socket://localhost:4000", SerialLine("socket://localhost:4000", 115_200)),
+        ("/run/pump.live", None),
+        ("pump@9600", None),
+    ],
+)
+def test_a_serial_line_is_a_device_or_an_address(text: str, line: SerialLine | None) -> None:
+    assert line_of(text) == line
+
+
+def test_a_wrong_rate_or_port_is_told(checked: Checked, board: Board) -> None:
+    with pytest.raises(Unusable, match="'fast' is no number of bits in a second"):
+        line_of(f"{board.port}@fast")
+    absent = pytest.raises(Unusable, match=r"cannot read the serial line /dev/ttyUSB99: .*No such")
+    with absent, watched(checked, "/dev/ttyUSB99"):
+        pass
+    locked = pytest.raises(Unusable, match="lock")
+    with watched(checked, board.port), locked, watched(checked, board.port):
+        pass
+
+
+def test_the_monitor_ends_with_the_line_and_says_so(
+    board: Board, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        pid = os.fork()
+        if pid == 0:
+            peer, _ = server.accept()
+            with peer:
+                region = number("bed.Keys", "region")
+                lines = (*HEAD, f"T 1500000000 State {region} 0", f"T 2000000000 Fault {region} 2")
+                peer.sendall("".join(f"{one}\n" for one in lines).encode())
+            os._exit(0)
+        port = server.getsockname()[1]
+        status = main(["monitor", str(PUMP), "--file", f"socket://127.0.0.1:{port}"])
+        os.waitpid(pid, 0)
+    out, error = capsys.readouterr()
+    assert status == WRONG
+    assert "2.000 bed.Keys fault Queue_Overflow\n" in out
+    assert f"error: nothing comes from socket://127.0.0.1:{port} any more: " in out + error
+
+
+def test_the_page_shows_a_board_and_waits_after_that_of_another_model(
+    tmp_path: Path, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(programs, "work", lambda: tmp_path)
+    shutil.copytree(GENERATED, tmp_path / "pump" / "generated")
+    model = Path(shutil.copy(PUMP, tmp_path / "pump"))
+    live = LiveView(model, None, [board.port])
+    digest = trace_map().digest
+    try:
+        (node,) = live.look(digest)["nodes"]
+        assert node["not_seen"] == [NOT_STARTED]
+        board.says("E 0", f"M {'0' * 64}")
+        assert within(lambda: "another model" in live.look(digest)["text"])
+        assert "another model" in live.look(digest)["text"]  # as long as nothing else is heard
+        region = number("bed.Keys", "region")
+        board.says(*HEAD, f"T 5 State {region} 0")
+        assert within(lambda: live.look(digest)["nodes"][0]["now"] == 5)
+        found = live.look(digest)
+        assert found["text"] == "" and found["nodes"][0]["charts"][-1]["name"] == "bed.Keys"
+    finally:
+        live.close()
+
+
+def test_a_serial_line_that_cannot_be_read_is_refused_before_a_page_is_served(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    status = main(["workbench", str(PUMP), "--no-open", "--file", "/dev/ttyUSB99"])
+    assert status == UNUSABLE
+    assert os.strerror(errno.ENOENT) in capsys.readouterr().err
