@@ -116,7 +116,7 @@ def named_interface(options: argparse.Namespace) -> tuple[str, str] | None:
 
 
 def add_snapshots(sub: argparse.ArgumentParser, use: str) -> None:
-    """The files of the snapshots of controllers; ``use`` is a sentence: whose without it, or what for."""
+    """The files of the snapshots of controllers; ``use`` is a sentence: what for, for example."""
     from ravenchart.running.snapshots import VARIABLE
 
     sub.add_argument(

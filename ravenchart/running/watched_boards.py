@@ -22,6 +22,7 @@ from typing import Any
 import serial
 
 from ravenchart.analysis.system.observed import (
+    FAULTS,
     TRACE,
     Observation,
     TraceMap,
@@ -57,7 +58,9 @@ UNREADABLE = f"serial line.{TRACE}"
 NOT_STARTED = (
     "all of it until the board starts: it names its model only then; reset it, or start it now"
 )
-NO_COUNTS_YET = "processors, and counts of faults: a board reports them at the end of a run"
+NO_COUNTS_YET = (
+    "processors, and faults that a CAN controller counts: a board reports them at the end of a run"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,6 +178,9 @@ class _Counted:
                 self.last = max(self.last, record.time)
                 if record.kind in LISTED:
                     self.listed.append(record)
+                if record.kind == "fault" and 0 <= record.value < len(FAULTS):
+                    name = FAULTS[record.value]  # counted here until the report does
+                    self.seen.faults[name] = 1 + self.seen.faults.get(name, 0)
 
     def snapshot(self, number: int) -> Snapshot:
         """As a controller on this machine would write it."""
