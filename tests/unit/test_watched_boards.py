@@ -23,6 +23,7 @@ from ravenchart.building.checking import Checked, check
 from ravenchart.command_line import main
 from ravenchart.failures import UNUSABLE, WRONG, Refused, Unusable
 from ravenchart.running import watched_boards
+from ravenchart.running.chart_states import ChartWatch
 from ravenchart.running.monitoring import given, watching
 from ravenchart.running.watched_boards import NOT_STARTED, SerialLine, WatchedBoard, line_of
 from ravenchart.workbench.live import LiveView
@@ -307,3 +308,14 @@ def test_a_serial_line_that_cannot_be_read_is_refused_before_a_page_is_served(
     status = main(["workbench", str(PUMP), "--no-open", "--file", "/dev/ttyUSB99"])
     assert status == UNUSABLE
     assert os.strerror(errno.ENOENT) in capsys.readouterr().err
+
+
+def test_the_shell_sees_the_states_of_its_charts(checked: Checked, board: Board) -> None:
+    with watched(checked, board.port) as found:
+        charts = ChartWatch([found])
+        assert charts.look() == {}
+        board.says(*HEAD, f"T 5 State {number('bed.Keys', 'region')} 0", "T 6 Sta")
+        board.says(f"T 7 Activity {number('bed.ports', 'row')} 0")
+        assert within(lambda: charts.look() and found.node.now == 7)
+        seen = charts.look()["bed.Keys"]
+        assert (seen.state, seen.lost, seen.ended) == ("Listening", 1, False)
