@@ -49,6 +49,9 @@ MOST_WAITING = 200_000
 LINE_BYTES = 4_096
 """A longer line is no line."""
 
+AGAIN = 1.0
+"""Seconds between two attempts to open a line that is gone."""
+
 LOOK = 0.2
 """Seconds in which the end of the watching is noticed."""
 
@@ -87,9 +90,9 @@ def line_of(text: str) -> SerialLine | None:
     Unusable for a rate that is no number.
     """
     port, at, rate = text.rpartition("@")
-    if not at:
+    if not at or _is_device(text):
         port, rate = text, str(RATE)
-    if "://" not in port and not _is_device(port):
+    if "://" not in port and not _is_device(port) and not _is_named_so(port):
         return None
     if not rate.isascii() or not rate.isdigit() or int(rate) == 0:
         raise Unusable(f"{text}: {rate!r} is no number of bits in a second")
@@ -99,7 +102,13 @@ def line_of(text: str) -> SerialLine | None:
 def _is_device(port: str) -> bool:
     with suppress(OSError):
         return stat.S_ISCHR(Path(port).stat().st_mode)
-    return port.startswith("/dev/")
+    return False
+
+
+def _is_named_so(port: str) -> bool:
+    """Whether it would be a device if it were there: an adapter that is not plugged in."""
+    path = Path(port)
+    return not path.exists() and path.is_relative_to("/dev") and not path.is_relative_to("/dev/shm")
 
 
 class _Reader:
@@ -136,6 +145,7 @@ class _Reader:
             try:
                 rest += self._port.read(max(1, self._port.in_waiting))
             except (OSError, TypeError) as fault:  # of a port that goes meanwhile, too
+                self._port.close()  # so that it can be opened again
                 self.gone = str(fault)
                 return
             *whole, rest = rest.split(b"\n")
@@ -198,6 +208,8 @@ class WatchedBoard(WatchedController):
         self._counted: _Counted | None = None
         self._line = line
         self._reader = _Reader(line)
+        self._next = float("inf")
+        """When a line that is gone is opened again; not before that was shown."""
 
     def close(self) -> None:
         """Give the line back."""
@@ -213,7 +225,10 @@ class WatchedBoard(WatchedController):
 
     def look(self) -> bool:
         """Count what came. There is always something to show."""
+        self._open_again()
         process = None if self.has_ended else 0  # first: what came before its end is seen then
+        if process is None:
+            self._next = min(self._next, time.monotonic() + AGAIN)
         lines, dropped = self._reader.taken()
         for line in lines:
             self._take(line.strip())
@@ -228,6 +243,15 @@ class WatchedBoard(WatchedController):
         self.node.said = list(counted.said)
         self._say_what_is_missing()
         return True
+
+    def _open_again(self) -> None:
+        """Where the line was gone at the look before: what comes then is of another start."""
+        now = time.monotonic()
+        if now >= self._next:
+            self._next = now + AGAIN
+            with suppress(Unusable):
+                self._reader, self._counted = _Reader(self._line), None
+                self._next = float("inf")
 
     def _take(self, line: str) -> None:
         if BEGIN.fullmatch(line):

@@ -232,13 +232,28 @@ def test_the_line_of_an_emulator_is_a_socket(checked: Checked) -> None:
             assert within(lambda: found.look() and found.node.process is None)
 
 
+def test_a_line_that_comes_back_waits_for_the_next_start(
+    checked: Checked, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(watched_boards, "AGAIN", 0.0)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        place = f"socket://127.0.0.1:{server.getsockname()[1]}"
+        with watched(checked, place) as found:
+            server.accept()[0].close()
+            assert within(lambda: found.look() and found.node.process is None)
+            assert within(lambda: found.look() and found.node.process == 0)
+            assert found.node.not_seen == [NOT_STARTED]
+
+
 @pytest.mark.parametrize(
     ("text", "line"),
     [
         ("/dev/ttyUSB1", SerialLine("/dev/ttyUSB1", 115_200)),
         ("/dev/ttyUSB1@9600", SerialLine("/dev/ttyUSB1", 9600)),
         ("socket://localhost:4000", SerialLine("socket://localhost:4000", 115_200)),
+        ("/dev/serial/by-id/usb-board@9600", SerialLine("/dev/serial/by-id/usb-board", 9600)),
         ("/run/pump.live", None),
+        ("/dev/shm/pump.live", None),
         ("pump@9600", None),
     ],
 )
