@@ -59,7 +59,7 @@ test-long: setup-tests
 
 hw-test: setup
 	@scripts/setup.sh guest || true
-	@$(PYTHON) -P -m pytest -q -rs tests/hardware $(ELSEWHERE) -k 'hardware or s390x or armhf' --junit-xml=build/hw-test/results.xml
+	@$(PYTHON) -P -m pytest -q -rs tests/hardware $(ELSEWHERE) -k 'hardware or s390x or armhf' --timeout=3600 --junit-xml=build/hw-test/results.xml
 
 board-test: setup
 	@scripts/setup.sh board || true
