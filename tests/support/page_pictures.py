@@ -23,6 +23,7 @@ from tests.support.viewed_runs import ROBOT, WorkingRobot
 from tests.support.workbench import running
 
 PICTURES = ROOT / "docs" / "pictures"
+PUMP = ROOT / "examples" / "pump"
 WORKS = 8.0
 """Seconds for which the robot works."""
 
@@ -97,10 +98,26 @@ def replay(browser: Browser, robot: WorkingRobot) -> None:
         taken(page, "replay")
 
 
+def charts_in_motion(browser: Browser, folder: Path) -> None:
+    """The pump gives, and then there is air in the line."""
+    model = Path(shutil.copytree(PUMP, folder / "pump")) / "model.yaml"
+    events = model.with_name("events.yaml")
+    given = events.read_text(encoding="utf-8").partition("# Air in the line.")[0]
+    events.write_text(f"{given}- {{until: 6800 ms}}\n", encoding="utf-8")
+    with shown(browser, model, 800, "--events", events.name, name="simulate") as page:
+        page.get_by_label("line", exact=True).select_option("Air")
+        page.get_by_role("button", name="Put line").click()
+        page.get_by_role("button", name="One execution").click()
+        expect(page.locator(".clock")).to_have_text("executed up to 6.850 s")
+        page.locator(".paper g.cluster.active").last.scroll_into_view_if_needed()
+        taken(page, "charts_in_motion")
+
+
 def main() -> None:
     """All of them."""
     with tempfile.TemporaryDirectory(prefix="ravenchart-pictures-") as place, launched() as browser:
         workbench(browser, Path(place))
+        charts_in_motion(browser, Path(place))
         robot = WorkingRobot(Path(place))
         if not any(live(browser, robot) for _ in range(TRIES)):
             print("live.png shows a robot from which the host withheld the core: try again")
