@@ -81,6 +81,7 @@ def test_the_followed_states_are_those_of_the_interpreter(seed: int) -> None:
     assert sum(count.values()) > 0
 
 
+@pytest.mark.slow
 def test_the_charts_have_final_states_lanes_and_ends() -> None:
     """Without these the comparison would say little."""
     lanes = finals = ends = 0

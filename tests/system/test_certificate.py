@@ -29,6 +29,7 @@ def robot_text() -> str:
     )
 
 
+@pytest.mark.slow
 def test_every_claim_of_the_robot_is_exact(robot_text: str, tmp_path: Path) -> None:
     """Each one lowered by a nanosecond is refused, and the message names what it is about."""
     name = "Cartesian_Robot"

@@ -134,6 +134,7 @@ def test_what_has_no_bound_cannot_be_claimed(model: str, problem: str, tmp_path:
 # --- End-to-end protection: how surely and how soon ---------------------------------------
 
 
+@pytest.mark.slow
 def test_residual_errors_and_detection_times_are_exact(tmp_path: Path) -> None:
     found = checking.check(ROOT / "tests" / "feature" / "protected" / "model.yaml").analysis
     text = certificate(found)

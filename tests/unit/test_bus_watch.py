@@ -304,6 +304,7 @@ def test_in_a_pipe_a_bus_that_goes_is_told_once(
     assert capsys.readouterr().out.count("gone: Network is down") == 1
 
 
+@pytest.mark.slow
 def test_what_others_send_to_others_is_known(channel: str, tmp_path: Path) -> None:
     text = PUMP.read_text(encoding="utf-8")
     model = tmp_path / "model.yaml"

@@ -198,6 +198,7 @@ def test_an_edit_of_the_model_is_found(example: str, how: Json, tmp_path: Path) 
     assert all(Path(one.file).is_file() and one.line >= 1 for one in found)
 
 
+@pytest.mark.slow
 def test_each_number_of_a_certificate_is_found_when_it_is_altered(tmp_path: Path) -> None:
     home = _copied(THREE, tmp_path)
     path = home / "generated/three_components-timing_certificate.ads"

@@ -51,6 +51,7 @@ def test_what_is_said_before_and_the_ends_of_lines_make_no_difference(
     assert found.said == []
 
 
+@pytest.mark.slow
 def test_wherever_the_file_ends_its_whole_lines_are_read(checked: Checked, tmp_path: Path) -> None:
     lines = random_trace(trace_map(), 4, length=25)
     text = HEAD + "".join(f"{line}\n" for line in lines)

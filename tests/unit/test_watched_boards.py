@@ -294,6 +294,7 @@ def test_the_monitor_ends_with_the_line_and_says_so(
     assert f"error: nothing comes from socket://127.0.0.1:{port} any more: " in out + error
 
 
+@pytest.mark.slow
 def test_the_page_shows_a_board_and_waits_after_that_of_another_model(
     tmp_path: Path, board: Board, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -151,6 +151,7 @@ def simulated(model: Path, events: Path, out: Path, capsys: PRINTED, *more: str)
     return out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("more", [(), ("--json",)], ids=["text", "json"])
 def test_a_simulation_is_replayed_without_the_program(
     more: tuple[str, ...], tmp_path: Path, capsys: PRINTED
@@ -239,6 +240,7 @@ def test_what_a_trace_was_written_as_is_told_from_it(
     assert "name the trace that it was made from" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_model_without_its_program_has_no_names_and_the_command_in_the_message_writes_them(
     trace: Path, tmp_path: Path
 ) -> None:
