@@ -40,8 +40,12 @@ def used() -> float:
     return sum(kind.ru_utime + kind.ru_stime for kind in map(resource.getrusage, kinds))
 
 
+@pytest.mark.alone
 def test_the_server_keeps_up_with_a_bus_inside_the_process() -> None:
-    """Processor time and no rates: a host may withhold a core for seconds."""
+    """Processor time and no rates: a host may withhold a core for seconds.
+
+    Beside other tests the server is woken for each frame, and takes five times as long.
+    """
     costs: dict[str, list[float]] = {bench_buses.VIRTUAL: [], bench_buses.SERVER: []}
     rates = []
     for name, cost in 5 * list(costs.items()):
