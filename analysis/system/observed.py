@@ -102,6 +102,12 @@ class TraceRecord:
         choices = _choices(self.kind, self.element)
         return choices[self.value] if choices else str(self.value)
 
+    @property
+    def fault(self) -> str | None:
+        """The name of the fault that it tells of; None where it tells of none, or of an unknown."""
+        known = self.kind == "fault" and 0 <= self.value < len(FAULTS)
+        return FAULTS[self.value] if known else None
+
 
 @dataclass(frozen=True, slots=True)
 class Releases:
@@ -167,12 +173,12 @@ class Observation:
     @property
     def trace_lost(self) -> int:
         """Records that did not fit into the controller's trace buffer."""
-        return sum(n for what, n in self.losses.items() if _is_of(what, TRACE))
+        return sum(n for what, n in self.losses.items() if is_of(what, TRACE))
 
     @property
     def values_lost(self) -> int:
         """Recorded values that did not fit into the controller's buffer."""
-        return sum(n for what, n in self.losses.items() if _is_of(what, VALUES))
+        return sum(n for what, n in self.losses.items() if is_of(what, VALUES))
 
     @property
     def end(self) -> Ns:
@@ -334,7 +340,7 @@ def _choices(kind: str, element: NumberedElement) -> tuple[str, ...] | None:
     return {"state": element.leaves, "transition": element.transitions}.get(kind)
 
 
-def _is_of(what: str, label: str) -> bool:
+def is_of(what: str, label: str) -> bool:
     """Whether an L line counts this; of several controllers the node stands in front."""
     return what.lower().rpartition(".")[2] == label
 

@@ -13,7 +13,7 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from ravenchart.analysis.system.observed import TRACE
+from ravenchart.analysis.system.observed import TRACE, is_of
 
 from .watched import WatchedController
 
@@ -60,7 +60,7 @@ def _seen(controller: WatchedController) -> Iterator[SeenChart]:
     node = controller.node
     for chart in node.charts:
         since = None if chart.since is None else controller.made - (node.now - chart.since) / 1e9
-        lost = sum(n for what, n in node.lost.items() if what.rpartition(".")[2] == TRACE)
+        lost = sum(n for what, n in node.lost.items() if is_of(what, TRACE))
         ended = node.process is None
         yield SeenChart(chart.name, chart.state, controller.made, since, lost, ended)
 

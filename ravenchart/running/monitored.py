@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 from ravenchart.analysis.present.report import compare
-from ravenchart.analysis.system.observed import FAULTS, VALUE, TraceRecord
+from ravenchart.analysis.system.observed import VALUE, TraceRecord
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.described import Described
 from ravenchart.gen.model.component import PortKind
@@ -353,9 +353,7 @@ def _value(tally: Tally) -> WatchedValue:
 
 def event_of(record: TraceRecord) -> WatchedEvent:
     """A transition or fault, with its name."""
-    what = record.text
-    if record.kind == "fault" and 0 <= record.value < len(FAULTS):
-        what = FAULTS[record.value]
+    what = record.fault or record.text
     return WatchedEvent(record.time, record.element.name, what, record.kind)
 
 

@@ -22,7 +22,6 @@ from typing import Any
 import serial
 
 from ravenchart.analysis.system.observed import (
-    FAULTS,
     TRACE,
     Observation,
     TraceMap,
@@ -188,14 +187,13 @@ class _Counted:
                 self.last = max(self.last, record.time)
                 if record.kind in LISTED:
                     self.listed.append(record)
-                if record.kind == "fault" and 0 <= record.value < len(FAULTS):
-                    name = FAULTS[record.value]  # counted here until the report does
-                    self.seen.faults[name] = 1 + self.seen.faults.get(name, 0)
+                if (fault := record.fault) is not None:  # counted here until the report does
+                    self.seen.faults[fault] = 1 + self.seen.faults.get(fault, 0)
 
     def snapshot(self, number: int) -> Snapshot:
         """As a controller on this machine would write it."""
         now = max(self.last, self.seen.now or NO_TIME)
-        seen = replace(self.seen, records=list(self.listed), values=[], now=now)
+        seen = replace(self.seen, records=list(self.listed), now=now)
         return Snapshot(number, seen, tuple(one for _, one in sorted(self.tallies.items())))
 
 
