@@ -234,8 +234,8 @@ class WatchedBoard(WatchedController):
             self._lose(dropped)
         self.is_new = bool(lines)
         if lines:
-            self.sequence, self.came = self.sequence + 1, time.monotonic()
-            self.made = self.came
+            self.made = self.came = time.monotonic()
+            self.sequence += self._counted is not None  # what is of no run is not shown
         counted = self._counted or _Counted(self.map)
         self.show(counted.snapshot(self.sequence), process)
         self.node.said = list(counted.said)

@@ -308,7 +308,10 @@ def test_the_page_shows_a_board_and_waits_after_that_of_another_model(
         assert node["not_seen"] == [NOT_STARTED]
         board.says("E 0", f"M {'0' * 64}")
         assert within(lambda: "another model" in live.look(digest)["text"])
-        assert "another model" in live.look(digest)["text"]  # as long as nothing else is heard
+        board.says("T 3 State 0 0", "T 4 State 0 0")
+        for _ in range(20):  # until a program of this model starts
+            time.sleep(0.02)
+            assert "another model" in live.look(digest)["text"]
         region = number("bed.Keys", "region")
         board.says(*HEAD, f"T 5 State {region} 0")
         assert within(lambda: live.look(digest)["nodes"][0]["now"] == 5)
