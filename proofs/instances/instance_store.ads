@@ -7,7 +7,6 @@
 with System;
 with Ravenchart.Answered_Offers;
 with Ravenchart.Blackboards;
-with Ravenchart.Bounded_Fifos;
 with Ravenchart.Deferrals;
 with Ravenchart.Event_Lists;
 with Ravenchart.Fault_Reports;
@@ -15,6 +14,7 @@ with Ravenchart.Firing_Lists;
 with Ravenchart.Health_Counters;
 with Ravenchart.Monitors;
 with Ravenchart.Offers;
+with Ravenchart.Policy_Queues;
 with Ravenchart.Port_Regions;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
@@ -42,7 +42,7 @@ is
    type Job is (Sense, Control, Report);
    --  Stands for the activities of a processor.
 
-   package Fifos is new Ravenchart.Bounded_Fifos
+   package Values is new Ravenchart.Policy_Queues
      (Element_Type => Reading,
       Null_Element => No_Reading);
 

@@ -17,6 +17,12 @@ is
    subtype Capacity_Type is Length_Type range 1 .. Length_Type'Last;
    --  Room in a queue.
 
+   type Fill is record
+      Now     : Length_Type := 0;
+      Highest : Length_Type := 0;
+   end record;
+   --  How many elements wait, and the most that ever waited.
+
    type Overflow_Policy is (Reject_Newest, Drop_Oldest);
    --  What a full queue gives up when one more element comes.
 

@@ -1,14 +1,12 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
-with Ravenchart.Bounded_Fifos;
+with Ravenchart.Policy_Queues;
 
 package body Ravenchart.Queues
   with SPARK_Mode, Refined_State => (State => Queue)
 is
-   use type Queueing.Overflow_Policy;
-
-   package Fifos is new Bounded_Fifos
+   package Values is new Policy_Queues
      (Element_Type => Element_Type,
       Null_Element => Null_Element);
 
@@ -23,11 +21,12 @@ is
       procedure Take
         (Item : out Element_Type; Status : out Queueing.Take_Status);
 
+      function Fill return Queueing.Fill;
+
       function Lost return Event_Count;
 
    private
-      Store    : Fifos.Fifo (Capacity);
-      Given_Up : Event_Count := 0;
+      Value : Values.Queue (Capacity);
    end Queue;
 
    protected body Queue is
@@ -37,33 +36,20 @@ is
          When_Full : Queueing.Overflow_Policy;
          Status    : out Queueing.Put_Status) is
       begin
-         if Fifos.Length (Store) < Capacity then
-            Fifos.Put (Store, Item);
-            Status := Queueing.Queued;
-         elsif When_Full = Queueing.Drop_Oldest then
-            Fifos.Replace_Oldest (Store, Item);
-            Given_Up := Next (Given_Up);
-            Status   := Queueing.Dropped_Oldest;
-         else
-            Given_Up := Next (Given_Up);
-            Status   := Queueing.Rejected_Full;
-         end if;
+         Values.Put (Value, Item, When_Full, Status);
       end Put;
 
       procedure Take
         (Item : out Element_Type; Status : out Queueing.Take_Status) is
       begin
-         if Fifos.Length (Store) > 0 then
-            Fifos.Get (Store, Item);
-            Status   := Queueing.Taken;
-         else
-            Item   := Null_Element;
-            Status := Queueing.Empty;
-         end if;
+         Values.Take (Value, Item, Status);
       end Take;
 
+      function Fill return Queueing.Fill
+      is (Now => Values.Length (Value), Highest => Values.Highest (Value));
+
       function Lost return Event_Count
-      is (Given_Up);
+      is (Values.Lost (Value));
 
    end Queue;
 
@@ -83,6 +69,21 @@ is
    begin
       Queue.Take (Item, Status);
    end Take;
+
+   procedure Read_Fill (Found : out Queueing.Fill)
+   with Refined_Global => Queue
+   is
+   begin
+      Found := Queue.Fill;
+   end Read_Fill;
+
+   function Is_Empty return Boolean
+   with Refined_Global => Queue
+   is
+      Found : constant Queueing.Fill := Queue.Fill;
+   begin
+      return Found.Now = 0;
+   end Is_Empty;
 
    function Lost return Event_Count
    with Refined_Global => Queue

@@ -40,6 +40,13 @@ is
    with Global => (In_Out => State);
    --  Hand over the oldest element, or Null_Element when Empty.
 
+   procedure Read_Fill (Found : out Queueing.Fill)
+   with Global => (Input => State);
+   --  How many elements wait, and the most that ever waited.
+
+   function Is_Empty return Boolean
+   with Volatile_Function, Global => State;
+
    function Lost return Event_Count
    with Volatile_Function, Global => State;
    --  How many elements were rejected or dropped.

@@ -49,7 +49,7 @@ is
    --  Hand over the oldest element, or Null_Element when Empty.
 
    procedure Wait
-   with Global => (In_Out => (State, Wake_Up));
+   with Global => (Input => State, In_Out => Wake_Up);
    --  Suspend the one caller until there is an element.
 
    function Is_Empty return Boolean

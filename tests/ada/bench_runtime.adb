@@ -16,14 +16,17 @@ with Ravenchart.Queueing;
 procedure Bench_Runtime
   with Priority => System.Default_Priority
 is
-   Plain_Store : Objects.Fifos.Fifo (16);
+   Plain_Store : Objects.Plain.Queue (16);
    Plain_Value : Integer := 0 with Volatile;
 
    procedure Plain_Queue (Value : Integer) is
+      Put   : Ravenchart.Queueing.Put_Status;
+      Take  : Ravenchart.Queueing.Take_Status;
       Taken : Integer;
    begin
-      Objects.Fifos.Put (Plain_Store, Value);
-      Objects.Fifos.Get (Plain_Store, Taken);
+      Objects.Plain.Put
+        (Plain_Store, Value, Ravenchart.Queueing.Reject_Newest, Put);
+      Objects.Plain.Take (Plain_Store, Taken, Take);
       Plain_Value := Taken;
    end Plain_Queue;
 
@@ -52,12 +55,12 @@ is
 
    procedure Copy is new Measuring.Measure (Plain_Copy);
    procedure Board is new Measuring.Measure (Board_Both);
-   procedure Fifo is new Measuring.Measure (Plain_Queue);
+   procedure Value is new Measuring.Measure (Plain_Queue);
    procedure Queue is new Measuring.Measure (Queue_Both);
 begin
    Copy ("plain variable, write:");
    Board ("blackboard, write and read:");
-   Fifo ("fifo without lock, put and get:");
+   Value ("queue without lock, put and take:");
    Queue ("queue, put and take:");
    GNAT.OS_Lib.OS_Exit (0);
    --  under this profile the environment task never ends by itself

@@ -6,12 +6,12 @@
 with System;
 with Ravenchart.Answered_Offers;
 with Ravenchart.Blackboards;
-with Ravenchart.Bounded_Fifos;
 with Ravenchart.Event_Lists;
 with Ravenchart.Fault_Reports;
 with Ravenchart.Health_Counters;
 with Ravenchart.Monitors;
 with Ravenchart.Offers;
+with Ravenchart.Policy_Queues;
 with Ravenchart.Port_Regions;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
@@ -28,7 +28,7 @@ package Objects is
 
    type Signal is (Start, Stop, Reset);
 
-   package Fifos is new Ravenchart.Bounded_Fifos
+   package Plain is new Ravenchart.Policy_Queues
      (Element_Type => Integer,
       Null_Element => 0);
 

@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Queues, blackboards and the buffer behind them: order and overflow, and
---  what offers report and answer.
+--  Queues and blackboards: order, overflow and fill, and what offers report
+--  and answer.
 
 with Facts;
 with Objects;
@@ -11,12 +11,11 @@ with Ravenchart.Queueing;
 
 procedure Test_Store is
    use type Ravenchart.Event_Count;
+   use type Ravenchart.Queueing.Fill;
    use type Ravenchart.Queueing.Put_Status;
    use type Ravenchart.Queueing.Take_Status;
 
    type Wanted_Items is array (Positive range <>) of Integer;
-
-   procedure Check_Fifo;
 
    procedure Check_Rejecting;
 
@@ -25,37 +24,6 @@ procedure Test_Store is
    procedure Check_Offers;
 
    procedure Check_Board;
-
-   ----------------
-   -- Check_Fifo --
-   ----------------
-
-   procedure Check_Fifo is
-      Queue : Objects.Fifos.Fifo (Capacity => 3);
-      Item  : Integer;
-      Order : Boolean := True;
-   begin
-      Facts.Check ("a new fifo is empty", Objects.Fifos.Length (Queue) = 0);
-      for Round in 1 .. 100 loop
-         Objects.Fifos.Put (Queue, 2 * Round);
-         Objects.Fifos.Put (Queue, 2 * Round + 1);
-         Order := Order and then Objects.Fifos.Length (Queue) = 2;
-         Objects.Fifos.Get (Queue, Item);
-         Order := Order and then Item = 2 * Round;
-         Objects.Fifos.Get (Queue, Item);
-         Order := Order and then Item = 2 * Round + 1;
-      end loop;
-      Facts.Check ("a fifo keeps its order while it wraps", Order);
-      for I in 1 .. 3 loop
-         Objects.Fifos.Put (Queue, I);
-      end loop;
-      Facts.Check ("a fifo can be filled", Objects.Fifos.Length (Queue) = 3);
-      for I in 1 .. 3 loop
-         Objects.Fifos.Get (Queue, Item);
-         Order := Order and then Item = I;
-      end loop;
-      Facts.Check ("a full fifo gives back what was put", Order);
-   end Check_Fifo;
 
    ---------------------
    -- Check_Rejecting --
@@ -98,8 +66,10 @@ procedure Test_Store is
       Put   : Ravenchart.Queueing.Put_Status;
       Take  : Ravenchart.Queueing.Take_Status;
       Item  : Integer;
+      Fill  : Ravenchart.Queueing.Fill;
       Right : Boolean := True;
    begin
+      Facts.Check ("a queue is empty at first", Objects.Dropping.Is_Empty);
       for I in 1 .. 5 loop
          Objects.Dropping.Put (I, Put);
          Right := Right
@@ -113,8 +83,12 @@ procedure Test_Store is
          Right := Right
            and then Take = Ravenchart.Queueing.Taken
            and then Item = I;
+         Objects.Dropping.Read_Fill (Fill);
+         Right := Right
+           and then Fill = (Now => 5 - I, Highest => 3)
+           and then Objects.Dropping.Is_Empty = (I = 5);
       end loop;
-      Facts.Check ("a queue that dropped keeps its order", Right);
+      Facts.Check ("a queue that dropped keeps order and fill", Right);
    end Check_Dropping;
 
    ------------------
@@ -208,7 +182,6 @@ procedure Test_Store is
    end Check_Board;
 
 begin
-   Check_Fifo;
    Check_Rejecting;
    Check_Dropping;
    Check_Offers;

@@ -15,6 +15,7 @@ from tests.support.ada_programs import built
 from tests.support.modes import MODES
 
 MAINS = (
+    "test_queues",
     "test_store",
     "test_calls",
     "test_regions",

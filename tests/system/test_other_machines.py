@@ -22,6 +22,7 @@ COMMON = (
 )
 MAINS = {
     "hw_can/drivers/loopback": (
+        "test_queues",
         "test_store",
         "test_calls",
         "test_regions",
