@@ -49,6 +49,7 @@ is
    Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
    Late   : Ravenchart.Nanoseconds;
    Fed    : Ravenchart.Event_Count;
+   Fill   : Ravenchart.Queueing.Fill;
 begin
    Ravenchart.Hosts.Start;
    loop
@@ -66,14 +67,18 @@ begin
    Ravenchart.Hosts.Put_Now;
    Instance_Tasks.Cyclic.Observe (Cyclic);
    Ravenchart.Hosts.Put_Processor
-     (1, Cyclic.Releases, Cyclic.Misses, Cyclic.Worst_Response);
+     (1, Cyclic.Releases, Cyclic.Misses, Cyclic.Worst_Response,
+      Cyclic.Last_Response);
    for Job in Instance_Tasks.Job loop
       Ravenchart.Hosts.Put_Activity
         (Instance_Tasks.Job'Pos (Job) + 10, Cyclic.Worst_Execution (Job));
    end loop;
    Instance_Tasks.Served.Observe (Served);
    Ravenchart.Hosts.Put_Processor
-     (2, Served.Releases, Served.Misses, Served.Worst_Response);
+     (2, Served.Releases, Served.Misses, Served.Worst_Response,
+      Served.Last_Response);
+   Instance_Store.Dropping_Queue.Read_Fill (Fill);
+   Ravenchart.Hosts.Put_Queue (3, Fill);
    Instance_Store.Counters.Read (Counts);
    Instance_Bus.Controller.Read_Faults (Faults);
    Counts (Ravenchart.Health.Can_Bus_Off) := Faults.Off_Entries;

@@ -184,7 +184,8 @@ is
      (Id             : Element_Id;
       Releases       : Event_Count;
       Misses         : Event_Count;
-      Worst_Response : Nanoseconds)
+      Worst_Response : Nanoseconds;
+      Last_Response  : Nanoseconds)
    with Refined_Global => (In_Out => Services.State)
    is
    begin
@@ -193,8 +194,24 @@ is
          (Long_Long_Integer (Id),
           Long_Long_Integer (Releases),
           Long_Long_Integer (Misses),
-          Long_Long_Integer (Worst_Response)));
+          Long_Long_Integer (Worst_Response),
+          Long_Long_Integer (Last_Response)));
    end Put_Processor;
+
+   ---------------
+   -- Put_Queue --
+   ---------------
+
+   procedure Put_Queue (Id : Element_Id; Found : Queueing.Fill)
+   with Refined_Global => (In_Out => Services.State)
+   is
+   begin
+      Put
+        ("Q",
+         (Long_Long_Integer (Id),
+          Long_Long_Integer (Found.Now),
+          Long_Long_Integer (Found.Highest)));
+   end Put_Queue;
 
    ------------------
    -- Put_Activity --

@@ -16,14 +16,16 @@
 --  at Start of Epochs; M digest, of the model from which the program was
 --  generated; T time kind element value; V time element value, of a value
 --  that is recorded (Value_Lines); P processor releases misses
---  worst_response; A activity worst_execution; H kind count; L what count;
---  W host_latency; N now, the time at which the statistics were read; F feeds
---  of the watchdog; END last. Times are in nanoseconds.
+--  worst_response last_response; A activity worst_execution; Q region waiting
+--  highest, of a queue of events; H kind count; L what count; W host_latency;
+--  N now, the time at which the statistics were read; F feeds of the watchdog;
+--  END last. Times are in nanoseconds. A board repeats its M line.
 
 with Ada.Real_Time;
 with Ravenchart.Epochs;
 with Ravenchart.Failures;
 with Ravenchart.Health;
+with Ravenchart.Queueing;
 with Ravenchart.Traces;
 
 package Ravenchart.Hosts
@@ -57,9 +59,14 @@ is
      (Id             : Element_Id;
       Releases       : Event_Count;
       Misses         : Event_Count;
-      Worst_Response : Nanoseconds)
+      Worst_Response : Nanoseconds;
+      Last_Response  : Nanoseconds)
    with Global => (In_Out => Process);
    --  Write a P line.
+
+   procedure Put_Queue (Id : Element_Id; Found : Queueing.Fill)
+   with Global => (In_Out => Process);
+   --  Write a Q line.
 
    procedure Put_Activity (Id : Element_Id; Worst_Execution : Nanoseconds)
    with Global => (In_Out => Process);

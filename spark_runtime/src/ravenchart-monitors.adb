@@ -22,6 +22,31 @@ is
       Begun_For : Nanoseconds := 0;
    end Observed;
 
+   procedure Note
+     (S        : in out Statistics;
+      Response : Nanoseconds;
+      Missed   : Boolean;
+      Times    : Execution_Times) is
+   begin
+      S.Releases := Next (S.Releases);
+      if Missed then
+         S.Misses := Next (S.Misses);
+      end if;
+      S.Last_Response  := Response;
+      S.Worst_Response := Nanoseconds'Max (S.Worst_Response, Response);
+      for A in Activity_Id loop
+         S.Worst_Execution (A) :=
+           Nanoseconds'Max (S.Worst_Execution (A), Times (A));
+         pragma Loop_Invariant
+           (for all B in Activity_Id =>
+              S.Worst_Execution (B) =
+                (if B <= A
+                 then Nanoseconds'Max
+                   (S.Worst_Execution'Loop_Entry (B), Times (B))
+                 else S.Worst_Execution'Loop_Entry (B)));
+      end loop;
+   end Note;
+
    protected body Observed is
 
       procedure Start_One (Due : Nanoseconds) is
@@ -33,17 +58,8 @@ is
       procedure Add
         (Response : Nanoseconds; Missed : Boolean; Times : Execution_Times) is
       begin
-         Sum.Releases := Next (Sum.Releases);
-         Under_Way    := False;
-         if Missed then
-            Sum.Misses := Next (Sum.Misses);
-         end if;
-         Sum.Worst_Response :=
-           Nanoseconds'Max (Sum.Worst_Response, Response);
-         for Activity in Activity_Id loop
-            Sum.Worst_Execution (Activity) := Nanoseconds'Max
-              (Sum.Worst_Execution (Activity), Times (Activity));
-         end loop;
+         Note (Sum, Response, Missed, Times);
+         Under_Way := False;
       end Add;
 
       function Summary return Statistics

@@ -1,9 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What was observed of one processor: releases, misses and worst times.
+--  What was observed of one processor: releases, misses, the last response and
+--  worst times.
 --
---  Guarantees   worst values only grow; one Read sees one instant
+--  Guarantees   contract of Note: worst values only grow; one Read sees one
+--               instant
 --  Tasking      any task up to Ceiling
 --  Timing       linear in the number of activities, never blocks
 --  Analysis     one shared object, ceiling Ceiling
@@ -28,10 +30,32 @@ is
    type Statistics is record
       Releases        : Event_Count := 0;
       Misses          : Event_Count := 0;
+      Last_Response   : Nanoseconds := 0;
       Worst_Response  : Nanoseconds := 0;
       Worst_Execution : Execution_Times := (others => 0);
    end record;
    --  Misses counts the releases that completed after their deadline.
+   --  Last_Response is that of the release that completed last.
+
+   procedure Note
+     (S        : in out Statistics;
+      Response : Nanoseconds;
+      Missed   : Boolean;
+      Times    : Execution_Times)
+   with
+     Global => null,
+     Post   =>
+       S.Releases = Next (S.Releases'Old)
+       and then S.Misses = (if Missed then Next (S.Misses'Old)
+                            else S.Misses'Old)
+       and then S.Last_Response = Response
+       and then S.Worst_Response
+                = Nanoseconds'Max (S.Worst_Response'Old, Response)
+       and then (for all A in Activity_Id =>
+                   S.Worst_Execution (A)
+                   = Nanoseconds'Max
+                       (S.Worst_Execution'Old (A), Times (A)));
+   --  One more release has completed.
 
    procedure Record_Begin (Due : Nanoseconds)
    with Global => (In_Out => State);
@@ -41,7 +65,7 @@ is
    procedure Record_Release
      (Response : Nanoseconds; Missed : Boolean; Times : Execution_Times)
    with Global => (In_Out => State);
-   --  One more release has completed.
+   --  Note that one more release has completed.
 
    procedure Read (S : out Statistics)
    with Global => (Input => State);

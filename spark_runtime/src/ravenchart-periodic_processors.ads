@@ -69,7 +69,7 @@ is
       On_Executed      => On_Executed);
 
    subtype Statistics is Releases.Monitor.Statistics;
-   --  Releases, Misses, Worst_Response and Worst_Execution.
+   --  Releases, Misses, Last_Response, Worst_Response and Worst_Execution.
 
    procedure Observe (S : out Statistics) renames Releases.Observe;
    --  What was observed so far.

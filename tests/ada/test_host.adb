@@ -34,7 +34,8 @@ begin
           Element => 17,
           Value   => -I));
    end loop;
-   Ravenchart.Hosts.Put_Processor (1, 2, 3, 4);
+   Ravenchart.Hosts.Put_Processor (1, 2, 3, 4, 5);
+   Ravenchart.Hosts.Put_Queue (6, (Now => 7, Highest => 8));
    Ravenchart.Hosts.Put_Activity (5, 6);
    Ravenchart.Hosts.Put_Fault_Count (Ravenchart.Health.Can_Bus_Off, 7);
    Ravenchart.Hosts.Put_Lost ("trace", 8);

@@ -163,8 +163,9 @@ procedure Test_Records is
         ("a monitor counts releases and misses",
          Observed.Releases = 3 and then Observed.Misses = 1);
       Facts.Check
-        ("a monitor keeps the worst times",
+        ("a monitor keeps the last response and the worst times",
          Observed.Worst_Response = 30
+         and then Observed.Last_Response = 20
          and then Observed.Worst_Execution (Objects.First_Job) = 5
          and then Observed.Worst_Execution (Objects.Second_Job) = 7);
    end Check_Monitor;

@@ -12,7 +12,6 @@ with Canopen_Device.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Offers;
-with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
@@ -254,6 +253,16 @@ is
                Elements.Device_Asked, 0);
       end case;
    end Offer;
+
+   procedure Read_Nmt_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Nmt_Queue.Read_Fill (Found);
+   end Read_Nmt_Fill;
+
+   procedure Read_Inbox_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Inbox_Queue.Read_Fill (Found);
+   end Read_Inbox_Fill;
 
    procedure Send_Sdo_Response (Item : Canopen_Device.Sdo) is
    begin

@@ -2,6 +2,7 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Queueing;
 with Canopen_Device.Controller;
 with Canopen_Device.Elements;
 
@@ -25,6 +26,12 @@ is
    procedure Offer (Item : Controller.Event);
    --  [device.events] offer Item to every region that names it; never
    --  blocks.
+
+   procedure Read_Nmt_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [device.Nmt.queue] how many events wait; by the main program.
+
+   procedure Read_Inbox_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [device.Inbox.queue] how many events wait; by the main program.
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
    with Pre => Executed = 0, Post => Executed = Elements.Device_Ports_Row;

@@ -13,7 +13,6 @@ with Cartesian_Robot.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Offers;
-with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
@@ -167,6 +166,11 @@ is
                Elements.Coordinator_Shutdown, 0);
       end case;
    end Offer;
+
+   procedure Read_Mission_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Mission_Queue.Read_Fill (Found);
+   end Read_Mission_Fill;
 
    procedure Send_Order_X (Item : Cartesian_Robot.Joint_Order) is
    begin

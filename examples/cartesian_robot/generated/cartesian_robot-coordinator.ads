@@ -2,6 +2,7 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Queueing;
 with Cartesian_Robot.Robot_Coordinator;
 with Cartesian_Robot.Elements;
 
@@ -25,6 +26,10 @@ is
    procedure Offer (Item : Robot_Coordinator.Event);
    --  [coordinator.events] offer Item to every region that names it; never
    --  blocks.
+
+   procedure Read_Mission_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [coordinator.Mission.queue] how many events wait; by the main
+   --  program.
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
    with

@@ -13,7 +13,6 @@ with Cartesian_Robot.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Offers;
-with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
@@ -163,6 +162,11 @@ is
                Elements.Joint_X_Drive_Failed, 0);
       end case;
    end Offer;
+
+   procedure Read_Motion_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Motion_Queue.Read_Fill (Found);
+   end Read_Motion_Fill;
 
    procedure Send_Drive (Item : Cartesian_Robot.Drive_Set_Point) is
    begin

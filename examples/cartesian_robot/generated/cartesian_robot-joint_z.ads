@@ -2,6 +2,7 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Queueing;
 with Cartesian_Robot.Joint;
 with Cartesian_Robot.Elements;
 
@@ -19,6 +20,9 @@ is
    procedure Offer (Item : Joint.Event);
    --  [joint_z.events] offer Item to every region that names it; never
    --  blocks.
+
+   procedure Read_Motion_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [joint_z.Motion.queue] how many events wait; by the main program.
 
    procedure Run_Trajectory_Step (Executed : in out Ravenchart.Element_Id)
    with

@@ -3,9 +3,13 @@
 --  model's elements; trace.json says where they stand.
 
 with Cartesian_Robot.Control;
+with Cartesian_Robot.Coordinator;
 with Cartesian_Robot.Elements;
 with Cartesian_Robot.Health_Counts;
 with Cartesian_Robot.Host_Probe;
+with Cartesian_Robot.Joint_X;
+with Cartesian_Robot.Joint_Y;
+with Cartesian_Robot.Joint_Z;
 with Cartesian_Robot.Liveness_Supervision;
 with Cartesian_Robot.Reception;
 with Cartesian_Robot.Robot_Bus;
@@ -44,7 +48,8 @@ is
    begin
       Reception.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Reception_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Reception.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Reception_Processor + 1
@@ -60,7 +65,8 @@ is
    begin
       Trajectory.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Trajectory_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Trajectory.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Trajectory_Processor + 1
@@ -76,7 +82,8 @@ is
    begin
       Control.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Control_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Control.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Control_Processor + 1
@@ -92,7 +99,8 @@ is
    begin
       Supervision.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Supervision_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Supervision.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Supervision_Processor + 1
@@ -103,6 +111,7 @@ is
 
    procedure Put_All is
       Faults : Ravenchart.Health.Fault_Counts;
+      Queue_Fill : Ravenchart.Queueing.Fill;
       Lost : Ravenchart.Event_Count;
       Robot_Bus_Counters : Ravenchart.Can.Counters;
       Robot_Bus_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
@@ -114,6 +123,14 @@ is
       Report_Trajectory;
       Report_Control;
       Report_Supervision;
+      Joint_X.Read_Motion_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Joint_X_Motion, Queue_Fill);
+      Joint_Y.Read_Motion_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Joint_Y_Motion, Queue_Fill);
+      Joint_Z.Read_Motion_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Joint_Z_Motion, Queue_Fill);
+      Coordinator.Read_Mission_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Coordinator_Mission, Queue_Fill);
       Health_Counts.Counters.Read (Faults);
       Robot_Bus.Controller.Read_Faults (Robot_Bus_Faults);
       Faults (Ravenchart.Health.Can_Error_Passive) :=

@@ -6,6 +6,7 @@ with Crossing_System.Control;
 with Crossing_System.Elements;
 with Crossing_System.Health_Counts;
 with Crossing_System.Reception;
+with Crossing_System.School;
 with Crossing_System.Street;
 with Crossing_System.Trace;
 with Ravenchart.Can;
@@ -40,7 +41,8 @@ is
    begin
       Reception.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Reception_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Reception.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Reception_Processor + 1
@@ -56,7 +58,8 @@ is
    begin
       Control.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Control_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Control.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Control_Processor + 1
@@ -67,6 +70,7 @@ is
 
    procedure Put_All is
       Faults : Ravenchart.Health.Fault_Counts;
+      Queue_Fill : Ravenchart.Queueing.Fill;
       Lost : Ravenchart.Event_Count;
       Street_Counters : Ravenchart.Can.Counters;
       Street_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
@@ -74,6 +78,8 @@ is
       Ravenchart.Hosts.Put_Now;
       Report_Reception;
       Report_Control;
+      School.Read_Lights_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.School_Lights, Queue_Fill);
       Health_Counts.Counters.Read (Faults);
       Street.Controller.Read_Faults (Street_Faults);
       Faults (Ravenchart.Health.Can_Error_Passive) :=

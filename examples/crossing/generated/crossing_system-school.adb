@@ -10,7 +10,6 @@ with Crossing_System.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Offers;
-with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
@@ -124,6 +123,11 @@ is
                Elements.School_Ordered, 0);
       end case;
    end Offer;
+
+   procedure Read_Lights_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Lights_Queue.Read_Fill (Found);
+   end Read_Lights_Fill;
 
    procedure Send_Car_Lamp (Item : Crossing_System.Car_Light) is
    begin

@@ -2,7 +2,7 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Ravenchart;
+with Ravenchart.Queueing;
 with Crossing_System.Crossing;
 with Crossing_System.Elements;
 
@@ -20,6 +20,9 @@ is
    procedure Offer (Item : Crossing.Event);
    --  [school.events] offer Item to every region that names it; never
    --  blocks.
+
+   procedure Read_Lights_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [school.Lights.queue] how many events wait; by the main program.
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
    with Pre => Executed = 0, Post => Executed = Elements.School_Ports_Row;

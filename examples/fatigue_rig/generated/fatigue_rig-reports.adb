@@ -7,6 +7,9 @@ with Fatigue_Rig.Field;
 with Fatigue_Rig.Health_Counts;
 with Fatigue_Rig.Panel;
 with Fatigue_Rig.Reception;
+with Fatigue_Rig.Station_1_Sensor;
+with Fatigue_Rig.Station_2_Sensor;
+with Fatigue_Rig.Station_3_Sensor;
 with Fatigue_Rig.Stations;
 with Fatigue_Rig.Trace;
 with Ravenchart.Can;
@@ -41,7 +44,8 @@ is
    begin
       Reception.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Reception_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Reception.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Reception_Processor + 1
@@ -57,7 +61,8 @@ is
    begin
       Stations.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Stations_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Stations.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Stations_Processor + 1
@@ -73,7 +78,8 @@ is
    begin
       Panel.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Panel_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Panel.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Panel_Processor + 1
@@ -84,6 +90,7 @@ is
 
    procedure Put_All is
       Faults : Ravenchart.Health.Fault_Counts;
+      Queue_Fill : Ravenchart.Queueing.Fill;
       Lost : Ravenchart.Event_Count;
       Field_Counters : Ravenchart.Can.Counters;
       Field_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
@@ -92,6 +99,15 @@ is
       Report_Reception;
       Report_Stations;
       Report_Panel;
+      Station_1_Sensor.Read_Supply_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Station_1_Sensor_Supply,
+         Queue_Fill);
+      Station_2_Sensor.Read_Supply_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Station_2_Sensor_Supply,
+         Queue_Fill);
+      Station_3_Sensor.Read_Supply_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Station_3_Sensor_Supply,
+         Queue_Fill);
       Health_Counts.Counters.Read (Faults);
       Field.Controller.Read_Faults (Field_Faults);
       Faults (Ravenchart.Health.Can_Error_Passive) :=

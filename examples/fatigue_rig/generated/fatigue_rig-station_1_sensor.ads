@@ -2,6 +2,7 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Queueing;
 with Fatigue_Rig.Load_Cell;
 with Fatigue_Rig.Elements;
 
@@ -16,6 +17,10 @@ is
    procedure Offer (Item : Load_Cell.Event);
    --  [station_1.sensor.events] offer Item to every region that names it;
    --  never blocks.
+
+   procedure Read_Supply_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [station_1.sensor.Supply.queue] how many events wait; by the main
+   --  program.
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
    with

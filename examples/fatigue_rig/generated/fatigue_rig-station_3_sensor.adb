@@ -11,7 +11,6 @@ with Fatigue_Rig.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Offers;
-with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
@@ -84,6 +83,11 @@ is
                Elements.Station_3_Sensor_Cell_Silent, 0);
       end case;
    end Offer;
+
+   procedure Read_Supply_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Supply_Queue.Read_Fill (Found);
+   end Read_Supply_Fill;
 
    procedure Send_Force (Item : Fatigue_Rig.Force) is
    begin

@@ -12,7 +12,6 @@ with J1939_Node.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Offers;
-with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
@@ -224,6 +223,16 @@ is
                Elements.Fan_Asked_By_Null, 0);
       end case;
    end Offer;
+
+   procedure Read_Address_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Address_Queue.Read_Fill (Found);
+   end Read_Address_Fill;
+
+   procedure Read_Answers_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Answers_Queue.Read_Fill (Found);
+   end Read_Answers_Fill;
 
    procedure Send_Claim (Item : J1939_Node.Name) is
    begin

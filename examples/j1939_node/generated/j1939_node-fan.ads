@@ -2,6 +2,7 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Queueing;
 with J1939_Node.Fan_Controller;
 with J1939_Node.Elements;
 
@@ -27,6 +28,12 @@ is
 
    procedure Offer (Item : Fan_Controller.Event);
    --  [fan.events] offer Item to every region that names it; never blocks.
+
+   procedure Read_Address_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [fan.Address.queue] how many events wait; by the main program.
+
+   procedure Read_Answers_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [fan.Answers.queue] how many events wait; by the main program.
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
    with Pre => Executed = 0, Post => Executed = Elements.Fan_Ports_Row;

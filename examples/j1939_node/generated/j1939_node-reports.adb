@@ -4,6 +4,7 @@
 
 with J1939_Node.Control;
 with J1939_Node.Elements;
+with J1939_Node.Fan;
 with J1939_Node.Health_Counts;
 with J1939_Node.Host_Probe;
 with J1939_Node.Line;
@@ -42,7 +43,8 @@ is
    begin
       Reception.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Reception_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Reception.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Reception_Processor + 1
@@ -58,7 +60,8 @@ is
    begin
       Protocol.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Protocol_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Protocol.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Protocol_Processor + 1
@@ -74,7 +77,8 @@ is
    begin
       Control.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Control_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Control.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Control_Processor + 1
@@ -85,6 +89,7 @@ is
 
    procedure Put_All is
       Faults : Ravenchart.Health.Fault_Counts;
+      Queue_Fill : Ravenchart.Queueing.Fill;
       Lost : Ravenchart.Event_Count;
       Line_Counters : Ravenchart.Can.Counters;
       Line_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
@@ -94,6 +99,10 @@ is
       Report_Reception;
       Report_Protocol;
       Report_Control;
+      Fan.Read_Address_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Fan_Address, Queue_Fill);
+      Fan.Read_Answers_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Fan_Answers, Queue_Fill);
       Health_Counts.Counters.Read (Faults);
       Line.Controller.Read_Faults (Line_Faults);
       Faults (Ravenchart.Health.Can_Error_Passive) :=

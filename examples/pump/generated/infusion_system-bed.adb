@@ -11,7 +11,6 @@ with Infusion_System.Ward;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Offers;
-with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
@@ -199,6 +198,16 @@ is
                Elements.Bed_New_Volume, 0);
       end case;
    end Offer;
+
+   procedure Read_Infusion_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Infusion_Queue.Read_Fill (Found);
+   end Read_Infusion_Fill;
+
+   procedure Read_Keys_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Keys_Queue.Read_Fill (Found);
+   end Read_Keys_Fill;
 
    procedure Send_Motor (Item : Infusion_System.Portion) is
    begin

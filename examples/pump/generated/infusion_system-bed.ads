@@ -2,6 +2,7 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Queueing;
 with Infusion_System.Pump;
 with Infusion_System.Elements;
 
@@ -18,6 +19,12 @@ is
 
    procedure Offer (Item : Pump.Event);
    --  [bed.events] offer Item to every region that names it; never blocks.
+
+   procedure Read_Infusion_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [bed.Infusion.queue] how many events wait; by the main program.
+
+   procedure Read_Keys_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [bed.Keys.queue] how many events wait; by the main program.
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
    with Pre => Executed = 0, Post => Executed = Elements.Bed_Ports_Row;

@@ -2,6 +2,7 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Infusion_System.Bed;
 with Infusion_System.Control;
 with Infusion_System.Elements;
 with Infusion_System.Health_Counts;
@@ -40,7 +41,8 @@ is
    begin
       Reception.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Reception_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Reception.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Reception_Processor + 1
@@ -56,7 +58,8 @@ is
    begin
       Control.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Control_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Control.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Control_Processor + 1
@@ -67,6 +70,7 @@ is
 
    procedure Put_All is
       Faults : Ravenchart.Health.Fault_Counts;
+      Queue_Fill : Ravenchart.Queueing.Fill;
       Lost : Ravenchart.Event_Count;
       Ward_Counters : Ravenchart.Can.Counters;
       Ward_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
@@ -74,6 +78,10 @@ is
       Ravenchart.Hosts.Put_Now;
       Report_Reception;
       Report_Control;
+      Bed.Read_Infusion_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Bed_Infusion, Queue_Fill);
+      Bed.Read_Keys_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Bed_Keys, Queue_Fill);
       Health_Counts.Counters.Read (Faults);
       Ward.Controller.Read_Faults (Ward_Faults);
       Faults (Ravenchart.Health.Can_Error_Passive) :=

@@ -7,6 +7,7 @@ with Qhsm_Test.Elements;
 with Qhsm_Test.Health_Counts;
 with Qhsm_Test.Panel;
 with Qhsm_Test.Reception;
+with Qhsm_Test.Test;
 with Qhsm_Test.Trace;
 with Ravenchart.Can;
 with Ravenchart.Can.Fault_Notices;
@@ -40,7 +41,8 @@ is
    begin
       Reception.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Reception_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Reception.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Reception_Processor + 1
@@ -56,7 +58,8 @@ is
    begin
       Charts.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Charts_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Charts.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Charts_Processor + 1
@@ -67,6 +70,7 @@ is
 
    procedure Put_All is
       Faults : Ravenchart.Health.Fault_Counts;
+      Queue_Fill : Ravenchart.Queueing.Fill;
       Lost : Ravenchart.Event_Count;
       Panel_Counters : Ravenchart.Can.Counters;
       Panel_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
@@ -74,6 +78,10 @@ is
       Ravenchart.Hosts.Put_Now;
       Report_Reception;
       Report_Charts;
+      Test.Read_Chart_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Test_Chart, Queue_Fill);
+      Test.Read_Keys_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Test_Keys, Queue_Fill);
       Health_Counts.Counters.Read (Faults);
       Panel.Controller.Read_Faults (Panel_Faults);
       Faults (Ravenchart.Health.Can_Error_Passive) :=

@@ -9,7 +9,6 @@ with Qhsm_Test.Trace;
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Offers;
-with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
@@ -120,6 +119,16 @@ is
             Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_I, 0);
       end case;
    end Offer;
+
+   procedure Read_Chart_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Chart_Queue.Read_Fill (Found);
+   end Read_Chart_Fill;
+
+   procedure Read_Keys_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Keys_Queue.Read_Fill (Found);
+   end Read_Keys_Fill;
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;

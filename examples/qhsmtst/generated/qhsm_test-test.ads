@@ -2,7 +2,7 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Ravenchart;
+with Ravenchart.Queueing;
 with Qhsm_Test.Qhsm;
 with Qhsm_Test.Elements;
 
@@ -16,6 +16,12 @@ is
 
    procedure Offer (Item : Qhsm.Event);
    --  [test.events] offer Item to every region that names it; never blocks.
+
+   procedure Read_Chart_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [test.Chart.queue] how many events wait; by the main program.
+
+   procedure Read_Keys_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [test.Keys.queue] how many events wait; by the main program.
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
    with Pre => Executed = 0, Post => Executed = Elements.Test_Ports_Row;

@@ -38,7 +38,8 @@ is
    begin
       Servo_Loop.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Servo_Loop_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Servo_Loop.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Servo_Loop_Processor + 1
@@ -54,7 +55,8 @@ is
    begin
       Supervision.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Supervision_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Supervision.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Supervision_Processor + 1

@@ -9,10 +9,13 @@ with Ravenchart.Traces;
 with Three_Components.Elements;
 with Three_Components.Health_Counts;
 with Three_Components.Liveness_Supervision;
+with Three_Components.One;
 with Three_Components.Processor_1;
 with Three_Components.Processor_2;
 with Three_Components.Processor_3;
+with Three_Components.Three;
 with Three_Components.Trace;
+with Three_Components.Two;
 
 package body Three_Components.Reports
 with SPARK_Mode
@@ -39,7 +42,8 @@ is
    begin
       Processor_1.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Processor_1_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Processor_1.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Processor_1_Processor + 1
@@ -55,7 +59,8 @@ is
    begin
       Processor_2.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Processor_2_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Processor_2.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Processor_2_Processor + 1
@@ -71,7 +76,8 @@ is
    begin
       Processor_3.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Processor_3_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Processor_3.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Processor_3_Processor + 1
@@ -82,6 +88,7 @@ is
 
    procedure Put_All is
       Faults : Ravenchart.Health.Fault_Counts;
+      Queue_Fill : Ravenchart.Queueing.Fill;
       Lost : Ravenchart.Event_Count;
       Fed : Ravenchart.Event_Count;
    begin
@@ -89,6 +96,18 @@ is
       Report_Processor_1;
       Report_Processor_2;
       Report_Processor_3;
+      One.Read_Starting_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.One_Starting, Queue_Fill);
+      One.Read_Watching_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.One_Watching, Queue_Fill);
+      Two.Read_Handling_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Two_Handling, Queue_Fill);
+      Two.Read_Watching_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Two_Watching, Queue_Fill);
+      Three.Read_Handling_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Three_Handling, Queue_Fill);
+      Three.Read_Watching_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Three_Watching, Queue_Fill);
       Health_Counts.Counters.Read (Faults);
       for Kind in Ravenchart.Health.Fault_Kind loop
          Ravenchart.Hosts.Put_Fault_Count (Kind, Faults (Kind));

@@ -5,7 +5,6 @@
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Offers;
-with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
@@ -114,6 +113,16 @@ is
                Elements.Three_Worked, 0);
       end case;
    end Offer;
+
+   procedure Read_Handling_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Handling_Queue.Read_Fill (Found);
+   end Read_Handling_Fill;
+
+   procedure Read_Watching_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Watching_Queue.Read_Fill (Found);
+   end Read_Watching_Fill;
 
    procedure Send_Token_Out (Item : Three_Components.Token) is
    begin

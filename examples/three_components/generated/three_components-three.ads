@@ -2,6 +2,7 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Queueing;
 with Three_Components.Station;
 with Three_Components.Elements;
 
@@ -16,6 +17,12 @@ is
    procedure Offer (Item : Station.Event);
    --  [three.events] offer Item to every region that names it; never
    --  blocks.
+
+   procedure Read_Handling_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [three.Handling.queue] how many events wait; by the main program.
+
+   procedure Read_Watching_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [three.Watching.queue] how many events wait; by the main program.
 
    procedure Run_Watching (Executed : in out Ravenchart.Element_Id)
    with Pre => Executed = 0, Post => Executed = Elements.Three_Watching_Row;

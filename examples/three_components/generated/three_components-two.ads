@@ -2,6 +2,7 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Queueing;
 with Three_Components.Station;
 with Three_Components.Elements;
 
@@ -15,6 +16,12 @@ is
 
    procedure Offer (Item : Station.Event);
    --  [two.events] offer Item to every region that names it; never blocks.
+
+   procedure Read_Handling_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [two.Handling.queue] how many events wait; by the main program.
+
+   procedure Read_Watching_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [two.Watching.queue] how many events wait; by the main program.
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
    with Pre => Executed = 0, Post => Executed = Elements.Two_Ports_Row;

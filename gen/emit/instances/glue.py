@@ -76,6 +76,7 @@ from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import System, Work
 
+from .fills import fill_bodies, fill_specs, queued_regions
 from .offers import ANSWERED, OFFERS, enqueue, offers_of_port, offers_of_region, overflowed, put
 from .releasing import releases, wait_body, wait_spec
 from .rows import Rows
@@ -99,7 +100,8 @@ class Glue(Site):
     def _spec_withs(self) -> tuple[DottedName, ...]:
         component = self.instance.component
         own = (ref(ada_case(self.system.name), self.component),)
-        asked = (ref("Ravenchart.Queueing"),) if self._served() else ()
+        queueing = self._served() or queued_regions(component)
+        asked = (ref("Ravenchart.Queueing"),) if queueing else ()
         rows = (ref(ada_case(self.system.name), "Elements"),) if self._slots() else ()
         return (*asked, *(own if component.events or asked else ()), *rows)
 
@@ -164,6 +166,7 @@ class Glue(Site):
                 )
             )
         items += self._command_specs()
+        items += fill_specs(self)
         if self._slots():
             items.insert(0, UseType(ELEMENT_ID))
         for slot in self._slots():
@@ -239,6 +242,7 @@ class Glue(Site):
         if component.events:
             items.append(self._offer_body())
         items += self._command_bodies()
+        items += fill_bodies(self)
         used = {n for r in component.regions for n in r.sends}
         used |= {n for a in component.activities for n in a.sends}
         items += [

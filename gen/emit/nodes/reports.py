@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from ravenchart.gen.emit.ada.declarations import (
     SPARK,
     Aspect,
@@ -43,9 +45,12 @@ from ravenchart.gen.emit.ada.statements import (
 from ravenchart.gen.emit.certificate.certified import CERTIFICATE
 from ravenchart.gen.emit.commands.lifecycle import UNIT as LIFECYCLE
 from ravenchart.gen.emit.commands.lifecycle import has_lifecycle
+from ravenchart.gen.emit.instances.fills import FILL, queued_regions, read_name
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.trace_calls import element_constant, row_number, traced
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
+from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Processor, System
 
 from .supervision import safe_state, supervised
@@ -67,6 +72,7 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     bodies += [_report(system, p) for p in system.processors]
     steps: list[Stmt] = [do("Ravenchart.Hosts.Put_Now")]
     steps += [do(ref(f"Report_{ada_case(p.name)}")) for p in system.processors]
+    steps += _queues(system)
     steps.append(do("Health_Counts.Counters.Read", ref("Faults")))
     for bus in system.buses:
         log = f"{ada_case(bus.name)}_Faults"
@@ -81,6 +87,7 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         )
     )
     declarations: list[Decl] = [Object("Faults", "Ravenchart.Health.Fault_Counts")]
+    declarations += [Object("Queue_Fill", FILL) for _ in _of_queues(root, system)][:1]
     if traced(system):
         declarations.append(Object("Lost", "Ravenchart.Event_Count"))
         for buffer, label in _buffers(system):
@@ -112,6 +119,7 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         ref(root, "Elements"),
     }
     context |= {processor_package(system, p) for p in system.processors}
+    context |= set(_of_queues(root, system))
     context |= {ref(root, ada_case(b.name)) for b in system.buses}
     if system.buses:
         context |= {ref("Ravenchart.Can"), ref("Ravenchart.Can.Fault_Notices")}
@@ -126,6 +134,27 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         Unit(header, (), Package(name, tuple(spec), (SPARK,))),
         Unit(header, tuple(sorted(context)), Package(name, tuple(bodies), (SPARK,), is_body=True)),
     ]
+
+
+def _queued(system: System) -> Iterator[tuple[Instance, Region]]:
+    """The regions that have a queue of events."""
+    for instance in system.instances:
+        for region in queued_regions(instance.component):
+            yield instance, region
+
+
+def _queues(system: System) -> Iterator[Stmt]:
+    """Hand the fill of each queue of events to the host."""
+    for instance, region in _queued(system):
+        own = element_constant(f"{instance.name}.{region.name}", "region")
+        yield do(ref(ada_case(instance.name), read_name(region)), ref("Queue_Fill"))
+        yield do("Ravenchart.Hosts.Put_Queue", ref("Elements", own), ref("Queue_Fill"))
+
+
+def _of_queues(root: str, system: System) -> Iterator[DottedName]:
+    """The units that this needs: none where no region has a queue."""
+    for instance, _ in _queued(system):
+        yield from (ref(root, ada_case(instance.name)), ref("Ravenchart.Queueing"))
 
 
 TRACE, VALUES = ref("Trace.Buffer"), ref(UNIT, "Values")
@@ -185,6 +214,7 @@ def _report(system: System, processor: Processor) -> Subprogram:
                 ref("Found.Releases"),
                 ref("Found.Misses"),
                 ref("Found.Worst_Response"),
+                ref("Found.Last_Response"),
             ),
             Loop(
                 ForLoop("Row", ref(package, "Row")),

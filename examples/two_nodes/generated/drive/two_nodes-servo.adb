@@ -5,7 +5,6 @@
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Offers;
-with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
@@ -94,6 +93,11 @@ is
                Elements.Servo_Bus_Back, 0);
       end case;
    end Offer;
+
+   procedure Read_Drive_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Drive_Queue.Read_Fill (Found);
+   end Read_Drive_Fill;
 
    procedure Send_Report (Item : Two_Nodes.Servo_Report) is
    begin

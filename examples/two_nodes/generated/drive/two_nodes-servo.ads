@@ -2,6 +2,7 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Queueing;
 with Two_Nodes.Linear_Servo;
 with Two_Nodes.Elements;
 
@@ -16,6 +17,9 @@ is
    procedure Offer (Item : Linear_Servo.Event);
    --  [servo.events] offer Item to every region that names it; never
    --  blocks.
+
+   procedure Read_Drive_Fill (Found : out Ravenchart.Queueing.Fill);
+   --  [servo.Drive.queue] how many events wait; by the main program.
 
    procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
    with Pre => Executed = 0, Post => Executed = Elements.Servo_Ports_Row;

@@ -14,6 +14,7 @@ with Two_Nodes.Host_Probe;
 with Two_Nodes.Link;
 with Two_Nodes.Reception_Panel;
 with Two_Nodes.Supervision;
+with Two_Nodes.Supervisor;
 with Two_Nodes.Trace;
 
 package body Two_Nodes.Reports
@@ -41,7 +42,8 @@ is
    begin
       Reception_Panel.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Reception_Panel_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Reception_Panel.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Reception_Panel_Processor + 1
@@ -57,7 +59,8 @@ is
    begin
       Supervision.Processor.Observe (Found);
       Ravenchart.Hosts.Put_Processor (Elements.Supervision_Processor,
-         Found.Releases, Found.Misses, Found.Worst_Response);
+         Found.Releases, Found.Misses, Found.Worst_Response,
+         Found.Last_Response);
       for Row in Supervision.Row loop
          Ravenchart.Hosts.Put_Activity
            (Elements.Supervision_Processor + 1
@@ -68,6 +71,7 @@ is
 
    procedure Put_All is
       Faults : Ravenchart.Health.Fault_Counts;
+      Queue_Fill : Ravenchart.Queueing.Fill;
       Lost : Ravenchart.Event_Count;
       Link_Counters : Ravenchart.Can.Counters;
       Link_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
@@ -76,6 +80,8 @@ is
       Ravenchart.Hosts.Put_Now;
       Report_Reception_Panel;
       Report_Supervision;
+      Supervisor.Read_Mission_Fill (Queue_Fill);
+      Ravenchart.Hosts.Put_Queue (Elements.Supervisor_Mission, Queue_Fill);
       Health_Counts.Counters.Read (Faults);
       Link.Controller.Read_Faults (Link_Faults);
       Faults (Ravenchart.Health.Can_Error_Passive) :=

@@ -5,7 +5,6 @@
 with Ravenchart.Blackboards;
 with Ravenchart.Health;
 with Ravenchart.Offers;
-with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
@@ -88,6 +87,11 @@ is
                Elements.Supervisor_Bus_Back, 0);
       end case;
    end Offer;
+
+   procedure Read_Mission_Fill (Found : out Ravenchart.Queueing.Fill) is
+   begin
+      Mission_Queue.Read_Fill (Found);
+   end Read_Mission_Fill;
 
    procedure Send_Order (Item : Two_Nodes.Servo_Order) is
    begin
