@@ -6,10 +6,12 @@
 The file holds one record a line, times in nanoseconds from the controller's start:
 ``E clock``, the machine's clock at that start, ``M digest`` of the model that the program was
 generated from, ``T time kind element value``, ``V time element value`` of recorded values, then
-the counts ``P processor releases misses worst_response``, ``A row worst_execution``,
-``H fault count``, ``L what count``, ``W host_latency``, ``N now`` before the counts that
-were read then, ``F feeds``, and ``END``. Counts come at the end, and ten times a second where
-a monitor can watch: the last ones are those of the run. Without ``END`` the run was cut off.
+the counts ``P processor releases misses worst_response last_response``,
+``A row worst_execution``, ``Q region waiting highest`` of the queue of a chart, ``H fault count``,
+``L what count``, ``W host_latency``, ``N now`` before the counts that were read then,
+``F feeds``, and ``END``. A ``P`` line of an older program ends with the worst response. Counts
+come at the end, and ten times a second where a monitor can watch: the last ones are those of the
+run. Without ``END`` the run was cut off. A board repeats its ``M`` line.
 The map tells what each element number stands for.
 """
 
@@ -111,15 +113,25 @@ class TraceRecord:
 
 @dataclass(frozen=True, slots=True)
 class Releases:
-    """How one processor fared: releases, deadlines missed, longest response.
+    """How one processor fared: releases, deadlines missed, longest and last response.
 
     The counts were read at ``now`` or a little later; None where the trace does not say when.
+    ``last_response`` is that of the release that completed last; None in an older trace.
     """
 
     releases: int
     misses: int
     worst_response: Ns
     now: Ns | None = None
+    last_response: Ns | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class QueueFill:
+    """How many events wait in the queue of a chart, and the most that ever waited."""
+
+    waiting: int
+    highest: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +153,8 @@ class Observation:
     """The recorded values, in the order in which they were recorded."""
     processors: dict[str, Releases] = field(default_factory=dict)
     executions: dict[str, Ns] = field(default_factory=dict)
+    queues: dict[str, QueueFill] = field(default_factory=dict)
+    """The queues of events, by region."""
     faults: dict[str, int] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
     """The L lines: frames that went well, and everything that was lost."""
@@ -263,6 +277,7 @@ def merged(parts: Mapping[str, Observation]) -> Observation:
         elements |= {e.number: e for e in own.values()}
         whole.processors |= part.processors
         whole.executions |= part.executions
+        whole.queues |= part.queues
         whole.counts |= {f"{node}.{what}": n for what, n in part.counts.items()}
         for fault, n in part.faults.items():
             whole.faults[fault] = whole.faults.get(fault, 0) + n
@@ -298,9 +313,25 @@ def _take(words: list[str], seen: Observation) -> None:
             seen.digest = digest
         case ["E", clock]:
             seen.start = Ns(_count(clock))
-        case ["P", number, releases, misses, worst]:
-            counts = Releases(_count(releases), _count(misses), Ns(_count(worst)), seen.now)
+        case ["N", now]:
+            seen.now = Ns(_count(now))
+        case ["END"]:
+            seen.complete = True
+        case _:
+            _take_count(words, seen)
+
+
+def _take_count(words: list[str], seen: Observation) -> None:
+    match words:
+        case ["P", number, releases, misses, worst, *last] if len(last) <= 1:
+            counts = Releases(
+                _count(releases), _count(misses), Ns(_count(worst)), seen.now,
+                Ns(_count(last[0])) if last else None,
+            )  # fmt: skip
             seen.processors[_known(number, seen.map, "processor").name] = counts
+        case ["Q", number, waiting, highest]:
+            fill = QueueFill(_count(waiting), _count(highest))
+            seen.queues[_known(number, seen.map, "region").name] = fill
         case ["A", number, worst]:
             seen.executions[_known(number, seen.map, "row").name] = Ns(_count(worst))
         case ["H", kind, count]:
@@ -309,12 +340,8 @@ def _take(words: list[str], seen: Observation) -> None:
             seen.counts[what] = _count(count)
         case ["W", latency]:
             seen.host_latency = Ns(_count(latency))
-        case ["N", now]:
-            seen.now = Ns(_count(now))
         case ["F", feeds]:
             seen.feeds = _count(feeds)
-        case ["END"]:
-            seen.complete = True
         case _:
             raise ValueError(f"not a trace line: {' '.join(words)[:60]!r}")
 

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from ravenchart.analysis.units import microseconds
 
-from .monitored import Overlooked, WatchedEvent, WatchedNode, WatchedProcessor
+from .monitored import Overlooked, WatchedEvent, WatchedNode, WatchedProcessor, WatchedQueue
 from .summary import columns
 
 LATE = 1.0
@@ -34,9 +34,11 @@ def tables(
     parts.append(_losses(node))
     if node.charts:
         parts.append(_charts(node))
+    elif any(one.highest is not None for one in node.queues):
+        parts.append(_chart_queues(node.queues))
     if last:
         parts.append(_events(last))
-    if node.traffic or node.queues:
+    if node.traffic:
         parts.append(_traffic(node))
     if node.values:
         parts.append(_values(node))
@@ -76,17 +78,18 @@ def lines(node: WatchedNode, name: str, *, counts: bool) -> Iterator[str]:
         return
     for one in node.processors:
         due = "" if one.due is None else f"due {one.due} "
-        bound = "-" if one.bound is None else microseconds(one.bound)
         yield (
             f"{where}{now} {one.name} processor {due}completed {one.completed} misses "
-            f"{one.misses} worst {microseconds(one.worst_response)} us R {bound} us {one.word}"
+            f"{one.misses} last {_time(one.last_response)} us worst "
+            f"{microseconds(one.worst_response)} us R {_time(one.bound)} us {one.word}"
         )
     for chart in node.charts:
         if chart.state is not None:
             yield f"{where}{now} {chart.name} state {chart.state}"
     for queue in node.queues:
         waiting = "?" if queue.waiting is None else queue.waiting
-        yield f"{where}{now} {queue.name} queue {waiting} of {queue.depth}"
+        highest = "" if queue.highest is None else f" most {queue.highest}"
+        yield f"{where}{now} {queue.name} queue {waiting} of {queue.depth}{highest}"
     for value in node.values:
         unit = f" {value.unit}" if value.unit else ""
         yield f"{where}{now} {value.name} value {value.value}{unit}"
@@ -111,7 +114,7 @@ def _head(title: str, node: WatchedNode, age: float) -> Text:
 
 def _processors(found: Sequence[WatchedProcessor]) -> Table:
     table = columns(
-        "processor", "due>", "completed>", "misses>", "worst us>", "R us>", "ratio>", ""
+        "processor", "due>", "completed>", "misses>", "last us>", "worst us>", "R us>", "ratio>", ""
     )
     for one in found:
         bad = one.misses > 0 or one.word == "ABOVE"
@@ -120,8 +123,9 @@ def _processors(found: Sequence[WatchedProcessor]) -> Table:
             "-" if one.due is None else str(one.due),
             str(one.completed),
             str(one.misses),
+            _time(one.last_response),
             microseconds(one.worst_response),
-            "-" if one.bound is None else microseconds(one.bound),
+            _time(one.bound),
             f"{100 * one.worst_response / one.bound:.0f} %" if one.bound else "-",
             one.word,
             style="bold red" if bad else "",
@@ -139,11 +143,22 @@ def _losses(node: WatchedNode) -> Text:
 
 
 def _charts(node: WatchedNode) -> Table:
-    table = columns("chart", "state", "for s>", "transitions>")
+    table = columns("chart", "state", "for s>", "transitions>", "waiting>", "most>")
+    queues = {one.name: one for one in node.queues}
     for one in node.charts:
+        queue = queues.get(one.name)
+        fill = ("", "") if queue is None else (_waiting(queue), str(queue.highest))
         spent = "-" if one.since is None else f"{(node.now - one.since) / 1e9:.1f}"
         style = "dim" if one.state is None else ""
-        table.add_row(one.name, one.state or "-", spent, str(one.transitions), style=style)
+        table.add_row(one.name, one.state or "-", spent, str(one.transitions), *fill, style=style)
+    return table
+
+
+def _chart_queues(found: Sequence[WatchedQueue]) -> Table:
+    """Where the states of charts are not known."""
+    table = columns("chart", "waiting>", "most>")
+    for one in found:
+        table.add_row(one.name, _waiting(one), str(one.highest))
     return table
 
 
@@ -159,10 +174,7 @@ def _events(found: Sequence[WatchedEvent]) -> Table:
 def _traffic(node: WatchedNode) -> Table:
     kinds = ("arrived", "handled", "sent", "raised")
     table = columns("port, event, message", *(f"{kind}>" for kind in kinds), "s ago>", "waiting>")
-    waiting = {
-        one.name: f"{'?' if one.waiting is None else one.waiting} of {one.depth}"
-        for one in node.queues
-    }
+    waiting = {one.name: _waiting(one) for one in node.queues}
     counts: dict[str, dict[str, str]] = {}
     last: dict[str, int] = {}
     for one in node.traffic:
@@ -183,6 +195,14 @@ def _values(node: WatchedNode) -> Table:
         ago = f"{max(0, node.now - one.last) / 1e9:.1f}"
         table.add_row(one.name, one.value, one.unit, str(one.count), ago)
     return table
+
+
+def _waiting(queue: WatchedQueue) -> str:
+    return f"{'?' if queue.waiting is None else queue.waiting} of {queue.depth}"
+
+
+def _time(time: int | None) -> str:
+    return "-" if time is None else microseconds(time)
 
 
 def _seconds(time: int) -> str:

@@ -27,16 +27,23 @@ REAL_TIME = (os.SCHED_FIFO, os.SCHED_RR)
 
 VALUES_NOT_SEEN = "values of ports, data and events"
 OTHER_VALUES = "values of events, and of ports and data that `record` does not name"
-NO_LAST_RESPONSE = "the last response of a processor: it keeps the longest"
-NEVER_SEEN = (
-    NO_LAST_RESPONSE,
-    VALUES_NOT_SEEN,
-    "how many events wait in the queues of charts",
+NOT_FROM_START = (
+    "what was before the monitor began: the controller ran already; a state is shown from the next "
+    "record of its chart on"
 )
-"""What no controller reports."""
+"""What is said of a controller that ran already."""
 
-NO_COUNTS = "processors: they are reported by a program that `ravenchart build` has linked"
+NO_COUNTS = (
+    "processors, and queues of charts: they are reported by a program that `ravenchart build` has "
+    "linked"
+)
 """What is said where a snapshot has none."""
+
+OLDER_PROGRAM = (
+    "the last response of a processor, and queues of charts: an older Ravenchart has generated the "
+    "program"
+)
+"""What is said where a snapshot has counts without these."""
 
 
 @dataclass(slots=True)
@@ -51,6 +58,9 @@ class WatchedProcessor(Described):
     """How many releases have completed."""
     misses: int
     """How many of these completed after their deadline."""
+    last_response: int | None
+    """The response of the release that completed last, in ns; null where an older program does not
+    report it."""
     worst_response: int
     """The longest response, in ns."""
     bound: int | None
@@ -121,13 +131,15 @@ class WatchedTraffic(Described):
 
 @dataclass(slots=True)
 class WatchedQueue(Described):
-    """The queue of a port, from what has arrived and was handled."""
+    """The queue of a port, from what has arrived and was handled; or that of a chart."""
 
     name: str
-    """The port."""
+    """The port or the region."""
     waiting: int | None
-    """How many elements wait; null where it is not known: trace records were lost, or the port
-    has `max_age`."""
+    """How many elements wait; null where it is not known: trace records were lost or not read, or
+    the port has `max_age`."""
+    highest: int | None
+    """The most that ever waited; null for a port."""
     depth: int
     """How many it holds."""
     faults: int
@@ -181,7 +193,7 @@ class WatchedNode(Described):
     traffic: list[WatchedTraffic]
     """In the order of the model."""
     queues: list[WatchedQueue]
-    """Those of queued ports."""
+    """Those of queued ports, then those of charts."""
     values: list[WatchedValue]
     """What the model records, in its order."""
     faults: dict[str, int]
@@ -241,8 +253,8 @@ class NodeMonitor:
             now=now,
             processors=[
                 WatchedProcessor(
-                    one.task, self._due(one.task, now), one.releases, one.misses, one.observed,
-                    one.bound, one.word,
+                    one.task, self._due(one.task, now), one.releases, one.misses,
+                    seen.processors[one.task].last_response, one.observed, one.bound, one.word,
                 )
                 for one in compare(self._analysis, seen)
             ],
@@ -263,7 +275,7 @@ class NodeMonitor:
                 if t.last.kind in ("sent", "arrived", "handled", "raised")
                 or t.last.element.kind == "bus"
             ],
-            queues=list(self._queues(snapshot, tallies)),
+            queues=[*self._queues(snapshot, tallies), *self._chart_queues(snapshot, tallies)],
             values=[_value(t) for t in snapshot.tallies if t.last.kind == VALUE],
             faults={kind: n for kind, n in seen.faults.items() if n},
             lost={what: n for what, n in seen.losses.items() if n},
@@ -314,7 +326,7 @@ class NodeMonitor:
     def _queues(
         self, snapshot: Snapshot, tallies: dict[tuple[str, str], Tally]
     ) -> Iterator[WatchedQueue]:
-        gaps = snapshot.seen.trace_lost > 0
+        gaps = snapshot.partial or snapshot.seen.trace_lost > 0
         names = {element.name for element in snapshot.seen.map.of_kind("port")}
         for instance in self._system.instances:
             for port in instance.component.inputs():
@@ -326,18 +338,33 @@ class NodeMonitor:
                 )
                 unknown = gaps or port.max_age is not None  # staleness is a fault, too
                 waiting = None if unknown else max(0, arrived - handled - lost)
-                yield WatchedQueue(name, waiting, port.depth, lost)
+                yield WatchedQueue(name, waiting, None, port.depth, lost)
+
+    def _chart_queues(
+        self, snapshot: Snapshot, tallies: dict[tuple[str, str], Tally]
+    ) -> Iterator[WatchedQueue]:
+        for instance in self._system.instances:
+            for region in instance.component.regions:
+                name = f"{instance.name}.{region.name}"
+                fill = snapshot.seen.queues.get(name)
+                if fill is not None:
+                    faults = _count(tallies.get((name, "fault")))
+                    yield WatchedQueue(name, fill.waiting, fill.highest, region.queue_depth, faults)
 
     def _not_seen(self, snapshot: Snapshot) -> Iterator[str]:
         records = bool(snapshot.seen.map.of_kind(VALUE))
-        for text in NEVER_SEEN:
-            yield OTHER_VALUES if records and text == VALUES_NOT_SEEN else text
+        yield OTHER_VALUES if records else VALUES_NOT_SEEN
+        if snapshot.partial:
+            yield NOT_FROM_START
         if not snapshot.tallies:
             yield "states, transitions, messages and faults by element: no record of a trace came"
         if snapshot.seen.losses.get("snapshot"):
             yield "what found no room in a snapshot: `lost` counts it"
-        if not snapshot.seen.processors:
+        processors = snapshot.seen.processors.values()
+        if not processors:
             yield NO_COUNTS
+        elif any(one.last_response is None for one in processors):
+            yield OLDER_PROGRAM
 
 
 def _count(tally: Tally | None) -> int:

@@ -29,12 +29,12 @@ from ravenchart.analysis.system.observed import (
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.language.terms import NO_TIME, Ns
 
-from .monitored import LISTED, NO_COUNTS, NO_LAST_RESPONSE, NodeMonitor, WatchedNode, event_of
+from .monitored import LISTED, NO_COUNTS, NodeMonitor, WatchedNode, event_of
 from .snapshots import KINDS, RECENT, Snapshot, Tally
 from .traces.files import NodeTrace
 from .traces.values import Point, Quantity, extremes
 
-SIMULATED = "times and faults, and messages and queues of ports: a simulation has none"
+SIMULATED = "times and faults, messages and queues: a simulation has none"
 """What no simulation shows."""
 
 MOST_POINTS = 480
@@ -108,10 +108,10 @@ class ReplayedController:
         shown.now, shown.ended = now, ended and self._seen.complete
         if self._simulated:
             shown.not_seen = [SIMULATED if one == NO_COUNTS else one for one in shown.not_seen]
-            shown.not_seen.remove(NO_LAST_RESPONSE)
         elif not number:
             first = f"before {self._reports[0].at / 1e9:.3f} s" if self._reports else "at all"
-            missing = f"counts of processors, faults and losses: the trace has none {first}"
+            counts = "counts of processors, queues of charts, faults and losses"
+            missing = f"{counts}: the trace has none {first}"
             shown.not_seen = [missing if one == NO_COUNTS else one for one in shown.not_seen]
         return shown
 

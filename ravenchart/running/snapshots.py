@@ -72,12 +72,14 @@ class Snapshot:
     """What a controller had to report at one time.
 
     The records of ``seen`` are the last transitions and faults. It is ``complete`` in the last
-    snapshot of a controller that ended in order.
+    snapshot of a controller that ended in order. ``partial``: the controller ran already when what
+    it says was first read, so records are missing.
     """
 
     sequence: int
     seen: Observation
     tallies: tuple[Tally, ...]
+    partial: bool = False
 
 
 class SnapshotFile:

@@ -56,8 +56,9 @@ def report(trace_map: TraceMap, now: int, releases: int, losses: int) -> list[st
     """The counts of a controller at one time."""
     return [
         f"N {now}",
-        *(f"P {one.number} {releases} 0 {1000 + releases}" for one in
+        *(f"P {one.number} {releases} 0 {1000 + releases} {900 + releases}" for one in
           trace_map.of_kind("processor")),
+        *(f"Q {one.number} {releases % 3} {2 + losses}" for one in trace_map.of_kind("region")),
         "H Deadline_Miss 0", "H Overrun 0", "H Queue_Overflow 1", f"L trace {losses}",
     ]  # fmt: skip
 

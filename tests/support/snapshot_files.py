@@ -53,8 +53,10 @@ def processors(releases: int, *, misses: int = 0) -> Sequence[str]:
     """The counts of both processors at 2 s."""
     return (
         "N 2000000000",
-        f"P {number('reception', 'processor')} 5 0 30000",
-        f"P {number('control', 'processor')} {releases} {misses} 401195",
+        f"P {number('reception', 'processor')} 5 0 30000 20000",
+        f"P {number('control', 'processor')} {releases} {misses} 401195 301195",
+        f"Q {number('bed.Infusion', 'region')} 2 7",
+        f"Q {number('bed.Keys', 'region')} 0 1",
         "H Deadline_Miss 0",
         "H Overrun 0",
         "H Queue_Overflow 0",

@@ -142,8 +142,16 @@ def test_two_monitors_show_the_counts_of_the_report(watched: Watched) -> None:
             assert found["completed"] == one.releases
             assert found["misses"] == one.misses
             assert found["worst_response"] == one.worst_response
+            assert found["last_response"] == one.last_response
+            assert 0 < found["last_response"] <= found["worst_response"] or not one.releases
         assert last["lost"] == {what: n for what, n in report.losses.items() if n}
         assert last["faults"] == {what: n for what, n in report.faults.items() if n}
+        fills = {one["name"]: one for one in last["queues"] if one["highest"] is not None}
+        assert fills.keys() == report.queues.keys() != set()
+        for name, fill in report.queues.items():
+            found = fills[name]
+            assert (found["waiting"], found["highest"]) == (fill.waiting, fill.highest)
+            assert fill.waiting <= fill.highest <= found["depth"]
         for one in last["rows"]:
             assert one["executions"] == len(report.of("activity", one["name"])), one["name"]
             assert one["longest_execution"] == report.executions[one["name"]]

@@ -15,11 +15,14 @@ from hypothesis import strategies as st
 from ravenchart.analysis.system.observed import (
     FAULTS,
     Observation,
+    QueueFill,
+    Releases,
     TraceError,
     Visit,
     read_map,
     read_trace,
 )
+from ravenchart.gen.language.terms import Ns
 from ravenchart.paths import ROOT
 from tests.support.robot_files import trace_map
 
@@ -59,6 +62,16 @@ def test_a_complete_trace_tells_everything() -> None:
     assert (seen.trace_lost, seen.end, seen.host_latency) == (0, 9_500, 120_000)
 
 
+def test_a_processor_has_its_last_response_where_the_program_reports_it() -> None:
+    older, newer = (read(f"N 7\nP 1 9 1 500{last}\nEND\n") for last in ("", " 300"))
+    assert older.processors == {"control": Releases(9, 1, Ns(500), Ns(7))}
+    assert newer.processors == {"control": Releases(9, 1, Ns(500), Ns(7), Ns(300))}
+
+
+def test_a_queue_of_a_chart_has_its_fill_and_the_highest() -> None:
+    assert read("Q 10 1 4\nQ 10 0 5\n").queues == {"joint_x.Motion": QueueFill(0, 5)}
+
+
 def test_states_are_read_as_visits_and_repetitions_are_one() -> None:
     assert read(GOOD).visits("joint_x.Motion") == (
         Visit("Idle", 0, 2_000),  # type: ignore[arg-type]
@@ -96,6 +109,11 @@ def test_a_trace_without_its_last_line_is_incomplete() -> None:
         ("T 1 DREAMT 10 0", "unknown kind 'DREAMT'"),
         ("P 10 1 2 3", "element 10, joint_x.Motion, is a region, not a processor"),
         ("P 1 -1 0 0", "-1 is negative"),
+        ("P 1 1 0 5 -1", "-1 is negative"),
+        ("P 1 1 0", "not a trace line: 'P 1 1 0'"),
+        ("P 1 1 0 5 4 3", "not a trace line: 'P 1 1 0 5 4 3'"),
+        ("Q 1 0 0", "element 1, control, is a processor, not a region"),
+        ("Q 10 0", "not a trace line: 'Q 10 0'"),
         ("A 2 9999999999999999999999", "'99999999999999999999' is not a number"),
         ("H KIND", "not a trace line: 'H KIND'"),
         ("T 1_0 STATE 10 0", "'1_0' is not a number"),

@@ -23,7 +23,7 @@ from ravenchart.gen.derive.sharing import MAIN
 from ravenchart.paths import ROOT
 from ravenchart.running import monitor_text
 from ravenchart.running.monitored import (
-    NEVER_SEEN,
+    OLDER_PROGRAM,
     OTHER_VALUES,
     VALUES_NOT_SEEN,
     NodeMonitor,
@@ -75,10 +75,35 @@ def test_processors_are_beside_what_was_due_and_their_bounds(analysis: Analysis)
     control, reception = sorted(node.processors, key=lambda one: one.name)
     assert (control.due, control.completed, control.misses) == (41, 40, 0)
     bounds = {one.task.name: one.bound for one in analysis.responses}
-    assert (control.worst_response, control.bound) == (401_195, bounds["control"])
+    assert (control.last_response, control.worst_response) == (301_195, 401_195)
+    assert control.bound == bounds["control"]
     assert reception.due is None  # a bus releases it
     assert node.lost == {"ward.lost_out": 3}
     assert node.faults == {}
+
+
+def test_an_older_program_reports_no_last_response(analysis: Analysis) -> None:
+    older = [line.rpartition(" ")[0] if line[0] == "P" else line for line in processors(40)]
+    node = seen(NodeMonitor(analysis, "board"), *(line for line in older if line[0] != "Q"))
+    assert [one.last_response for one in node.processors] == [None, None]
+    assert node.queues == [] and node.not_seen[-1] == OLDER_PROGRAM
+    (line,) = [line for line in printed(node) if line.startswith("control")]
+    assert line.split()[4:6] == ["-", "401.2"]
+
+
+def test_the_queue_of_a_chart_has_its_fill_beside_its_depth(analysis: Analysis) -> None:
+    fault = tally("FAULT", "bed.Infusion", "region", 3)
+    node = seen(NodeMonitor(analysis, "board"), *taken(1, listed=1), fault, *processors(40))
+    found = {one.name: (one.waiting, one.highest, one.depth, one.faults) for one in node.queues}
+    assert found == {
+        "bed.panel": (0, None, 4, 0), "bed.Infusion": (2, 7, 8, 3), "bed.Keys": (0, 1, 4, 0),
+    }  # fmt: skip
+    (line,) = [line for line in printed(node) if line.startswith("bed.Infusion  ")]
+    assert line.split()[-4:] == ["2", "of", "8", "7"]
+    assert "2.000 bed.Infusion queue 2 of 8 most 7" in monitor_text.lines(node, "", counts=True)
+    bare = seen(NodeMonitor(analysis, "board"), *processors(40))  # without a trace
+    (line,) = [line for line in printed(bare) if line.startswith("bed.Infusion ")]
+    assert line.split() == ["bed.Infusion", "2", "of", "8", "7"]
 
 
 def test_a_state_inside_one_that_is_not_active_is_none(analysis: Analysis) -> None:
@@ -141,7 +166,7 @@ def test_a_queue_holds_what_has_arrived_and_was_neither_handled_nor_lost(
     lines = [line.replace("L trace 0", f"L trace {lost}") for line in processors(1)]
     counts = [tally(kind, "bed.panel", "port", n) for kind, n in
               (("ARRIVED", 9), ("HANDLED", 6), ("FAULT", 1))]  # fmt: skip
-    (queue,) = seen(NodeMonitor(analysis, "board"), *counts, *lines).queues
+    queue, *_ = seen(NodeMonitor(analysis, "board"), *counts, *lines).queues
     assert (queue.name, queue.waiting, queue.depth) == ("bed.panel", waiting, 4)
 
 
@@ -171,16 +196,15 @@ def test_the_last_recorded_value_is_shown_in_its_unit(tmp_path: Path) -> None:
 
 def test_what_is_not_seen_is_said(analysis: Analysis) -> None:
     full = seen(NodeMonitor(analysis, "board"), *taken(1, listed=1), *processors(1))
-    assert full.not_seen == list(NEVER_SEEN)
-    assert not any("bed" in text for text in full.not_seen)
+    assert full.not_seen == [VALUES_NOT_SEEN]
     cut = [line.replace("L snapshot 0", "L snapshot 4") for line in processors(1)]
     dropped = seen(NodeMonitor(analysis, "board"), *taken(1, listed=1), *cut)
     assert dropped.not_seen[-1] == "what found no room in a snapshot: `lost` counts it"
     assert dropped.lost["snapshot"] == 4
     empty = seen(NodeMonitor(analysis, "board"), "N 5")
-    assert [text.partition(":")[0] for text in empty.not_seen[len(NEVER_SEEN) :]] == [
+    assert [text.partition(":")[0] for text in empty.not_seen[1:]] == [
         "states, transitions, messages and faults by element",
-        "processors",
+        "processors, and queues of charts",
     ]
     assert empty.charts == []
 
@@ -227,7 +251,10 @@ def test_lines_for_a_pipe(analysis: Analysis) -> None:
     assert events == [f"0.000 bed.Infusion transition {name}"]
     counts = list(monitor_text.lines(node, "board", counts=True))[1:]
     assert counts[-1] == "board 2.000 ward.lost_out lost 3"
-    assert any("control processor due 41 completed 40 misses 0 worst 401.2 us" in c for c in counts)
+    assert any(
+        "control processor due 41 completed 40 misses 0 last 301.2 us worst 401.2 us" in c
+        for c in counts
+    )
 
 
 # --- The command -----------------------------------------------------------------
@@ -296,7 +323,7 @@ def test_no_bound_changes_where_the_main_program_reads_all_counts_at_run_time(
 ) -> None:
     """Its sections reach no task that a section of health or trace does not reach already."""
     checked = checking.check(ROOT / "examples" / example / "model.yaml", deadlines=False)
-    read = ("monitor", "transmit", "receive", "board")
+    read = ("monitor", "transmit", "receive", "board", "queue")
     objects = tuple(
         replace(one, users=(*one.users, MAIN))
         if one.element.rpartition(".")[2] in read and MAIN not in one.users

@@ -54,7 +54,7 @@ RUN = (
     "T 40000000 Arrived bed.line 1",
     "T 40000250 Raised bed.Stop 0",
     "N 100000000",
-    "P hurried 2 1 7000", "A bed.Infusion 6500", "H Overrun 1", "L trace 3", "L ward.sent 9",
+    "P hurried 2 1 7000 5000", "A bed.Infusion 6500", "H Overrun 1", "L trace 3", "L ward.sent 9",
     "L ward.lost_in 2",
 )  # fmt: skip
 
@@ -104,7 +104,7 @@ def test_a_run_is_slices_of_states_and_marks(trace: Path, tmp_path: Path, capsys
     )
     assert marks["row", "bed.Infusion"]["ts"] == 0.1
     assert marks["counts", "counts"]["args"] == {
-        "releases": 2, "misses": 1, "worst_response_us": 7.0,
+        "releases": 2, "misses": 1, "worst_response_us": 7.0, "last_response_us": 5.0,
     }  # fmt: skip
     assert marks["lost", "lost: trace"]["args"] == {"number": 3}
     assert [e["args"]["number"] for e in events if e.get("cat") == "release"] == [0, 1]
@@ -127,6 +127,7 @@ def test_the_rows_are_the_records_and_the_counts(
     counts = {(row[2], row[3]): row[4] for row in rows if not row[0]}
     assert counts["lost", "trace"] == "3" and counts["faults", "Overrun"] == "1"
     assert counts["longest_execution_ns", "bed.Infusion"] == "6500"
+    assert [n for (kind, _), n in counts.items() if kind == "last_response_ns"] == ["5000"]
 
 
 def test_a_trace_that_was_cut_off_says_so(tmp_path: Path, capsys: PRINTED) -> None:

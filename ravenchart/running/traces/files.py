@@ -16,7 +16,7 @@ from ravenchart.failures import Unusable
 
 from .reports import report_lines
 
-COUNTS = frozenset("NPAHLWF")
+COUNTS = frozenset("NPAQHLWF")
 """The first letters of lines that count something."""
 
 

@@ -242,10 +242,15 @@ class _Run:
             ):  # fmt: skip
                 self._count(kind, name, number)
             times = {"worst_response_us": worst / 1000}
+            if one.last_response is not None:
+                self._count("last_response_ns", name, one.last_response)
+                times["last_response_us"] = one.last_response / 1000
             counts: Arguments = {"releases": one.releases, "misses": one.misses, **times}
             self.found.marks.append(Mark(self._track(name), "counts", "counts", at, counts))
         for name, longest in self.seen.executions.items():
             self._count("longest_execution_ns", name, longest)
+        for name, fill in self.seen.queues.items():
+            self._count("most_waiting", name, fill.highest)
         for name, number in self.seen.faults.items():
             self._count("faults", name, number)
         for name, number in self.seen.losses.items():

@@ -77,8 +77,8 @@ function Node({ of, replay, nodes }) {
     ${of.real_time === false && html`<p class="remark">No real-time priorities: responses are not comparable with bounds.</p>`}
     ${!replay && (state.dirty || state.stale) && html`<p class="remark">Bounds are those of the saved model.</p>`}
     ${replay && !replay.playing && html`<p role="status">${instant(of)}</p>`}
-    <${Table} names=${["processor", "due>", "completed>", "misses>", "worst>", "R>", "worst of R", "verdict"]} rows=${of.processors.map((one) => [
-      one.name, one.due ?? "-", one.completed, one.misses, time(one.worst_response), time(one.bound),
+    <${Table} names=${["processor", "due>", "completed>", "misses>", "last>", "worst>", "R>", "worst of R", "verdict"]} rows=${of.processors.map((one) => [
+      one.name, one.due ?? "-", one.completed, one.misses, one.last_response === null ? "-" : time(one.last_response), time(one.worst_response), time(one.bound),
       one.bound && html`<${Share} of=${one.worst_response / one.bound} />`,
       html`<${Word} met=${one.word === "ok"} text=${one.word} />`])} />
     ${!(replay && of.counted === null) && html`<p class=${any(of.faults) ? "error" : ""}>faults: ${counts(of.faults)}</p>
@@ -93,7 +93,8 @@ function Node({ of, replay, nodes }) {
       `last ${Number((of.window / 1e9).toFixed(1))} s${replay ? "" : ": one value of each snapshot"}`]} rows=${of.values.map((one) => [
       one.name, one.value, one.unit, one.count, `${((of.now - one.last) / 1e9).toFixed(1)} s ago`,
       html`<${Plot} of=${of.plots[one.name]} now=${of.now} span=${of.window} name=${one.name} />`])} />
-    <${Table} names=${["queue", "waiting>"]} rows=${of.queues.map((one) => [one.name, `${one.waiting ?? "?"} of ${one.depth}`])} />
+    <${Table} names=${["queue", "waiting>", "most>"]} rows=${of.queues.map((one) => [
+      one.name, `${one.waiting ?? "?"} of ${one.depth}`, one.highest ?? "-"])} />
     <${Table} names=${["port, event, message", "", "count>", "last>"]} rows=${of.traffic.map((one) => [
       one.name, one.state ?? one.what, one.count, `${((of.now - one.last) / 1e9).toFixed(1)} s ago`])} />
     ${of.said.map((text) => html`<p class="error">${text}</p>`)}
