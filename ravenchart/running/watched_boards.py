@@ -4,12 +4,13 @@
 """The controller of a board while it runs, by what it writes on its serial line.
 
 A board writes each record of its trace at once. What a snapshot of a controller on this machine
-says is counted here, from the start of the board on: only there it names its model. So nothing is
-shown before that.
+says is counted here, from the start of the board on, or from the next line that names its model: a
+board repeats that line each second. Nothing is shown before it.
 """
 
 from __future__ import annotations
 
+import re
 import stat
 import threading
 import time
@@ -57,11 +58,15 @@ LOOK = 0.2
 UNREADABLE = f"serial line.{TRACE}"
 """What lines are called that were lost, or could not be read."""
 
-NOT_STARTED = (
-    "all of it until the board starts: it names its model only then; reset it, or start it now"
+NOT_NAMED = (
+    "all of it until the board names its model, as it does when it starts and each second; reset "
+    "the board where the program is of an older Ravenchart"
 )
+NAMED = re.compile(r"M [0-9a-f]{64}")
+"""The line that names a model."""
 NO_COUNTS_YET = (
-    "processors, and faults that a CAN controller counts: a board reports them at the end of a run"
+    "processors, queues of charts, and faults that a CAN controller counts: a board reports them "
+    "at the end of a run"
 )
 
 
@@ -159,9 +164,11 @@ class _Reader:
 
 @dataclass(slots=True)
 class _Counted:
-    """What a board has said since its start."""
+    """What a board has said since its start, or since it was first read."""
 
     map: TraceMap
+    partial: bool
+    """Whether it ran already then."""
     seen: Observation = field(init=False)
     last: Ns = NO_TIME
     """The time of its last record."""
@@ -194,7 +201,8 @@ class _Counted:
         """As a controller on this machine would write it."""
         now = max(self.last, self.seen.now or NO_TIME)
         seen = replace(self.seen, records=list(self.listed), now=now)
-        return Snapshot(number, seen, tuple(one for _, one in sorted(self.tallies.items())))
+        tallies = tuple(one for _, one in sorted(self.tallies.items()))
+        return Snapshot(number, seen, tallies, self.partial)
 
 
 class WatchedBoard(WatchedController):
@@ -236,14 +244,14 @@ class WatchedBoard(WatchedController):
         if lines:
             self.made = self.came = time.monotonic()
             self.sequence += self._counted is not None  # what is of no run is not shown
-        counted = self._counted or _Counted(self.map)
+        counted = self._counted or _Counted(self.map, partial=False)
         self.show(counted.snapshot(self.sequence), process)
         self.node.said = list(counted.said)
         self._say_what_is_missing()
         return True
 
     def _open_again(self) -> None:
-        """Where the line was gone at the look before: what comes then is of another start."""
+        """Where the line was gone at the look before: what comes then may be of another start."""
         now = time.monotonic()
         if now >= self._next:
             self._next = now + AGAIN
@@ -252,9 +260,10 @@ class WatchedBoard(WatchedController):
                 self._next = float("inf")
 
     def _take(self, line: str) -> None:
-        if BEGIN.fullmatch(line):
+        starts = BEGIN.fullmatch(line) is not None
+        if starts or (self._counted is None and NAMED.fullmatch(line)):
             self.begin(Ns(time.monotonic_ns()), listed=0)
-            self._counted = _Counted(self.map)
+            self._counted = _Counted(self.map, partial=not starts)
         if self._counted is None or not line:
             return
         try:
@@ -277,7 +286,7 @@ class WatchedBoard(WatchedController):
 
     def _say_what_is_missing(self) -> None:
         if self._counted is None:
-            self.node.not_seen = [NOT_STARTED]
+            self.node.not_seen = [NOT_NAMED]
             return
         self.node.not_seen = [
             NO_COUNTS_YET if text == NO_COUNTS else text for text in self.node.not_seen

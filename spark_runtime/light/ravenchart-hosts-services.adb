@@ -7,6 +7,15 @@ package body Ravenchart.Hosts.Services
   with SPARK_Mode => Off
 --  ASM-002. The serial line and the end of a run are matters of the board.
 is
+   Model        : String (1 .. 84) := (others => ' ');
+   Model_Length : Natural := 0;
+   --  The M line: M, a digest of at most 80 characters, and its end.
+
+   Model_Period : constant Nanoseconds := 1_000_000_000;
+
+   Next_Model : Nanoseconds := Model_Period;
+   --  When the M line is written again: who begins to read the serial line of
+   --  a running board then knows its model.
 
    procedure Start is null;
    --  The serial line is ready from the start of the board.
@@ -19,6 +28,10 @@ is
       Now : Nanoseconds;
    begin
       Epochs.Since_Start (Now);
+      if Now >= Next_Model then
+         Next_Model := Now + Model_Period;
+         Boards.Put (Model (1 .. Model_Length));
+      end if;
       return Now >= Boards.Run_Time;
    end Stop_Requested;
 
@@ -28,6 +41,10 @@ is
 
    procedure Put (Text : String) is
    begin
+      if Text (Text'First) = 'M' and then Text'Length <= Model'Length then
+         Model (1 .. Text'Length) := Text;
+         Model_Length := Text'Length;
+      end if;
       Boards.Put (Text);
    end Put;
 

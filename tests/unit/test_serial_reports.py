@@ -51,6 +51,16 @@ def test_what_is_said_before_and_the_ends_of_lines_make_no_difference(
     assert found.said == []
 
 
+def test_a_board_may_repeat_the_line_that_names_its_model(checked: Checked, tmp_path: Path) -> None:
+    lines = random_trace(trace_map(), 3)
+    expected = kept(checked, tmp_path, HEAD + "".join(f"{line}\n" for line in lines))
+    again = HEAD.splitlines()[1]
+    found = kept(
+        checked, tmp_path, HEAD + "".join(f"{line}\n{again}\n" for line in lines[:-1]) + "END\n"
+    )
+    assert found.seen == expected.seen and found.reports == expected.reports
+
+
 @pytest.mark.slow
 def test_wherever_the_file_ends_its_whole_lines_are_read(checked: Checked, tmp_path: Path) -> None:
     lines = random_trace(trace_map(), 4, length=25)

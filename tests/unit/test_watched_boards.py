@@ -24,8 +24,9 @@ from ravenchart.command_line import main
 from ravenchart.failures import UNUSABLE, WRONG, Refused, Unusable
 from ravenchart.running import watched_boards
 from ravenchart.running.chart_states import ChartWatch
+from ravenchart.running.monitored import NOT_FROM_START
 from ravenchart.running.monitoring import given, watching
-from ravenchart.running.watched_boards import NOT_STARTED, SerialLine, WatchedBoard, line_of
+from ravenchart.running.watched_boards import NOT_NAMED, SerialLine, WatchedBoard, line_of
 from ravenchart.workbench.live import LiveView
 from tests.support.can_frames import within
 from tests.support.recordings import monitored, random_trace
@@ -102,12 +103,12 @@ def test_nothing_is_shown_until_the_board_names_its_model(checked: Checked, boar
     with watched(checked, board.port) as found:
         board.says(*BOOT)
         assert within(lambda: found.look() and found.is_new)
-        assert found.node.not_seen == [NOT_STARTED]
+        assert found.node.not_seen == [NOT_NAMED]
         assert (found.node.process, found.node.charts, found.node.lost) == (0, [], {})
         board.says(*HEAD, f"T 5000 State {number('bed.Keys', 'region')} 0")
         looked(found, 5000)
         assert [one.name for one in found.node.charts if one.state is not None] == ["bed.Keys"]
-        assert NOT_STARTED not in found.node.not_seen
+        assert NOT_NAMED not in found.node.not_seen
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -164,6 +165,29 @@ def test_a_board_that_starts_again_is_another_one(checked: Checked, board: Board
         assert found.node.charts[0].transitions == 0 and found.node.said == []
 
 
+def test_a_board_that_runs_already_is_shown_from_the_next_line_that_names_its_model(
+    checked: Checked, board: Board
+) -> None:
+    keys, port = number("bed.Keys", "region"), number("bed.panel", "port")
+    with watched(checked, board.port) as found:
+        board.says("ate 1 0", f"T 4000 State {keys} 0", f"T 4500 Arrived {port} 0")
+        assert within(lambda: found.look() and found.is_new)
+        assert found.node.not_seen == [NOT_NAMED]
+        board.says(HEAD[1], f"T 5000 Transition {keys} 0", f"T 5000 State {keys} 0")
+        looked(found, 5000)
+        (event,) = found.node.events
+        assert (event.element, found.overlooked.events) == ("bed.Keys", 0)
+        assert NOT_FROM_START in found.node.not_seen and NOT_NAMED not in found.node.not_seen
+        board.says(HEAD[1], f"T 6000 Handled {port} 0", f"T 7000 Transition {keys} 0")
+        looked(found, 7000)  # a line that names the model again begins nothing anew
+        chart = next(one for one in found.node.charts if one.name == "bed.Keys")
+        assert (chart.transitions, chart.since) == (2, 5000)
+        assert [one.waiting for one in found.node.queues] == [None]
+        board.says(*HEAD, f"T 20 State {keys} 0")
+        assert within(lambda: found.look() and found.node.now == 20)
+        assert NOT_FROM_START not in found.node.not_seen
+
+
 def test_faults_are_counted_before_the_report(checked: Checked, board: Board) -> None:
     element = number("bed.Keys", "region")
     with watched(checked, board.port) as found:
@@ -211,6 +235,15 @@ def test_the_program_of_another_model_is_refused(checked: Checked, board: Board)
             within(lambda: found.look() and False)
 
 
+def test_a_board_of_another_model_that_runs_already_is_refused(
+    checked: Checked, board: Board
+) -> None:
+    with watched(checked, board.port) as found:
+        board.says("T 1 State 0 0", f"M {'0' * 64}")
+        with pytest.raises(Refused, match="was generated from another model"):
+            within(lambda: found.look() and False)
+
+
 def test_an_unplugged_line_is_told(checked: Checked, board: Board) -> None:
     with watched(checked, board.port) as found:
         board.says(*HEAD)
@@ -232,7 +265,7 @@ def test_the_line_of_an_emulator_is_a_socket(checked: Checked) -> None:
             assert within(lambda: found.look() and found.node.process is None)
 
 
-def test_a_line_that_comes_back_waits_for_the_next_start(
+def test_a_line_that_comes_back_waits_until_the_board_names_its_model(
     checked: Checked, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(watched_boards, "AGAIN", 0.0)
@@ -242,7 +275,7 @@ def test_a_line_that_comes_back_waits_for_the_next_start(
             server.accept()[0].close()
             assert within(lambda: found.look() and found.node.process is None)
             assert within(lambda: found.look() and found.node.process == 0)
-            assert found.node.not_seen == [NOT_STARTED]
+            assert found.node.not_seen == [NOT_NAMED]
 
 
 @pytest.mark.parametrize(
@@ -305,7 +338,7 @@ def test_the_page_shows_a_board_and_waits_after_that_of_another_model(
     digest = trace_map().digest
     try:
         (node,) = live.look(digest)["nodes"]
-        assert node["not_seen"] == [NOT_STARTED]
+        assert node["not_seen"] == [NOT_NAMED]
         board.says("E 0", f"M {'0' * 64}")
         assert within(lambda: "another model" in live.look(digest)["text"])
         board.says("T 3 State 0 0", "T 4 State 0 0")
