@@ -145,13 +145,9 @@ private
    type Element_Array is array (Positive range <>) of Element_Type;
 
    type Queue (Capacity : Capacity_Type) is record
-      Store    : Element_Array (1 .. Capacity) := (others => Null_Element);
-      Places   : Rings.Ring (Capacity);
-      Most     : Length_Type := 0;
-      Given_Up : Event_Count := 0;
-   end record
-   with
-     Predicate => Rings.Length (Places) <= Most and then Most <= Capacity;
+      Store  : Element_Array (1 .. Capacity) := (others => Null_Element);
+      Places : Rings.Ring (Capacity);
+   end record;
    --  Places says where in Store the elements are.
 
 end Ravenchart.Policy_Queues;
