@@ -188,6 +188,35 @@ def test_elements_stand_where_the_array_is_declared() -> None:
     ]
 
 
+LISTS = """\
+buses:
+  line: {bit_rate: 500 kbit/s, driver_wcet: 20 us, receive_depth: 8, transmit_depth: 8}
+instances:
+  probe: {component: Probe_Kind, node: board, count: 2, parameters: {gain: 1}}
+  board_1: {component: Board, node: board}
+connections: [{from: probe_*.level, to: board_1.level_*}]
+messages:
+  tick_in: {bus: line, id: 0x10, to: probe_*.tick, period: 10 ms}
+processors:
+  reception: {released_by: line, period: 1 ms, stack: 16 KiB, activities: [line.receive]}
+  cyclic:
+    stack: 16 KiB
+    activities: [probe_*.ports, probe_*.work, board_1.ports, board_1.show]
+record: [probe_*.level]
+"""
+
+
+@pytest.mark.parametrize("to", ["probe_*.tick", "[probe_*.tick]"])
+def test_a_message_goes_to_all_elements_and_their_values_are_recorded(to: str) -> None:
+    head = (ROOT / "tests/unit/test_arrays.yaml").read_text(encoding="utf-8")
+    ports = "      level_1: {in: Level}\n      level_2: {in: Level}"
+    head = head.replace("PORTS", ports).replace("LARGEST", "max(level_1, level_2)")
+    head = head.replace("critical_section: 2 us", "critical_section: 2 us, trace: 64")
+    system = system_of(head + LISTS.replace("to: probe_*.tick", f"to: {to}"))
+    assert [str(end) for end in system.messages[0].targets] == ["probe_1.tick", "probe_2.tick"]
+    assert [one.instance for one in system.recorded] == ["probe_1", "probe_2"]
+
+
 # --- Mistakes --------------------------------------------------------------------------
 
 WHEEL = "  wheel:\n    component: Wheel\n    node: board\n    count: 4\n"
