@@ -54,7 +54,7 @@ class NamedEntry:
 
 
 @dataclass(frozen=True, slots=True)
-class TableRow:
+class ItemRow:
     """A row of a table: what it runs, and the item that says so, which may say others as well."""
 
     element: str
@@ -138,10 +138,10 @@ class ModelPlaces:
         items = found.items if isinstance(found, spans.Sequence) else []
         return [item for item in items if isinstance(item, YamlScalar)]
 
-    def table(self, processor: NamedEntry) -> list[TableRow]:
+    def table(self, processor: NamedEntry) -> list[ItemRow]:
         """The rows of a processor: for an item with stars one for each element."""
         return [
-            TableRow(element, item, number)
+            ItemRow(element, item, number)
             for number, item in enumerate(self.items(processor))
             for element in self.named(item.value)
         ]

@@ -20,7 +20,7 @@ from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import microseconds, percent
 from ravenchart.building import drawings
 from ravenchart.editing.evaluation import Evaluation, document
-from ravenchart.editing.places import TIMES, DeclaredRow, ModelPlaces, NamedEntry, TableRow
+from ravenchart.editing.places import TIMES, DeclaredRow, ItemRow, ModelPlaces, NamedEntry
 from ravenchart.gen.files.spans import YamlScalar
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.system import Chain
@@ -161,7 +161,7 @@ def _written(entry: NamedEntry, key: str) -> str | None:
 def _row(
     where: _Where,
     entry: NamedEntry,
-    one: TableRow,
+    one: ItemRow,
     responses: dict[str, int],
     slots: dict[str, Any],
 ) -> Json:
