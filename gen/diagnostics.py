@@ -155,6 +155,7 @@ CODES: Mapping[str, str] = {
     "RV-0621": "A message cannot be authenticated as it is given.",
     "RV-0622": "A name in databases is malformed, or used twice.",
     "RV-0626": "A value cannot be sent in several frames as it is given.",
+    "RV-0627": "Arrays of different sizes are joined element by element.",
     "RV-0701": "An activity, region or port region is allocated to no processor.",
     "RV-0702": "An activity, region or port region is allocated twice.",
     "RV-0703": "A worst-case execution time or a deadline is longer than the period.",
