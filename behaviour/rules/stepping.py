@@ -20,7 +20,7 @@ from ravenchart.behaviour.tree import TOP, ChartTree, Occurrence, RegionKey
 from ravenchart.gen.language.terms import Expression, Flow, If, Raise, Reading, Set
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Transition, TransitionKind, When
 
-from .logic import Questions, Term, Variable, published, term, tested, variable
+from .logic import Questions, Term, Variable, term, tested, variable
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +131,7 @@ class OpenStep:
 
     def read(self, name: Variable) -> Term:
         """The value that a variable has now; an own state was active before the step, or not."""
-        own = name[:2] == published(self.tree.region.name, "")[:2]
+        own = name[:2] == ("in", self.tree.region.name)
         if own and self.tree.determines(self.before.active, name.state):
             return z3.BoolVal(name.state in self.before.active)
         if self.firing and self.contested and name in self.contested:
