@@ -92,7 +92,7 @@ CODES: Mapping[str, str] = {
     "RV-0413": "One step or execution may send twice on the same port.",
     "RV-0414": "An activity does not declare what its flow reads, writes, sends, calls or raises.",
     "RV-0415": "A record is sent incompletely, or is set or sent as a whole from another type.",
-    "RV-0416": "A region asks for a state of its own where that is known, or cannot be told.",
+    "RV-0416": "A region asks for a state of its own that its source decides, or during a step.",
     "RV-0417": "A comparison has one outcome: it reads nothing, or compares a value with itself.",
     "RV-0418": "A value is set to itself.",
     "RV-0419": "`old` stands outside of `ensures`, or is not about a data item that is written.",

@@ -69,7 +69,7 @@ def _file(tree: Map, names: ArrayNames) -> Map:
     if isinstance(components, Map):
         inside = TreeCopy(components)
         for name, form in components.items():
-            if isinstance(form, Map) and "instances" in form:
+            if isinstance(form, Map):
                 inside.put(name, _joined(form, names.components[name.lower()], names))
         made.put("components", inside.tree)
     for section in ("buses", "messages", "processors", "devices", "shutdown"):
