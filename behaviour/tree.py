@@ -112,6 +112,13 @@ class ChartTree:
         """The lane that each state stands in."""
         return {name: self.region.lane(name) for name in self.states}
 
+    def determines(self, active: tuple[str, ...], state: str) -> bool:
+        """Whether a configuration, or a part or union of parts, says if a state is active."""
+        lane = self.lane_of[state]
+        if lane.owner is None or any(self.lane_of[name] == lane for name in active):
+            return True
+        return lane.owner not in active and self.determines(active, lane.owner)
+
     def lane_at(self, slot: RegionKey) -> Lane:
         """The lane that the states of a region stand in."""
         owner, name = slot

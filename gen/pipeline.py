@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ravenchart.gen.derive.completion import completed
 from ravenchart.gen.diagnostics import Diagnostic, Sources, in_order
+from ravenchart.gen.files.arrays import uses_of_arrays, with_stars
 from ravenchart.gen.files.load import Reader, read_file, read_model
 from ravenchart.gen.files.schema import ModelFile
 from ravenchart.gen.language.names import Findings, NameUse, Unknown
@@ -21,7 +22,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.resolve.system import resolve
 from ravenchart.gen.rules.buses import names_in_databases
 from ravenchart.gen.rules.cores import shared_across_cores
-from ravenchart.gen.rules.folding import folded
+from ravenchart.gen.rules.folding import folded, folded_elements
 from ravenchart.gen.rules.sections import sections_are_part_of_tasks
 from ravenchart.gen.rules.system import violations
 
@@ -44,10 +45,14 @@ def load(path: Path, read: Reader = read_file) -> Loaded:
     content = read_model(path, read)
     findings = Findings(list(content.found))
     system = _valid(content.forms, content.whole, content.digest, findings)
+    findings.items[:] = folded_elements(findings.items, content.arrays)
     if system is not None:
         system = replace(system, deployment=content.deployment)
     diagnostics = in_order(findings.items, content.sources)
-    names = tuple(findings.uses), tuple(findings.unknown)
+    names = (
+        tuple(uses_of_arrays(findings.uses, content.arrays)),
+        tuple(with_stars(findings.unknown, content.arrays)),
+    )
     return Loaded(system, diagnostics, content.sources, *names)
 
 

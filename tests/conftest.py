@@ -17,10 +17,13 @@ import pytest
 from xdist.workermanage import WorkerController
 
 from ravenchart.paths import work
-from tests.support import compiler, live, scheduling
+from tests.support import again, compiler, live, scheduling
 
 ALL = "RAVENCHART_ALL_TESTS"
 """Set in the environment, nothing is left out for its time; so it is where files are named."""
+
+AGAIN = "RAVENCHART_TESTS_AGAIN"
+"""A file: where only tests that depend on the clock failed, it names them for a second run."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -30,6 +33,8 @@ def pytest_configure(config: pytest.Config) -> None:
             os.environ[ALL] = "1"  # the workers inherit it
         _keep_bytecode()
         compiler.use()
+        if named := os.environ.pop(AGAIN, None):  # no worker, and no pytest of a test, has it
+            config.pluginmanager.register(again.Again(Path(named)))
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:

@@ -53,7 +53,7 @@ class View:
     parameters: Mapping[str, Scalar]
     ports: Mapping[str, PortReading]
     active: Mapping[str, frozenset[str]]
-    """The states that each region last published as active."""
+    """The states that each region last published as active; its own before the step."""
     event: Value | None = None
     """What the occurrence of this step carries."""
 

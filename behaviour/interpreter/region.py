@@ -187,6 +187,7 @@ class RegionRun:
             return self._step
         occurrence = self._next()
         view.event = occurrence.value if isinstance(occurrence, Happened) else None
+        view.active = {**view.active, self.region.name: self.configuration()}
         selected = list(self._selected(TOP, occurrence))
         if any(isinstance(one, Deferral) for one in selected):
             assert isinstance(occurrence, Happened)

@@ -24,7 +24,6 @@ from . import logic
 from .budget import Exhausted
 from .labels import active_leaves, step_label, valuation
 from .logic import Term, Variable
-from .parts import determines
 from .reach import Reachable
 from .schedule import PORTS, in_one_table, schedules
 from .search import Violation, WaySearch
@@ -101,7 +100,7 @@ def _asked(reach: Reachable, thread: Thread, active: tuple[str, ...]) -> list[Va
     asked = [n for n in reach.symbols if n[0] == "in" and n[1] == thread.name]
     if thread.parts is None:
         return asked
-    return [name for name in asked if determines(thread.tree, active, name.state)]
+    return [name for name in asked if thread.tree.determines(active, name.state)]
 
 
 def _written_by_users(reach: Reachable) -> list[Term]:

@@ -202,11 +202,3 @@ class RegionParts:
                 yield tree.lane_at((state.name, nested.name)), nested.initial.effect
         for transition in region.transitions:
             yield region.lane(transition.source), transition.effect
-
-
-def determines(tree: ChartTree, active: tuple[str, ...], state: str) -> bool:
-    """Whether a configuration, or a part or union of parts, says if a state is active."""
-    lane = tree.lane_of[state]
-    if lane.owner is None or any(tree.lane_of[name] == lane for name in active):
-        return True
-    return lane.owner not in active and determines(tree, active, lane.owner)

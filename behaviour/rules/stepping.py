@@ -20,7 +20,7 @@ from ravenchart.behaviour.tree import TOP, ChartTree, Occurrence, RegionKey
 from ravenchart.gen.language.terms import Expression, Flow, If, Raise, Reading, Set
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Transition, TransitionKind, When
 
-from .logic import Questions, Term, Variable, term, variable
+from .logic import Questions, Term, Variable, term, tested, variable
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,14 +130,18 @@ class OpenStep:
     # --- data
 
     def read(self, name: Variable) -> Term:
-        """The value that a variable has now."""
+        """The value that a variable has now; an own state was active before the step, or not."""
+        own = name[:2] == ("in", self.tree.region.name)
+        if own and self.tree.determines(self.before.active, name.state):
+            return z3.BoolVal(name.state in self.before.active)
         if self.firing and self.contested and name in self.contested:
             return self.contested[name]
         return self.store[name] if name in self.store else self.questions.read(name)
 
     def value(self, expression: Expression) -> Term:
         """The value of an expression now."""
-        if self.store or (self.firing and self.contested):
+        asks_own = any(name[1] == self.tree.region.name for name in tested([expression]))
+        if asks_own or self.store or (self.firing and self.contested):
             return term(expression, self.read)
         return self.questions.term(expression)
 

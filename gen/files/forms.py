@@ -124,6 +124,8 @@ class ErrorPlace:
         """Whether the error is there only because something inside was taken out."""
         if kind == "missing" and isinstance(self.value, Map):
             return self.missing in self.value.dropped
+        if kind == "too_short" and isinstance(self.value, Seq) and self.value.damaged:
+            return True  # also where an earlier look took it out: see `expansion`
         if kind in ("too_short", "choice", "shape"):
             return id(self.value) in removed
         return False

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from ravenchart.gen.origins import Origin
 
+from .arrays import elements_of
 from .reference import TITLES
 from .schema import ModelFile
 from .schema_base import REQUIREMENTS, Element
@@ -33,6 +34,14 @@ class Link:
     """From the root of the file: `components`, `Pump`, `regions`, ..."""
     ids: tuple[str, ...]
     origin: Origin
+    count: int | None = None
+    """The number of elements of an array of instances."""
+
+    @property
+    def elements(self) -> tuple[str, ...]:
+        """The names of the instances that an entry of `instances` is."""
+        name = str(self.path[-1])
+        return (name,) if self.count is None else elements_of(name, self.count)
 
     @property
     def section(self) -> str:
@@ -52,7 +61,8 @@ def _of_element(
     if form.req:
         kind = TITLES[type(form).__name__].lower() if path else "model"
         element = ".".join(names) or getattr(form, "system", None) or "model"
-        yield Link(element, kind, path, tuple(form.req), form.origin)
+        count = getattr(form, "count", None)
+        yield Link(element, kind, path, tuple(form.req), form.origin, count)
     for name, field in type(form).model_fields.items():
         if name != REQUIREMENTS:
             key = field.alias or name

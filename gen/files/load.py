@@ -18,6 +18,8 @@ from ravenchart.gen.diagnostics import Diagnostic, Sources, error
 from ravenchart.gen.origins import Origin
 
 from . import deployments
+from .arrays import InstanceArray
+from .expansion import written_out
 from .forms import check
 from .located import grow, lines_of
 from .schema import ModelFile
@@ -35,7 +37,8 @@ Reader = Callable[[Path, int], bytes]
 class Content:
     """The forms of a model's files, main file first; none when that one could not be read.
 
-    ``whole`` tells that every file could be read; ``digest`` is SHA-256 of all bytes read.
+    ``written`` are they as they were read, ``forms`` without arrays. ``whole`` tells that every
+    file could be read; ``digest`` is SHA-256 of all bytes read.
     ``deployment`` is that which was chosen, in lower case.
     """
 
@@ -45,6 +48,8 @@ class Content:
     found: tuple[Diagnostic, ...]
     sources: Sources
     deployment: str | None = None
+    written: tuple[ModelFile, ...] = ()
+    arrays: tuple[InstanceArray, ...] = ()
 
 
 def read_file(path: Path, limit: int) -> bytes:
@@ -162,11 +167,15 @@ def read_model(path: Path, read: Reader = read_file) -> Content:
     reading = _Reading(read, chosen)
     reading.take(main, None, ())
     main_is_read = bool(reading.forms) and reading.forms[0].origin.file == str(main)
+    forms = tuple(reading.forms) if main_is_read else ()
+    plain = written_out(forms, whole=reading.whole)
     return Content(
-        tuple(reading.forms) if main_is_read else (),
+        plain.forms,
         reading.whole,
         reading.digest.hexdigest(),
-        tuple(reading.found),
+        (*reading.found, *plain.found),
         reading.sources,
         None if chosen is None else deployments.folder_of(chosen),
+        forms,
+        plain.arrays,
     )

@@ -92,7 +92,8 @@ A model is one YAML file and those it includes. Numbers are decimal or `0x...`, 
 between digits if wished; `true` and `false` are Booleans; everything else is text. Anchors,
 aliases, tags and tabs are refused. Names are Ada identifiers of at most 60 characters, and case
 does not count; one of more than 24 may be refused where a generated line would not fit 79 columns.
-An instance inside another one is named by its path, `arm.shoulder`.
+An instance inside another one is named by its path, `arm.shoulder`. In ends of connections
+and bindings, and in lists, `wheel_*` stands for all elements of an [array](arrays.md).
 A *duration* is a number with `ns`, `us`, `ms` or `s`, exact in nanoseconds and at
 most one hour; a *size* has `B`, `KiB` or `MiB`; a *bit rate* `bit/s`, `kbit/s` or `Mbit/s`.
 

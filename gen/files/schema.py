@@ -21,6 +21,7 @@ from .schema_base import (
     OwnedReference,
     PositiveSpan,
     Reference,
+    StarredReference,
     key,
     optional,
     shaped,
@@ -480,7 +481,7 @@ class ModelFile(Element):
     processors: dict[Name, ProcessorForm] | None = optional("Processors: the tasks.")
     chains: dict[Name, ChainForm] | None = optional("Limits of latencies from end to end.")
     shutdown: ShutdownForm | None = optional("Reaction to a request to stop; none unless given.")
-    record: list[OwnedReference] | None = optional(
+    record: list[StarredReference] | None = optional(
         "Ports, data items and regions whose values enter the trace: `instance.port`, "
         "`instance.data_item` or `instance.Region`; `instance.item.field` is one field of a "
         "record. Their node needs `trace`."

@@ -165,6 +165,12 @@ An instance inside another is a path: ``arm.shoulder.name``.
 PathReference = Annotated[str, WithJsonSchema({"type": "string", "pattern": f"{_path}*$"})]
 """``name`` or ``owner.name``: an element of its own, or something that belongs to an instance."""
 
+_starred = f"{IDENTIFIER[:-1]}(_\\*)?(\\.{IDENTIFIER[1:-1]}(_\\*)?)"
+StarredReference = Annotated[str, WithJsonSchema({"type": "string", "pattern": f"{_starred}+$"})]
+"""``owner.name``, or with a star several: ``wheel_*.speed`` for an array ``wheel``."""
+StarredPath = Annotated[str, WithJsonSchema({"type": "string", "pattern": f"{_starred}*$"})]
+"""``name`` or ``owner.name``, or with a star several."""
+
 _duration_schema = {"type": "string", "pattern": pattern(NANOSECONDS)}
 Span = Annotated[int, BeforeValidator(_duration), WithJsonSchema(_duration_schema)]
 """A duration, in ns; may be 0."""

@@ -3,20 +3,25 @@
 
 """Nodes, what runs on them, and how it is connected, in the file format."""
 
+from typing import Annotated, Any
+
 from pydantic import Field as PydanticField
+from pydantic import Tag
 
 from .schema_base import (
     Constant,
     DatabaseName,
     Element,
-    OwnedReference,
     PathReference,
     PositiveSpan,
     Reference,
     Span,
     StackSize,
+    StarredPath,
+    StarredReference,
     key,
     optional,
+    shaped,
 )
 
 PRIORITIES = range(1, 31)
@@ -86,39 +91,69 @@ class NodeForm(Element):
     )
 
 
+LARGEST_ARRAY = 64
+"""Elements of an array of instances at most."""
+
+Passed = Annotated[
+    Annotated[Constant, Tag("<one>")] | Annotated[list[Constant], Tag("<list>")],
+    shaped("a value, or a list with a value for each element of an array"),
+]
+"""The value of a parameter; that of each element of an array."""
+
+
+def _count() -> Any:
+    return optional(
+        "Makes it an array of so many instances, 2 to 64: `name_1`, `name_2` and so on. `name_*` "
+        "in a reference stands for all of them, in order. One instance unless given.",
+        ge=2,
+        le=LARGEST_ARRAY,
+    )
+
+
+def plain_parameters(form: "InstanceForm | InnerInstanceForm") -> dict[str, int | bool | str]:
+    """The parameters that an instance gives, which is no array."""
+    given = form.parameters or {}
+    return {name: value for name, value in given.items() if not isinstance(value, list)}
+
+
 class InstanceForm(Element):
-    """An instance of a component on a node."""
+    """An instance of a component on a node, or an array of them."""
 
     component: Reference = key("The component.")
     node: Reference = key("The node it runs on.")
-    parameters: dict[str, Constant] | None = optional("Values of the component's parameters.")
+    count: int | None = _count()
+    parameters: dict[str, Passed] | None = optional(
+        "Values of the component's parameters; of an array one for all elements, or a list of one "
+        "for each."
+    )
 
 
 class InnerInstanceForm(Element):
     """An instance of a component inside another component, on the node of that one."""
 
     component: Reference = key("The component, itself with `instances` or not.")
-    parameters: dict[str, Constant] | None = optional(
+    count: int | None = _count()
+    parameters: dict[str, Passed] | None = optional(
         "Values of the component's parameters; a parameter of the component around it is passed by "
-        "its name."
+        "its name. Of an array one for all elements, or a list of one for each."
     )
 
 
 class ConnectionForm(Element):
     """An output port wired to an input port; between nodes it is a message of the bus."""
 
-    from_: OwnedReference = key("`instance.port`, an output port.", alias="from")
-    to: OwnedReference = key("`instance.port`, an input port.")
+    from_: StarredReference = key("`instance.port`, an output port.", alias="from")
+    to: StarredReference = key("`instance.port`, an input port.")
 
 
 class InnerConnectionForm(ConnectionForm):
     """A connection inside a component; one with a port of the component itself delegates it."""
 
-    from_: PathReference = key(
+    from_: StarredPath = key(
         "`instance.port`, an output port, or `port`, an input port of the component itself.",
         alias="from",
     )
-    to: PathReference = key(
+    to: StarredPath = key(
         "`instance.port`, an input port, or `port`, an output port of the component itself."
     )
 
@@ -149,21 +184,21 @@ class ProcessorForm(Element):
         le=PRIORITIES[-1],
     )
     stack: StackSize = key("Stack of the task, 1 KiB to 64 MiB.")
-    activities: list[OwnedReference] = key(
+    activities: list[StarredReference] = key(
         "The table, in order: `instance.activity`, `instance.Region`, `instance.ports`, "
         "`bus.receive`, `bus.watch`.",
         min_length=1,
         max_length=1024,
     )
-    on_deadline_miss: list[OwnedReference] | None = optional(
+    on_deadline_miss: list[StarredReference] | None = optional(
         "`instance.Event`s raised when a release completes after the deadline."
     )
-    on_overrun: list[OwnedReference] | None = optional(
+    on_overrun: list[StarredReference] | None = optional(
         "`instance.Event`s raised when an activity used more processor time than its `wcet`; each "
         "one is then compared with it as it ends.",
         min_length=1,
     )
-    on_silence: list[OwnedReference] | None = optional(
+    on_silence: list[StarredReference] | None = optional(
         "`instance.Event`s that the supervision of the node raises, once, when a release has not "
         "completed by its deadline and the margin.",
         min_length=1,
@@ -173,14 +208,14 @@ class ProcessorForm(Element):
 class ShutdownForm(Element):
     """The reaction to a request to stop."""
 
-    raises: list[OwnedReference] = key("`instance.Event`s raised.")
+    raises: list[StarredReference] = key("`instance.Event`s raised.")
     grace: Span = key("Time between these events and the end.")
 
 
 class ChainForm(Element):
     """A way from inputs to outputs, and how long values may be under way."""
 
-    path: list[PathReference] = key(
+    path: list[StarredPath] = key(
         "Messages and rows (`instance.activity`, `instance.Region`) on the way; "
         "between two of them the shortest way is meant.",
         min_length=2,

@@ -12,10 +12,11 @@ from .schema_base import (
     Constant,
     Element,
     Name,
-    OwnedReference,
     PathReference,
     PositiveSpan,
     Reference,
+    StarredPath,
+    StarredReference,
     key,
     optional,
     shaped,
@@ -151,7 +152,7 @@ class DeviceForm(Element):
     array: list[Reference] | None = optional(
         "Devices of one kind as one: a command goes to all, and axes are counted on.", min_length=2
     )
-    facade: list[PathReference] | None = optional(
+    facade: list[StarredPath] | None = optional(
         "Devices, or `instance.interface`s, of several kinds as one: a command goes to the one "
         "that provides it.",
         min_length=1,
@@ -164,7 +165,7 @@ class DeviceForm(Element):
 class BindingForm(Element):
     """A required interface of an instance, and what provides it."""
 
-    from_: OwnedReference = key("`instance.interface`, a required one.", alias="from")
+    from_: StarredReference = key("`instance.interface`, a required one.", alias="from")
     to: str = key("A device, or `instance.interface`, a provided one.")
     time_limit: PositiveSpan | None = optional(
         "Longest time from the caller's release until a reply from another node has arrived, "
@@ -175,10 +176,10 @@ class BindingForm(Element):
 class InnerBindingForm(BindingForm):
     """A binding inside a component; one with its own interface delegates that."""
 
-    from_: PathReference = key(
+    from_: StarredPath = key(
         "`instance.interface`, a required one, or `interface`, one that the component provides.",
         alias="from",
     )
-    to: PathReference = key(
+    to: StarredPath = key(
         "`instance.interface`, a provided one, or `interface`, one that the component requires."
     )

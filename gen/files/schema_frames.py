@@ -24,6 +24,7 @@ from .schema_base import (
     PositiveSpan,
     Reference,
     Span,
+    StarredReference,
     key,
     optional,
     shaped,
@@ -75,7 +76,7 @@ class DelayedForm(Element):
 class RequestedForm(Element):
     """Recovery from bus-off when a chart requests it."""
 
-    on: list[OwnedReference] = key(
+    on: list[StarredReference] = key(
         "`instance.Event`s that request it on the node of the instance; each node of the bus needs "
         "one.",
         min_length=1,
@@ -104,16 +105,16 @@ class BusForm(Element):
         "When each node looks at its controller; the three lists below need it, and so does "
         "`recovery` with `after`. Each node of the bus then has the row `bus.watch` in one table."
     )
-    on_error_passive: list[OwnedReference] | None = optional(
+    on_error_passive: list[StarredReference] | None = optional(
         "`instance.Event`s raised when the controller of the instance's node has become "
         "error-passive (ISO 11898-1).",
         min_length=1,
         max_length=64,
     )
-    on_bus_off: list[OwnedReference] | None = optional(
+    on_bus_off: list[StarredReference] | None = optional(
         "`instance.Event`s raised when it has become bus-off.", min_length=1, max_length=64
     )
-    on_recovered: list[OwnedReference] | None = optional(
+    on_recovered: list[StarredReference] | None = optional(
         "`instance.Event`s raised when it is error-active again after either.",
         min_length=1,
         max_length=64,
@@ -230,7 +231,7 @@ class ProtectionForm(Element):
         description="Frames in sequence after the first one, and after one out of sequence, until "
         "a value is used again, 1 to 14.",
     )
-    on_error: list[OwnedReference] | None = optional(
+    on_error: list[StarredReference] | None = optional(
         "`instance.Event`s raised on the node of the instance, which receives the message, for "
         "each frame that is corrupted, of another sender, repeated or out of sequence.",
         min_length=1,
@@ -264,7 +265,7 @@ class AuthenticationForm(Element):
         "Worst-case time for the MAC of one frame: counts in addition to the `wcet` of the row "
         "that sends, and to `driver_wcet` where the frame is received."
     )
-    on_error: list[OwnedReference] | None = optional(
+    on_error: list[StarredReference] | None = optional(
         "`instance.Event`s raised on the node of the instance, which receives the message, for "
         "each frame that is not verified.",
         min_length=1,
@@ -344,8 +345,8 @@ class MessageForm(Element):
     )
     to: (
         Annotated[
-            Annotated[OwnedReference, Tag("<one>")]
-            | Annotated[list[OwnedReference], Tag("<list>")],
+            Annotated[StarredReference, Tag("<one>")]
+            | Annotated[list[StarredReference], Tag("<list>")],
             shaped("`instance.port`, or a list of these"),
         ]
         | None

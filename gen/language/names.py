@@ -163,7 +163,8 @@ class NameUse:
 
     ``origin`` is where the text begins that holds it, as in ``instance.port``: of two uses there
     the earlier stands first. ``declared`` is None of what no file declares; with ``within`` it
-    is where the type begins that lists the name.
+    is where the type begins that lists the name. ``of_array``: behind the name stand an underscore
+    and a number or a star.
     """
 
     name: str
@@ -171,6 +172,7 @@ class NameUse:
     kind: str
     declared: Origin | None
     within: bool = False
+    of_array: bool = False
 
 
 @dataclass(frozen=True, slots=True)

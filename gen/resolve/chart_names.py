@@ -90,6 +90,14 @@ def vertex_of(name: str, form: StateForm) -> NamedVertex:
     return NamedVertex(name, "state", is_composite=bool(form.states or form.regions))
 
 
+class _Stand(NamedTuple):
+    """A vertex, the state around it, and the region of that state in which it stands."""
+
+    vertex: str
+    parent: str | None
+    region: str
+
+
 @dataclass(slots=True)
 class States(NameScope[str]):
     """The states of a region; ``vertices`` holds pseudostates and nested regions too."""
@@ -97,6 +105,34 @@ class States(NameScope[str]):
     vertices: NameScope[NamedVertex] = field(default_factory=lambda: NameScope("state"))
     parents: dict[str, str | None] = field(default_factory=dict)
     """The state around each vertex, by its name in lower case."""
+    nested: dict[str, str] = field(default_factory=dict)
+    """The region of that state in which each vertex stands, by its name in lower case."""
+
+    def beside(self, source: str) -> frozenset[str]:
+        """The states, in lower case, of which nothing is known where a vertex is active.
+
+        They stand in another region of an orthogonal state around it, or further inside than one.
+        """
+        return frozenset(state for state in self.items if self._is_beside(state, source.lower()))
+
+    def _is_beside(self, state: str, source: str) -> bool:
+        ways = [self._way(state), self._way(source)]
+        while all(ways) and ways[0][0] == ways[1][0]:
+            ways = [way[1:] for way in ways]
+        mine, other = ways
+        if mine and other:  # the ways part in one state: in two regions of it, or in one
+            return mine[0].region != other[0].region
+        return any(self._is_orthogonal(stand.parent) for stand in mine)
+
+    def _way(self, vertex: str) -> list[_Stand]:
+        """Where a vertex and the states around it stand, from the top."""
+        parent = self.parents.get(vertex)
+        outer = [] if parent is None else self._way(parent.lower())
+        return [*outer, _Stand(vertex, parent, self.nested.get(vertex, ""))]
+
+    def _is_orthogonal(self, state: str | None) -> bool:
+        inside = (vertex for vertex, parent in self.parents.items() if parent == state)
+        return len({self.nested[vertex] for vertex in inside}) > 1
 
     def around(self, name: str) -> tuple[str, ...]:
         """The states around a vertex, innermost first."""
@@ -128,9 +164,10 @@ def names_of(region: str, form: RegionForm, findings: Findings) -> States:
     scope = States(f"state of {region}")
     scope.vertices = NameScope(f"state of {region}")
     scope.open = _lost(form, "states", scope)
-    for name, at, parent, _ in walk(form.states):
+    for name, at, parent, nested_in in walk(form.states):
         vertex = vertex_of(name, at)
         scope.parents.setdefault(name.lower(), parent)
+        scope.nested.setdefault(name.lower(), nested_in)
         _declare(vertex, at.origin, scope, findings)
         scope.open = _lost(at, "states", scope) or scope.open
         scope.open = at.lost("regions") or bool(at.dropped("regions")) or scope.open

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ravenchart.gen.files.schema import TransitionForm
 from ravenchart.gen.language.terms import Expression, Ns
 from ravenchart.gen.model.statechart import (
@@ -56,7 +58,7 @@ def transition_of(name: str, form: TransitionForm, setting: Setting) -> Transiti
         source = None
     trigger = _trigger(name, form, source, target, setting)
     words = _words(form, source, trigger, setting)
-    guard, is_sound = _guard(name, form, source, target, words, setting)
+    guard, is_sound = _guard(name, form, source, target, _asking(words, source, setting), setting)
     effect = flow_of(form.effect, words, setting.targets, findings)
     if source is None or target is None or trigger is None or not is_sound:
         return None
@@ -171,7 +173,7 @@ def _trigger(
         return None
     if not keys:
         return _completion(name, form, setting)
-    return _one_trigger(form, setting)
+    return _one_trigger(form, source, setting)
 
 
 def _completion(name: str, form: TransitionForm, setting: Setting) -> Completion | None:
@@ -187,7 +189,9 @@ def _completion(name: str, form: TransitionForm, setting: Setting) -> Completion
     return Completion()
 
 
-def _one_trigger(form: TransitionForm, setting: Setting) -> Trigger | None:
+def _one_trigger(
+    form: TransitionForm, source: NamedVertex | None, setting: Setting
+) -> Trigger | None:
     if form.on is not None:
         event = setting.targets.events.look_up(form.on, form.at("on"), setting.findings)
         return None if event is None else OnEvent(event.name)
@@ -196,7 +200,8 @@ def _one_trigger(form: TransitionForm, setting: Setting) -> Trigger | None:
     if form.every is not None:
         return Every(Ns(form.every), max(1, -(-form.every // setting.period)))
     if form.when is not None:
-        met = condition(form.when, form.place("when"), setting.words, setting.findings, "when")
+        words = _asking(setting.words, source, setting)
+        met = condition(form.when, form.place("when"), words, setting.findings, "when")
         return None if met is None else When(met)
     return None
 
@@ -219,6 +224,13 @@ def _words(
 
 
 # --- Guards ------------------------------------------------------------------------
+
+
+def _asking(words: Vocabulary, source: NamedVertex | None, setting: Setting) -> Vocabulary:
+    """The words of a condition that is read before anything fires: also states of its region."""
+    if source is None or source.pseudo not in (None, PseudoKind.JUNCTION):
+        return words
+    return replace(words, beside=setting.states.beside(source.name))
 
 
 def _guard(

@@ -79,7 +79,7 @@ def with_uses(region: Region) -> Region:
         use.flow(transition.effect)
     return replace(
         region,
-        reads=tuple(use.reads),
+        reads=tuple(name for name in use.reads if name != region.name),
         writes=tuple(use.writes),
         sends=tuple(use.sends),
         raises=tuple(use.raises),

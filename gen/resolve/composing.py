@@ -12,7 +12,7 @@ from itertools import product
 from ravenchart.gen.diagnostics import warning
 from ravenchart.gen.files.schema import ComponentForm, InputForm
 from ravenchart.gen.files.schema_base import Element
-from ravenchart.gen.files.schema_deployment import InnerConnectionForm
+from ravenchart.gen.files.schema_deployment import InnerConnectionForm, plain_parameters
 from ravenchart.gen.files.schema_devices import InnerBindingForm, ProvidedForm, RequiredForm
 from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.terms import Type
@@ -377,7 +377,7 @@ class _Composing:
 
     def _parameters_are_passed(self, members: Members) -> None:
         """A warning for each parameter that no instance inside is given."""
-        given = (one.form.parameters or {} for one in self.inside.sound())
+        given = (plain_parameters(one.form) for one in self.inside.sound())
         passed = {str(text).lower() for values in given for text in values.values()}
         for one in members.parameters.sound():
             if one.name.lower() not in passed:

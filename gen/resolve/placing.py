@@ -12,7 +12,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from ravenchart.gen.files.schema_deployment import ConnectionForm, InnerInstanceForm, InstanceForm
+from ravenchart.gen.files.schema_deployment import (
+    ConnectionForm,
+    InnerInstanceForm,
+    InstanceForm,
+    plain_parameters,
+)
 from ravenchart.gen.language.names import Findings, NameScope, NameUse
 from ravenchart.gen.language.terms import Scalar
 from ravenchart.gen.model.component import Direction, Parameter
@@ -110,7 +115,8 @@ def values_of(
     findings: Findings,
 ) -> Values:
     """The value of each parameter: given, passed by the composite around it, or the default."""
-    given = {key.lower(): key for key in form.parameters or {}}
+    own = plain_parameters(form)
+    given = {key.lower(): key for key in own}
     lost = {key.lower() for key in form.dropped("parameters")}
     for key in given.values():
         declared.look_up(key, form.entry_at("parameters", key), findings)
@@ -118,8 +124,8 @@ def values_of(
     for parameter in declared.sound():
         entry = given.get(parameter.name.lower())
         value = parameter.default
-        if entry is not None and form.parameters is not None:
-            text = form.parameters[entry]
+        if entry is not None:
+            text = own[entry]
             if isinstance(text, str) and text.lower() in around:
                 value = _passed(form, entry, parameter, around[text.lower()], findings)
             else:

@@ -173,18 +173,29 @@ class Checker:
         states = self.vocabulary.regions.look_up(term.word, self.at(term), self.findings)
         if states is None:
             return None
-        own = self.vocabulary.own_region
-        if own is not None and own.lower() == term.word.lower():
-            hint = "write the transition `from` that state"
-            if term.member.lower() in self.vocabulary.concurrent:
-                hint = f"set a data item in `entry` and `exit` of {term.member}, and read that"
-            self.refuse("RV-0416", term, "a region cannot ask for its own state", hint)
-            return None
         state = states.look_up(term.member, self.at(term), self.findings)
-        if state is None:
+        if state is None or not self._is_askable(term):
             return None
         region = self.vocabulary.regions.items[term.word.lower()][0]
         return CheckedExpression(InState(region, state), BOOLEAN)
+
+    def _is_askable(self, term: Term) -> bool:
+        """Whether a state may be asked for here; those of the own region in guards alone."""
+        words, state = self.vocabulary, term.member.lower()
+        own = words.own_region is not None and words.own_region.lower() == term.word.lower()
+        if not own or (words.beside is not None and state in words.beside):
+            return True
+        message, hint = (
+            "a region cannot ask for its own state",
+            "write the transition `from` that state",
+        )
+        if words.beside is not None:
+            message = f"where the transition starts, it is known whether {term.member} is active"
+        elif state in words.concurrent:
+            message = "only a guard before choices can ask for a state of its own region"
+            hint = f"set a data item in `entry` and `exit` of {term.member}, and read that"
+        self.refuse("RV-0416", term, message, hint)
+        return False
 
     # --- Functions and operators ---
 

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""An error inside a composite component is reported once, however many instances have it."""
+"""An error that several instances have is reported once: inside a composite component, or of the
+elements of an array."""
 
 from __future__ import annotations
 
@@ -10,12 +11,16 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from ravenchart.gen.diagnostics import Diagnostic
+from ravenchart.gen.files.arrays import ALL, InstanceArray
 from ravenchart.gen.model.instances import Instance
 
 SHOWN = 8
 """Instances that a note lists."""
 
 PATH = re.compile(r"\w+(?:\.\w+)+")
+
+_REFERENCE = re.compile(r"\w+(?:\.\w+)*")
+_NUMBER = re.compile(r"_[0-9]+\b")
 
 
 def folded(found: Iterable[Diagnostic], instances: Iterable[Instance]) -> tuple[Diagnostic, ...]:
@@ -56,7 +61,38 @@ def _of_any(message: str, composites: dict[str, str]) -> tuple[str, str]:
     return PATH.sub(named, message), " ".join(paths[:1])
 
 
-def _counted(first: tuple[Diagnostic, str], *others: tuple[Diagnostic, str]) -> Diagnostic:
+def folded_elements(
+    found: Iterable[Diagnostic], arrays: Iterable[InstanceArray]
+) -> tuple[Diagnostic, ...]:
+    """Findings at one line that differ by the element of an array alone are one.
+
+    It is that of the first element, with the number of the others and a note that lists them.
+    """
+    elements = {name for array in arrays for name in array.elements}
+    if not elements:
+        return tuple(found)
+    groups: dict[object, list[tuple[Diagnostic, str]]] = {}
+    for one in found:
+        named = (_element(path, elements) for path in _REFERENCE.findall(one.message))
+        name = next(filter(None, named), "")
+        said = _NUMBER.sub(ALL, one.message)
+        alike = (one.code, one.severity, one.origin, said) if name else one
+        others = groups.setdefault(alike, [])
+        if all(one.message != other.message for other, _ in others):
+            others.append((one, name))
+    return tuple(_counted(*group, noun="element") for group in groups.values())
+
+
+def _element(path: str, elements: set[str]) -> str:
+    """The path of the innermost element that another path leads through; empty without."""
+    names = path.split(".")
+    depths = (depth for depth in range(len(names), 0, -1) if names[depth - 1] in elements)
+    return ".".join(names[: next(depths, 0)])
+
+
+def _counted(
+    first: tuple[Diagnostic, str], *others: tuple[Diagnostic, str], noun: str = "instance"
+) -> Diagnostic:
     """The first of several findings, which says how many more there are."""
     found = first[0]
     if not others:
@@ -66,6 +102,9 @@ def _counted(first: tuple[Diagnostic, str], *others: tuple[Diagnostic, str]) -> 
     more = f" and {count - SHOWN} more" if count > SHOWN else ""
     return replace(
         found,
-        message=f"{found.message} (and {count} more instance{'s' if count > 1 else ''})",
-        notes=(*found.notes, (found.origin, f"the others are in {listed}{more}")),
+        message=f"{found.message} (and {count} more {noun}{'s' if count > 1 else ''})",
+        notes=(
+            *found.notes,
+            (found.origin, f"the others are {'in ' if noun == 'instance' else ''}{listed}{more}"),
+        ),
     )

@@ -14,6 +14,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ravenchart.gen.files import spans
+from ravenchart.gen.files.arrays import ALL, elements_of
+from ravenchart.gen.files.located import scalar_value
+from ravenchart.gen.files.schema_deployment import LARGEST_ARRAY
 from ravenchart.gen.files.spans import YamlScalar
 
 from .edits import Document
@@ -34,6 +37,30 @@ class NamedEntry:
     def name(self) -> str:
         """Its name, as it is declared."""
         return self.key.value
+
+    @property
+    def is_array(self) -> bool:
+        """Whether it is an instance with `count`."""
+        return self.mapping.scalar("count") is not None
+
+    @property
+    def elements(self) -> tuple[str, ...]:
+        """The names of the instances that an entry of `instances` is."""
+        count = self.mapping.scalar("count")
+        size = scalar_value(count.value) if count is not None else None
+        if not isinstance(size, int):
+            return (self.name,)
+        return elements_of(self.name, min(size, LARGEST_ARRAY))
+
+
+@dataclass(frozen=True, slots=True)
+class ItemRow:
+    """A row of a table: what it runs, and the item that says so, which may say others as well."""
+
+    element: str
+    item: YamlScalar
+    number: int
+    """That of the item in its list."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,8 +109,17 @@ class ModelPlaces:
 
     @cached_property
     def instances(self) -> dict[str, NamedEntry]:
-        """The instances."""
-        return self._named("instances")
+        """The instances; an array stands at the name of each of its elements."""
+        return {
+            element.lower(): entry
+            for entry in self._named("instances").values()
+            for element in entry.elements
+        }
+
+    @cached_property
+    def arrays(self) -> dict[str, NamedEntry]:
+        """The arrays of instances."""
+        return {name: one for name, one in self._named("instances").items() if one.is_array}
 
     @cached_property
     def buses(self) -> dict[str, NamedEntry]:
@@ -96,18 +132,52 @@ class ModelPlaces:
             found.setdefault(entry.name.lower(), entry)
         return found
 
-    def table(self, processor: NamedEntry) -> list[YamlScalar]:
-        """The rows of a processor."""
+    def items(self, processor: NamedEntry) -> list[YamlScalar]:
+        """The items of a table, as they are written."""
         found = processor.mapping.get("activities")
         items = found.items if isinstance(found, spans.Sequence) else []
         return [item for item in items if isinstance(item, YamlScalar)]
+
+    def table(self, processor: NamedEntry) -> list[ItemRow]:
+        """The rows of a processor: for an item with stars one for each element."""
+        return [
+            ItemRow(element, item, number)
+            for number, item in enumerate(self.items(processor))
+            for element in self.named(item.value)
+        ]
+
+    def named(self, text: str) -> list[str]:
+        """What a reference stands for: with stars the elements of arrays, else itself."""
+        heads: list[tuple[str, NamedEntry | None]] = [("", None)]
+        *owners, last = text.split(".")
+        for depth, segment in enumerate(owners):
+            inside: list[tuple[str, NamedEntry | None]] = []
+            for head, around in heads:
+                entry = self._array(segment, around, is_outermost=depth == 0)
+                names = (segment,) if entry is None else entry.elements
+                inside += [(f"{head}{n}.", self.component_of(f"{head}{n}")) for n in names]
+            heads = inside
+        return [f"{head}{last}" for head, _ in heads]
+
+    def _array(
+        self, segment: str, around: NamedEntry | None, *, is_outermost: bool
+    ) -> NamedEntry | None:
+        """The array whose elements a part of a reference stands for."""
+        if not segment.endswith(ALL):
+            return None
+        base = segment.removesuffix(ALL).lower()
+        if is_outermost:
+            return self.arrays.get(base)
+        inside = None if around is None else _inner(around, "instances")
+        found = None if inside is None else _inner(inside, base)
+        return found if found is not None and found.is_array else None
 
     def row_at(self, element: str) -> tuple[NamedEntry, int] | None:
         """The processor whose table holds a row, and its number there."""
         wanted = element.lower()
         for processor in self.processors.values():
-            for number, item in enumerate(self.table(processor)):
-                if item.value.lower() == wanted:
+            for number, row in enumerate(self.table(processor)):
+                if row.element.lower() == wanted:
                     return processor, number
         return None
 
@@ -117,15 +187,16 @@ class ModelPlaces:
         found = self._kind(self.instances.get(first))
         for name in inner:
             inside = None if found is None else _inner(found, "instances")
-            found = None if inside is None else self._kind(_inner(inside, name))
+            found = None if inside is None else self._kind(_instance(inside, name))
         return found
 
     def instances_of(self, component: NamedEntry) -> list[str]:
         """The paths of the instances of a component, also those inside others."""
         return [
             path
-            for entry in self.instances.values()
-            for path, kind in self._inside(entry.name, self._kind(entry), ())
+            for entry in self._named("instances").values()
+            for name in entry.elements
+            for path, kind in self._inside(name, self._kind(entry), ())
             if kind.key is component.key
         ]
 
@@ -138,8 +209,9 @@ class ModelPlaces:
         yield path, kind
         found = kind.mapping.mapping("instances")
         for key, mapping in () if found is None else found.mappings():
-            inner = self._kind(NamedEntry(kind.file, key, mapping))
-            yield from self._inside(f"{path}.{key.value}", inner, (*around, kind))
+            entry = NamedEntry(kind.file, key, mapping)
+            for name in entry.elements:
+                yield from self._inside(f"{path}.{name}", self._kind(entry), (*around, kind))
 
     def _kind(self, instance: NamedEntry | None) -> NamedEntry | None:
         """The component that an entry of `instances` names."""
@@ -180,3 +252,13 @@ def _inner(around: NamedEntry, name: str) -> NamedEntry | None:
     if found is None or not isinstance(found[1], spans.YamlMapping):
         return None
     return NamedEntry(around.file, found[0], found[1])
+
+
+def _instance(inside: NamedEntry, name: str) -> NamedEntry | None:
+    """An instance of a section, which may be an element of an array."""
+    found = _inner(inside, name)
+    if found is not None and not found.is_array:
+        return found
+    entries = (NamedEntry(inside.file, *one) for one in inside.mapping.mappings())
+    names = ((entry, element.lower()) for entry in entries for element in entry.elements)
+    return next((entry for entry, element in names if element == name), None)

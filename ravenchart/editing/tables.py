@@ -63,13 +63,15 @@ class _Files:
 def moved(places: ModelPlaces, row: str, to: str, place: int) -> dict[str, Document]:
     """The documents in which a row is in the table of that processor; both are there.
 
-    ``place`` is counted from 0 and as in the table without the row.
+    ``place`` is counted from 0 and as in the table without the row. Where an item stands for the
+    rows of all elements of an array, and one of them moves or another goes between them, each of
+    them gets an item of its own.
     """
     files = _Files(dict(places.documents))
     item = _taken(files, row, stays=edits.is_flow(files.processor(to).mapping, "activities"))
-    place = min(place, len(files.places.table(files.processor(to))))
+    number = _item_at(files, to, place)
     files.change(
-        to, lambda now, entry: edits.with_item(now, entry.mapping, "activities", place, item)
+        to, lambda now, entry: edits.with_item(now, entry.mapping, "activities", number, item)
     )
     return {
         name: made
@@ -114,7 +116,7 @@ def processors_for(places: ModelPlaces, tables: Sequence[WantedTable]) -> list[s
     for number, table in enumerate(tables):
         rows = {row.lower() for row in table.rows}
         for processor in places.processors.values():
-            count = sum(item.value.lower() in rows for item in places.table(processor))
+            count = sum(row.element.lower() in rows for row in places.table(processor))
             sporadic = processor.mapping.scalar("released_by") is not None
             if count and sporadic is (table.released_by is not None):
                 shared.append((-count, number, processor.name))
@@ -150,11 +152,47 @@ def _taken(files: _Files, row: str, *, stays: bool) -> TakenItem:
     found = files.places.row_at(row)
     if found is None:
         raise LayoutError(f"no processor has the row {row}")
-    source, number = found
+    name, place = found[0].name, found[1]
+    number = _written_out(files, name, place)
+    source = files.processor(name)
     files.documents[source.file], item = edits.without_item(
         files.document(source), source.mapping, "activities", number, comment_stays=stays
     )
     return item
+
+
+def _item_at(files: _Files, name: str, place: int) -> int:
+    """The number of the item before which something can stand at that place of a table."""
+    rows = files.places.table(files.processor(name))
+    if place >= len(rows):
+        return len(files.places.items(files.processor(name)))
+    if place and rows[place - 1].number == rows[place].number:
+        return _written_out(files, name, place)
+    return rows[place].number
+
+
+def _written_out(files: _Files, name: str, place: int) -> int:
+    """The number of the item of a row of a table; it gets one of its own where it has none.
+
+    The rows of an array then have an item each; a comment stays with the first of them.
+    """
+    rows = files.places.table(files.processor(name))
+    number = rows[place].number
+    others = [row.element for row in rows if row.number == number]
+    if len(others) == 1:
+        return number
+
+    def first(now: Document, entry: NamedEntry) -> Document:
+        return edits.with_value(now, files.places.items(entry)[number], others[0])
+
+    def further(now: Document, entry: NamedEntry, behind: int, element: str) -> Document:
+        item = TakenItem(element, element)
+        return edits.with_item(now, entry.mapping, "activities", number + behind, item)
+
+    files.change(name, first)
+    for behind, element in enumerate(others[1:], 1):
+        files.change(name, partial(further, behind=behind, element=element))
+    return number + others.index(rows[place].element)
 
 
 def _without_empty(files: _Files, kept: Sequence[str]) -> None:
@@ -200,7 +238,8 @@ def _set_reactions(files: _Files, tables: Sequence[WantedTable], names: Sequence
     for table, name in zip(tables, names, strict=True):
         for key, events in table.raises.items():
             found = files.processor(name).mapping.get(key)
-            known = {str(one).lower() for one in plain_tree(found)} if found is not None else set()
+            written = [] if found is None else [str(one) for one in plain_tree(found)]
+            known = {one.lower() for text in written for one in files.places.named(text)}
             for event in (one for one in events if one.lower() not in known):
                 files.change(name, partial(_with_event, key=key, event=event))
 

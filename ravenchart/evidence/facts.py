@@ -116,7 +116,7 @@ def gather(
         reasons,
         why,
         sources,
-        links(read_model(main, read).forms),
+        links(read_model(main, read).written),
         None if tests is None else junit(tests),
         tuple(read_record(one) for one in memory),
         None if coverage is None else tracefile.read(coverage),

@@ -126,6 +126,8 @@ def claims_about(facts: Facts, link: Link, found: Sequence[Claim]) -> tuple[Clai
     instance = next((i for i in system.instances if i.name == link.element), None)
     if link.section == "instances" and instance is not None:
         names.add(instance.component.name.lower())
+    if link.section == "chains":  # one with stars is one for each element
+        names |= {chain.name.lower() for chain in system.chains if chain.origin == link.origin}
     for inside in instances_inside(system, link):
         names |= {inside.name.lower(), inside.component.name.lower()}
     own = _about(names, found)
@@ -169,17 +171,25 @@ def code_of(facts: Facts, link: Link) -> tuple[str, ...]:
 
 
 def instances_inside(system: System, link: Link) -> tuple[Instance, ...]:
-    """The instances that an element of a composite stands for: one of it, or all that it has."""
+    """The instances that an element stands for which is no instance of the system itself.
+
+    Of a composite these are all that it has, or one of them; of an array its elements.
+    """
     name = str(link.path[1]) if len(link.path) > 1 else ""
     if link.section == "instances":
-        return tuple(i for i in system.instances if i.name.startswith(f"{name}."))
-    own = str(link.path[3]) if link.path[2:3] == ("instances",) and len(link.path) > 3 else None
+        return tuple(
+            i
+            for i in system.instances
+            if i.name != name and i.name.partition(".")[0] in link.elements
+        )
+    is_inner = link.path[2:3] == ("instances",) and len(link.path) > 3
+    own = link.elements if is_inner else None
     return tuple(
         one
         for one in system.instances
         if link.section == "components"
         and name in one.composites
-        and own in (None, one.name.split(".")[one.composites.index(name) + 1])
+        and (own is None or one.name.split(".")[one.composites.index(name) + 1] in own)
     )
 
 

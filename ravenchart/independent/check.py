@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from .arrays import counted_out
 from .composites import written_out
 from .declared import check_component
 from .deployment import Deployment
@@ -37,7 +38,7 @@ def checked(main: Path, generated: Path | None = None) -> Report:
     name = "generated" if usual else f"generated-{file.name.removesuffix('.yaml')}"
     folder = main.parent / name / chosen.lower() if generated is None else generated
     try:
-        deployment = Deployment(written_out(model))
+        deployment = Deployment(written_out(counted_out(model)))
         programs = deployment.programs(folder)
     except MALFORMED as problem:
         raise UnusableError(f"{main} is no valid model: {problem}") from problem

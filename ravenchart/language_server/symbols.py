@@ -90,11 +90,11 @@ class Symbols:
         start = text.offset(use.origin)
         scalar = text.scalar_at(start)
         end = start + len(use.name) if scalar is None else scalar.end
-        exact = text.word(use.name, start, start + len(use.name))
+        exact = _word(text, use, start, start + len(use.name))
         found: TextRange | None = None
         if exact is None or (file, start, use.name.lower()) in self._ends:
-            found = text.word(use.name, max(start, self._ends.get((file, start), start)), end)
-        found = found or exact or text.word(use.name, start, end)
+            found = _word(text, use, max(start, self._ends.get((file, start), start)), end)
+        found = found or exact or _word(text, use, start, end)
         if found is None:
             return None
         self._ends[file, start] = self._ends[file, start, use.name.lower()] = found[1]
@@ -113,6 +113,13 @@ class Symbols:
         end = start + len(use.name) if scalar is None else scalar.end
         found = text.word(use.name, start, end)
         return None if found is None else (at.file, *found)
+
+
+def _word(text: FileText, use: NameUse, start: int, end: int) -> TextRange | None:
+    """The first place of a name that is used; of an array it is without number or star."""
+    if use.of_array:
+        return text.array(use.name, start, end)
+    return text.word(use.name, start, end)
 
 
 def _literal(text: FileText, start: int, name: str) -> spans.YamlScalar | None:

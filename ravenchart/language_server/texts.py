@@ -110,6 +110,12 @@ class FileText:
         )
         return None if found is None or found.end() > end else found.span()
 
+    def array(self, name: str, start: int, end: int) -> TextRange | None:
+        """The same for the name of an array, behind which stand `_` and a number or a star."""
+        pattern = rf"(?<!\w){re.escape(name)}(?=_(?:\*|[0-9]+(?!\w)))"
+        found = re.compile(pattern, re.IGNORECASE).search(self.text, start)
+        return None if found is None or found.end() > end else found.span()
+
 
 def _scalars(node: YamlNode) -> Iterator[YamlScalar]:
     match node:

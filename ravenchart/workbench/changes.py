@@ -53,7 +53,7 @@ def _moved(state: Evaluation, wish: Move) -> Changed:
         raise ChangeRefusedError(f"no processor has the row {wish.row}")
     source, number = found
     target = _processor(places, wish.to)
-    row = places.table(source)[number].value
+    row = places.table(source)[number].element
     if source.name == target.name and number == wish.place:
         return Changed(state.texts, "")
     documents = moved(places, wish.row, target.name, wish.place)

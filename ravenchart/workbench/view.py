@@ -20,7 +20,7 @@ from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import microseconds, percent
 from ravenchart.building import drawings
 from ravenchart.editing.evaluation import Evaluation, document
-from ravenchart.editing.places import TIMES, DeclaredRow, ModelPlaces, NamedEntry
+from ravenchart.editing.places import TIMES, DeclaredRow, ItemRow, ModelPlaces, NamedEntry
 from ravenchart.gen.files.spans import YamlScalar
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.system import Chain
@@ -74,8 +74,8 @@ class _Where:
         self.places: ModelPlaces = now.places
         self.allocated: dict[str, str] = {}
         for processor in self.places.processors.values():
-            for item in self.places.table(processor):
-                self.allocated.setdefault(item.value.lower(), processor.name)
+            for row in self.places.table(processor):
+                self.allocated.setdefault(row.element.lower(), processor.name)
 
     def at(self, file: str, scalar: YamlScalar) -> Json:
         """The location of a scalar."""
@@ -148,7 +148,7 @@ def _processors(where: _Where, good: Analysis, saved: Analysis) -> Iterator[Json
             "priority": None if processor is None else processor.priority,
             **(_response(good, saved, entry.name) if processor is not None else {"bound": None}),
             "rows": [
-                _row(where, entry, item, responses, slots) for item in where.places.table(entry)
+                _row(where, entry, one, responses, slots) for one in where.places.table(entry)
             ],
         }
 
@@ -161,26 +161,26 @@ def _written(entry: NamedEntry, key: str) -> str | None:
 def _row(
     where: _Where,
     entry: NamedEntry,
-    item: YamlScalar,
+    one: ItemRow,
     responses: dict[str, int],
     slots: dict[str, Any],
 ) -> Json:
     """A row of a table: its times as written, or as they follow, and its response."""
-    row, timing = where.places.row(item.value), slots.get(item.value.lower())
+    row, timing = where.places.row(one.element), slots.get(one.element.lower())
     declared: Json = {"kind": None, "times": {}, "settable": []}
     if row is not None:
         declared = _declared(where, row)
     follows = {} if timing is None else {t: shown(getattr(timing, t)) for t in TIMES}
     return {
-        "row": item.value,
+        "row": one.element,
         "kind": declared["kind"],
         "owner": declared.get("owner"),
         "times": {time: declared["times"].get(time) or follows.get(time) for time in TIMES},
         "written": declared["times"],
         "settable": declared["settable"],
-        "response": responses.get(item.value.lower()),
+        "response": responses.get(one.element.lower()),
         "declared": {key: declared.get(key) for key in ("file", "line", "column")},
-        **where.at(entry.file, item),
+        **where.at(entry.file, one.item),
     }
 
 

@@ -19,6 +19,7 @@ from tests.support.pump import PUMP
 ROOT = Path(__file__).parent.parent.parent
 EXAMPLES = [
     PUMP,
+    (ROOT / "tests" / "feature" / "arrays" / "model.yaml").read_text(),
     *(path.read_text() for path in sorted((ROOT / "examples").glob("*/model.yaml"))),
     *(
         (ROOT / "examples" / "cartesian_robot" / n).read_text()

@@ -66,10 +66,13 @@ class Chart:
     completing: set[str] = field(default_factory=set)
     taken: set[tuple[str, str]] = field(default_factory=set)
     """(source, event) that a transition without guard always takes."""
+    asking: Random = field(init=False)
+    """Draws which guards ask for states of their own region."""
 
     def __post_init__(self) -> None:
         """Draw the vertices."""
         self.top = self.region((), depth=2, of=self.rng.randint(2, 3))
+        self.asking = Random(f"{self.name} {sorted(self.vertices)}")
 
     # --- the tree
 
@@ -352,8 +355,23 @@ class Chart:
     def guarded(self, made: Json, likely: float, event_value: bool = False) -> Json:
         """With a guard, or without."""
         if self.rng.random() < likely:
-            made["guard"] = self.condition(event_value)
+            made["guard"] = self.asked(made["from"], self.condition(event_value))
         return made
+
+    def asked(self, source: str, guard: str) -> str:
+        """A guard, or one that asks for a state of the own region as well, or for that alone."""
+        states = [v.name for v in self.states() if self.is_beside(v, self.vertices[source])]
+        if not states or self.asking.random() < 0.5:
+            return guard
+        asks = f"{self.asking.choice(('', 'not '))}in({self.name}.{self.asking.choice(states)})"
+        return self.asking.choice((asks, f"({guard}) and {asks}", f"({guard}) or {asks}"))
+
+    def is_beside(self, state: Vertex, source: Vertex) -> bool:
+        """Whether a state may be active or not while another vertex is."""
+        if state.is_inside(source.name):
+            around = [owner for owner, _ in state.places]
+            return any(o in self.orthogonal for o in around[: around.index(source.name) + 1])
+        return not self.agree(state, source)
 
     def effect(self, event_value: bool) -> Json:
         """An effect, or none."""
@@ -371,7 +389,10 @@ class Chart:
                 ]
                 for _ in range(self.rng.randint(1, 2)):
                     made = {"from": vertex.name, "to": self.rng.choice(targets).name}
-                    self.transition(made | {"guard": self.condition()} | self.effect(False))
+                    guard = self.condition()
+                    if vertex.kind == "junction":
+                        guard = self.asked(vertex.name, guard)
+                    self.transition(made | {"guard": guard} | self.effect(False))
                 if vertex.kind == "choice" or self.rng.random() < 0.6:
                     made = {"from": vertex.name, "to": self.rng.choice(targets).name}
                     self.transition(made | {"guard": "else"} | self.effect(False))

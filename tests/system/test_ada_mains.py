@@ -14,6 +14,8 @@ from ravenchart.paths import ROOT
 from tests.support.ada_programs import built
 from tests.support.modes import MODES
 
+pytestmark = pytest.mark.clock
+
 MAINS = (
     "test_queues",
     "test_store",

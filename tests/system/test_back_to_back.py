@@ -18,6 +18,8 @@ import pytest
 from tests.support.can_bus import started
 from tests.support.can_frames import WAIT
 
+pytestmark = pytest.mark.clock
+
 Pair = tuple[can.BusABC, can.BusABC]
 THREADS, FRAMES = 100, 1_000
 

@@ -22,6 +22,8 @@ from tests.support.can_frames import FD_LENGTHS, WAIT, taken
 from tests.support.can_node import JOINED, LIMIT, node
 from tests.support.faults import shows
 
+pytestmark = pytest.mark.clock
+
 MAINS = ("can_echo", "test_bus_members")
 MOST_OPEN = 8
 DEPTH = 1000

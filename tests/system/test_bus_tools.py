@@ -25,6 +25,8 @@ from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from tests.support.can_bus import started
 from tests.support.can_frames import WAIT, mixed_frames, taken
 
+pytestmark = pytest.mark.clock
+
 ROOT = Path(__file__).parents[2]
 
 

@@ -23,6 +23,8 @@ from tests.support.can_bus import Start, starter
 from tests.support.can_frames import WAIT
 from tests.system.test_bus_tools import same, tool_environment
 
+pytestmark = pytest.mark.clock
+
 LONG = "RAVENCHART_LONG_TESTS" in os.environ
 PLAYED = 100_000 if LONG else 20_000
 """Frames of the log."""

@@ -31,6 +31,8 @@ from tests.support.can_bus import Start, started, starter
 from tests.support.can_frames import WAIT, taken
 from tests.support.raw_client import RawClient
 
+pytestmark = pytest.mark.clock
+
 ROOT = Path(__file__).parents[2]
 
 

@@ -17,6 +17,8 @@ from tests.hardware.driver_cases import LIMIT, Driver, started
 from tests.support.ada_programs import built
 from tests.support.modes import MODES
 
+pytestmark = pytest.mark.clock
+
 SPAN = 0x4000
 """Bytes from one core of a card to the next."""
 

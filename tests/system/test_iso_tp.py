@@ -16,6 +16,8 @@ import pytest
 
 from tests.support.ada_programs import built
 
+pytestmark = pytest.mark.clock
+
 LENGTHS = (1, 7, 8, 13, 14, 19, 20, 62, 63, 64)
 
 

@@ -19,6 +19,8 @@ from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.paths import ROOT
 from tests.support.answers import answered, valid
 
+pytestmark = pytest.mark.clock
+
 PRINTED = pytest.CaptureFixture[str]
 
 

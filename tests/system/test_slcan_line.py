@@ -20,6 +20,8 @@ import pytest
 from tests.support.ada_programs import built
 from tests.support.can_frames import FD_LENGTHS, WAIT
 
+pytestmark = pytest.mark.clock
+
 LIMIT = 20.0
 """Seconds within which something must have happened."""
 

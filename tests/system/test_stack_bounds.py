@@ -21,6 +21,8 @@ from ravenchart.stacks import graph, symbols
 from ravenchart.stacks.report import Memory
 from tests.support import live, stack_use
 
+pytestmark = pytest.mark.clock
+
 BODY = "devices_feature-servo-activities.adb"
 DAMPED = "   begin\n      return\n        Current\n"
 """Where the function `Damped` of the devices feature begins."""

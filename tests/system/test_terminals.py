@@ -17,6 +17,8 @@ import pytest
 
 from tests.support.processes import ROOT
 
+pytestmark = pytest.mark.clock
+
 PUMP = ROOT / "examples" / "pump" / "model.yaml"
 ESCAPE = "\x1b"
 COLOUR = re.compile(r"\x1b\[[\d;]*m")

@@ -18,6 +18,8 @@ from ravenchart.analysis.system.observed import Observation, TraceRecord, read_m
 from ravenchart.building import checking, generation, programs
 from ravenchart.gen.model.system import System
 
+pytestmark = pytest.mark.clock
+
 
 def _observed(checked: checking.Checked, executable: Path, folder: Path) -> Observation:
     """One second of the program, asked to end by SIGTERM."""

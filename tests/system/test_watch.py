@@ -21,7 +21,7 @@ import pytest
 from ravenchart.gen.explanations import MODEL, explanations
 from tests.support.processes import ROOT
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.clock, pytest.mark.slow]
 
 PATIENCE = 60.0
 """Seconds for a check on a busy machine."""

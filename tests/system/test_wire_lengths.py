@@ -12,6 +12,8 @@ import pytest
 from ravenchart.analysis.core.frames import FD_SIZES, Bits, classic_bits, fd_bits
 from tests.support.ada_programs import built
 
+pytestmark = pytest.mark.clock
+
 CASES = [
     (kind, extended, length)
     for kind, lengths in (("classic", range(9)), ("fd", FD_SIZES))

@@ -13,6 +13,8 @@ from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
 from tests.support.modes import MODES
 
+pytestmark = pytest.mark.clock
+
 
 @pytest.mark.parametrize("mode", MODES)
 def test_the_driver_counts_what_it_loses_and_recovers_on_request(mode: str) -> None:

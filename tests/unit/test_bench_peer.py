@@ -22,6 +22,8 @@ from ravenchart.hw_can.bench.scenario import parse_scenario
 from tests.support.bench_files import scenario_text
 from tests.support.robot_files import dbc
 
+pytestmark = pytest.mark.clock
+
 
 @pytest.fixture
 def codec(tmp_path: Path) -> Codec:

@@ -33,6 +33,8 @@ from ravenchart.running.runs import (
 from tests.support.bench_files import Files, scenario_text, write_files
 from tests.support.robot_files import trace_map
 
+pytestmark = pytest.mark.clock
+
 SHORT = scenario_text("  - wait: 30 ms\n")
 
 FULL = scenario_text(

@@ -19,6 +19,8 @@ from ravenchart.hw_can.bench.bus_records import BusRecord, Flag, RecordKind, Sta
 from tests.support.bus_server import BusServer
 from tests.support.can_frames import WAIT, taken, within
 
+pytestmark = pytest.mark.clock
+
 ROOT = Path(__file__).parents[2]
 
 

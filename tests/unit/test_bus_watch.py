@@ -32,6 +32,8 @@ from ravenchart.workbench.live import LiveView
 from tests.support.bus_server import BusServer
 from tests.support.can_frames import within
 
+pytestmark = pytest.mark.clock
+
 PUMP = ROOT / "examples" / "pump" / "model.yaml"
 ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
 ALONE = ROOT / "examples" / "three_components" / "model.yaml"

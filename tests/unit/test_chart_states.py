@@ -31,6 +31,8 @@ from tests.support.answers import answered
 from tests.support.far_end import ROBOT, FarEnd, system_of
 from tests.support.snapshot_files import held, snapshot
 
+pytestmark = pytest.mark.clock
+
 MODEL = ROBOT / "model.yaml"
 MAP = read_map((ROBOT / "generated" / "trace.json").read_text("utf-8"))
 NS = 1_000_000_000

@@ -70,6 +70,8 @@ def test_every_page_is_in_the_list_of_pages() -> None:
     linked = set(LINK.findall(index))
     pages = {page.name for page in (ROOT / "docs").glob("*.md")} - {"index.md"}
     assert pages - linked == set()
+    listed = {f"{line}.md" for line in index.splitlines()}  # in the tables of contents of the site
+    assert pages - listed == set()
     examples = (ROOT / "examples" / "README.md").read_text(encoding="utf-8")
     folders = {page.parent.name for page in (ROOT / "examples").glob("*/README.md")}
     assert {link.partition("/")[0] for link in LINK.findall(examples)} == folders

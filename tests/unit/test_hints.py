@@ -59,7 +59,7 @@ processors:
 chains: {through: {path: [incoming, outgoing], reaction: 90 ms}}
 shutdown: {raises: [], grace: 0 ms}
 """
-ASKS = ", guard: in(Main.L2)"
+ASKS = ", effect: [{if: in(Main.L2), then: [{send: told, with: 1}]}]"
 
 
 def model(port: str = "", state: str = "", right: str = "", back: str = "") -> str:

@@ -31,6 +31,8 @@ from ravenchart.hw_can.conformance.suite import (
 from tests.support.bus_server import BusServer
 from tests.support.slcan_relay import SlcanRelay
 
+pytestmark = pytest.mark.clock
+
 
 def on(server: BusServer) -> Ends:
     """Both ends on the stand-in, with little patience."""

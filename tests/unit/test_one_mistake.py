@@ -23,6 +23,7 @@ from ravenchart.paths import ROOT
 
 CANOPEN = ROOT / "examples" / "canopen_device" / "model.yaml"
 SURGICAL = ROOT / "examples" / "surgical_robot" / "model.yaml"
+ARRAYS = ROOT / "tests" / "feature" / "arrays" / "model.yaml"
 NODES = ROOT / "examples" / "two_nodes" / "model.yaml"
 COMPOSITES = ROOT / "tests" / "feature" / "composites" / "model.yaml"
 GRIPPER = ROOT / "tests" / "nodes" / "gripper" / "model.yaml"
@@ -178,3 +179,11 @@ def test_a_section_that_is_missing_is_the_only_error(section: str) -> None:
         if found is not None:  # two_nodes includes its components
             key, value = found
             assert errors(model, text[: key.start] + text[value.end :]) == ["RV-0801"], model
+
+
+@pytest.mark.slow
+def test_a_misspelt_key_beside_arrays_has_no_second_error() -> None:
+    """But for a parameter of a composite: what passes it on to an instance inside is told too."""
+    found = [codes for text in misspelt(ARRAYS) if "RV-0201" in (codes := errors(ARRAYS, text))]
+    assert found.count(["RV-0201"]) > 60
+    assert [c for c in found if c not in (["RV-0201"], ["RV-0201", "RV-0312"])] == []

@@ -22,7 +22,7 @@ from ravenchart.workbench import guard
 from tests.support.progress import without_progress
 from tests.support.workbench import PATIENCE, Running, command, environment, running, until
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.clock, pytest.mark.slow]
 
 PUMP = ROOT / "examples" / "pump" / "model.yaml"
 SECRET = b"Infusion"

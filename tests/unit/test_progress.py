@@ -12,6 +12,8 @@ import pytest
 from ravenchart import terminal
 from ravenchart.tools.steps import COMPILING, PROVING, Announced
 
+pytestmark = pytest.mark.clock
+
 
 def _told(phases: tuple[str, ...], times: list[float], counts: list[tuple[int, int]]) -> list[str]:
     told: list[str] = []

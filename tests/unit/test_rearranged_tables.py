@@ -21,7 +21,7 @@ ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
 MODELS = [
     *(ROOT / "examples" / n / "model.yaml" for n in ("cartesian_robot", "crossing")),
     *(ROOT / "examples" / n / "model.yaml" for n in ("surgical_robot", "three_components")),
-    *(ROOT / "tests" / "feature" / n / "model.yaml" for n in ("composites", "registers")),
+    *(ROOT / "tests" / "feature" / n / "model.yaml" for n in ("arrays", "composites", "registers")),
     ROOT / "tests" / "deployments" / "heater" / "model.yaml@bench",
     *(ROOT / "tests" / "nodes" / n / "model.yaml" for n in ("commands", "gripper", "tactile")),
 ]

@@ -22,6 +22,8 @@ from ravenchart.running.vocabulary import WordError
 from tests.support.bus_server import BusServer
 from tests.support.far_end import ROBOT, FarEnd, robot, status
 
+pytestmark = pytest.mark.clock
+
 MODEL = ROBOT / "model.yaml"
 ZERO = {"x": 0, "y": 0, "z": 0}
 

@@ -24,6 +24,8 @@ from ravenchart.gen.model.system import Carried, System
 from ravenchart.gen.pipeline import Loaded, load
 from ravenchart.paths import ROOT
 
+pytestmark = pytest.mark.clock
+
 REQUESTS = ROOT / "tests" / "feature" / "requests" / "model.yaml"
 MODEL = (ROOT / "tests" / "nodes" / "commands" / "model.yaml").read_text()
 BUS = "  link: {bit_rate: 500 kbit/s, driver_wcet: 40 us, receive_depth: 8, transmit_depth: 8}\n"

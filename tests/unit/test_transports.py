@@ -23,6 +23,8 @@ from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
 from tests.support.certificates import certificate, changed, compiled
 
+pytestmark = pytest.mark.clock
+
 MS = 1_000_000
 CHAINS = """\
 chains:

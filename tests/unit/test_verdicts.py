@@ -20,6 +20,8 @@ import pytest
 from ravenchart.proof import verdicts
 from ravenchart.proof.verdicts import Memcached, served
 
+pytestmark = pytest.mark.clock
+
 PROVED = b"unsat\n(:rlimit-count 5832)"
 
 

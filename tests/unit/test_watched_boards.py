@@ -32,6 +32,8 @@ from tests.support.can_frames import within
 from tests.support.recordings import monitored, random_trace
 from tests.support.snapshot_files import GENERATED, PUMP, number, trace_map
 
+pytestmark = pytest.mark.clock
+
 HEAD = ("E 71234", f"M {trace_map().digest}")
 BOOT = ("Xilinx First Stage Boot Loader", "E is no start, nor is", "T 1 State 0 0")
 

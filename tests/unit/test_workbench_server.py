@@ -25,6 +25,8 @@ from tests.support.can_frames import within
 from tests.support.progress import without_progress
 from tests.support.workbench import PATIENCE, Running, command, environment, running, until
 
+pytestmark = pytest.mark.clock
+
 ROBOT = ROOT / "examples" / "cartesian_robot"
 SECRET = b"Cartesian_Robot"
 

@@ -469,6 +469,8 @@ class RegionShape(Places):
         writes = {n.lower() for n in self.region.writes}
 
         def variable(name: str) -> DottedName:
+            if name == self.region.name:
+                return self.held
             return ref(data if name.lower() in writes else "Ins", ada_case(name))
 
         def raised(event: str, given: Expr | None) -> tuple[Stmt, ...]:
