@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from ravenchart.gen.language.terms import InState, leaves
 from ravenchart.gen.model.statechart import (
     After,
     Completion,
@@ -111,6 +112,15 @@ class ChartTree:
     def lane_of(self) -> dict[str, Lane]:
         """The lane that each state stands in."""
         return {name: self.region.lane(name) for name in self.states}
+
+    @cached_property
+    def asks_own(self) -> bool:
+        """Whether a guard or condition asks for a state of the region itself."""
+        triggers = [t.trigger for t in self.region.transitions]
+        asking = [t.guard for t in self.region.transitions if t.guard is not None]
+        asking += [one.condition for one in triggers if isinstance(one, When)]
+        found = (leaf for expression in asking for leaf in leaves(expression))
+        return any(isinstance(one, InState) and one.region == self.region.name for one in found)
 
     def determines(self, active: tuple[str, ...], state: str) -> bool:
         """Whether a configuration, or a part or union of parts, says if a state is active."""

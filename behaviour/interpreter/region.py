@@ -187,7 +187,8 @@ class RegionRun:
             return self._step
         occurrence = self._next()
         view.event = occurrence.value if isinstance(occurrence, Happened) else None
-        view.active = {**view.active, self.region.name: self.configuration()}
+        if self.tree.asks_own:
+            view.active = {**view.active, self.region.name: self.configuration()}
         selected = list(self._selected(TOP, occurrence))
         if any(isinstance(one, Deferral) for one in selected):
             assert isinstance(occurrence, Happened)

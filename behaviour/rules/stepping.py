@@ -20,7 +20,7 @@ from ravenchart.behaviour.tree import TOP, ChartTree, Occurrence, RegionKey
 from ravenchart.gen.language.terms import Expression, Flow, If, Raise, Reading, Set
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Transition, TransitionKind, When
 
-from .logic import Questions, Term, Variable, term, tested, variable
+from .logic import Questions, Term, Variable, term, variable
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,8 +140,7 @@ class OpenStep:
 
     def value(self, expression: Expression) -> Term:
         """The value of an expression now."""
-        asks_own = any(name[1] == self.tree.region.name for name in tested([expression]))
-        if asks_own or self.store or (self.firing and self.contested):
+        if self.tree.asks_own or self.store or (self.firing and self.contested):
             return term(expression, self.read)
         return self.questions.term(expression)
 

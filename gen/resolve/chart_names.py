@@ -108,15 +108,12 @@ class States(NameScope[str]):
     nested: dict[str, str] = field(default_factory=dict)
     """The region of that state in which each vertex stands, by its name in lower case."""
 
-    def beside(self, source: str) -> frozenset[str]:
-        """The states, in lower case, of which nothing is known where a vertex is active.
+    def is_beside(self, source: str, state: str) -> bool:
+        """Whether nothing is known of a state where a vertex is active.
 
-        They stand in another region of an orthogonal state around it, or further inside than one.
+        It stands in another region of an orthogonal state around it, or further inside than one.
         """
-        return frozenset(state for state in self.items if self._is_beside(state, source.lower()))
-
-    def _is_beside(self, state: str, source: str) -> bool:
-        ways = [self._way(state), self._way(source)]
+        ways = [self._way(state.lower()), self._way(source.lower())]
         while all(ways) and ways[0][0] == ways[1][0]:
             ways = [way[1:] for way in ways]
         mine, other = ways

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 from ravenchart.gen.files.schema import TransitionForm
 from ravenchart.gen.language.terms import Expression, Ns
@@ -230,7 +231,7 @@ def _asking(words: Vocabulary, source: NamedVertex | None, setting: Setting) -> 
     """The words of a condition that is read before anything fires: also states of its region."""
     if source is None or source.pseudo not in (None, PseudoKind.JUNCTION):
         return words
-    return replace(words, beside=setting.states.beside(source.name))
+    return replace(words, may_ask=partial(setting.states.is_beside, source.name))
 
 
 def _guard(

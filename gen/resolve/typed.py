@@ -183,13 +183,13 @@ class Checker:
         """Whether a state may be asked for here; those of the own region in guards alone."""
         words, state = self.vocabulary, term.member.lower()
         own = words.own_region is not None and words.own_region.lower() == term.word.lower()
-        if not own or (words.beside is not None and state in words.beside):
+        if not own or (words.may_ask is not None and words.may_ask(state)):
             return True
         message, hint = (
             "a region cannot ask for its own state",
             "write the transition `from` that state",
         )
-        if words.beside is not None:
+        if words.may_ask is not None:
             message = f"where the transition starts, it is known whether {term.member} is active"
         elif state in words.concurrent:
             message = "only a guard before choices can ask for a state of its own region"

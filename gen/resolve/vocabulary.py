@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Callable, Container
 from dataclasses import dataclass, field, replace
 
 from ravenchart.gen.language.intervals import Interval
@@ -38,8 +38,8 @@ class Vocabulary:
     own_region: str | None = None
     concurrent: frozenset[str] = frozenset()
     """States of the own region that lie in one of several regions of a state, in lower case."""
-    beside: frozenset[str] | None = None
-    """Those of them that may be asked for here; None where nothing is read before a step fires."""
+    may_ask: Callable[[str], bool] | None = None
+    """Which of them may be asked for here; None where nothing is read before a step fires."""
     no_event: str = "there is no triggering event here"
     """Why ``event`` has no value."""
     known: Known = field(default_factory=dict)
