@@ -213,8 +213,6 @@ def test_a_value_that_chance_would_not_find_is_computed() -> None:
     assert "Part.Main.open is taken" in [goal.text() for goal in search.found().open]
 
 
-
-
 STUCK = """
 events: {Go: {external: true}}
 data: {x: {type: Small, initial: 0}}
