@@ -16,12 +16,11 @@ a state around it: the code that leaves a composite state has a part for each of
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from itertools import combinations
 
-from ravenchart.behaviour.interpreter.expressions import View, holds
 from ravenchart.behaviour.tree import ChartTree
 from ravenchart.gen.language.terms import BOOLEAN, Expression, Operation
 from ravenchart.gen.model.component import Component
@@ -160,26 +159,29 @@ def _conditions(expression: Expression) -> int:
     return sum(map(_conditions, parts)) if parts else 1
 
 
-def evaluated(expression: Expression, view: View) -> GuardValues:
-    """A guard and its conditions, evaluated as the generated code does: no further than needed."""
+def evaluated(expression: Expression, holds: Callable[[Expression], bool]) -> GuardValues:
+    """A guard and its conditions, evaluated as the generated code does: no further than needed.
+
+    ``holds`` tells it of a condition.
+    """
     parts = _parts(expression)
     if not parts:
-        found = holds(expression, view)
+        found = holds(expression)
         return (found,), found
     assert isinstance(expression, Operation)
-    first, outcome = evaluated(parts[0], view)
+    first, outcome = evaluated(parts[0], holds)
     if expression.operator == "not":
         return first, not outcome
     if expression.operator == "if":
         branches = [
-            evaluated(part, view) if outcome is chosen else (_unknown(part), False)
+            evaluated(part, holds) if outcome is chosen else (_unknown(part), False)
             for part, chosen in zip(parts[1:], (True, False), strict=True)
         ]
         conditions = (*first, *branches[0][0], *branches[1][0])
         return conditions, branches[0 if outcome else 1][1]
     if outcome is (expression.operator == "or"):
         return (*first, *_unknown(parts[1])), outcome
-    second, outcome = evaluated(parts[1], view)
+    second, outcome = evaluated(parts[1], holds)
     return (*first, *second), outcome
 
 

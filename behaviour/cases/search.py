@@ -29,6 +29,7 @@ from ravenchart.gen.model.statechart import OnEvent
 from ravenchart.gen.model.system import Slot, System
 
 from .goals import Goal, GoalCoverage, GoalElement, GoalKind, goals
+from .possible import outlook
 from .stimulation import Choice, choices
 from .watched import watched_machine
 
@@ -88,11 +89,12 @@ class FoundCase:
 
 @dataclass(slots=True)
 class SearchResult:
-    """The cases, and the goals that none of them shows."""
+    """The cases, and the goals that none of them shows, or that none can show."""
 
     cases: list[FoundCase]
     goals: list[Goal]
     open: list[Goal]
+    unreachable: list[Goal]
     executed: int
     stuck: list[Stuck] = field(default_factory=list)
     """One for each pseudostate that was met without a way out; the model is wrong."""
@@ -111,8 +113,10 @@ class CaseSearch:
             for component in {i.component.name: i.component for i in system.instances}.values()
             for goal in goals(component)
         ]
-        self.open = list(self.goals)
-        self.choices = choices(system)
+        ahead = outlook(system, self.goals)
+        self.unreachable = ahead.unreachable
+        self.open = [goal for goal in self.goals if goal not in self.unreachable]
+        self.choices = choices(system, ahead.values)
         self.instants: list[Instant] = []
         start = watched_machine(system, self.coverage)
         self._coming = start.instants(Ns(2**62))
@@ -138,8 +142,8 @@ class CaseSearch:
             self._go_on(self._best())
         cases = list(self._chosen())
         met = {goal for case in cases for goal in case.shows}
-        left = [goal for goal in self.goals if goal not in met]
-        return SearchResult(cases, self.goals, left, self.executed, self.stuck)
+        left = [g for g in self.goals if g not in met and g not in self.unreachable]
+        return SearchResult(cases, self.goals, left, self.unreachable, self.executed, self.stuck)
 
     # --- one try
 

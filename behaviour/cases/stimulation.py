@@ -6,8 +6,8 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from ravenchart.behaviour.interpreter.stimuli import Arrived, Raised
 from ravenchart.behaviour.rules.cells import actions, expressions
@@ -29,6 +29,12 @@ from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.system import System
 
+PartialValue = Mapping[str | None, Scalar]
+"""Some fields of a value, or a scalar without a field."""
+
+WANTED = 0.3
+"""How often a value is one that something is known to need, where there is such a value."""
+
 
 @dataclass(frozen=True, slots=True)
 class Choice:
@@ -44,6 +50,8 @@ class Choice:
     """What a port raises when something arrives at it or stays away."""
     max_age: Ns | None = None
     """Of a port: a value that is older is stale."""
+    wanted: tuple[PartialValue, ...] = ()
+    """What decisions of the component need."""
 
     def drawn(self, at: Ns, chance: random.Random) -> Raised | Arrived:
         """It comes with a value drawn at random, more often one that matters."""
@@ -54,9 +62,15 @@ class Choice:
         return Raised(at, self.instance, self.name, value)
 
     def _value(self, kind: Type, chance: random.Random) -> Value:
+        known: PartialValue = {}
+        if self.wanted and chance.random() < WANTED:
+            known = chance.choice(self.wanted)
         if isinstance(kind, IntegerType | EnumerationType):
-            return self._scalar(kind, chance)
-        return tuple((one.name, self._scalar(one.type, chance)) for one in kind.fields)
+            return known[None] if None in known else self._scalar(kind, chance)
+        return tuple(
+            (one.name, known[one.name] if one.name in known else self._scalar(one.type, chance))
+            for one in kind.fields
+        )
 
     def _scalar(self, kind: ScalarType, chance: random.Random) -> Scalar:
         if isinstance(kind, EnumerationType):
@@ -67,10 +81,27 @@ class Choice:
         return chance.choice((kind.first, kind.last, chance.randint(kind.first, kind.last)))
 
 
-def choices(system: System) -> list[Choice]:
-    """Everything that may come from outside, in model order."""
+def choices(
+    system: System, wanted: Mapping[tuple[str, str], Sequence[PartialValue]]
+) -> list[Choice]:
+    """Everything that may come from outside, in model order.
+
+    ``wanted`` has values of events that decisions need, by component and event.
+    """
     fed = {connection.target for connection in system.connections}
-    return [one for instance in system.instances for one in _of_instance(instance, system, fed)]
+    return [
+        replace(one, wanted=tuple(_wanted(one, instance.component.name, wanted)))
+        for instance in system.instances
+        for one in _of_instance(instance, system, fed)
+    ]
+
+
+def _wanted(
+    choice: Choice, component: str, wanted: Mapping[tuple[str, str], Sequence[PartialValue]]
+) -> Iterator[PartialValue]:
+    """What is needed of an event, or of those that an arrival raises."""
+    for name in (choice.name, *choice.events):
+        yield from wanted.get((component, name), ())
 
 
 def _of_instance(instance: Instance, system: System, fed: set[End]) -> Iterator[Choice]:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from ravenchart.behaviour.interpreter.expressions import holds
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.region import (
     ExecutedTransition,
@@ -13,10 +14,11 @@ from ravenchart.behaviour.interpreter.region import (
     Occurrence,
     RegionRun,
 )
+from ravenchart.gen.language.terms import Expression
 from ravenchart.gen.model.statechart import Transition, When
 from ravenchart.gen.model.system import System
 
-from .goals import Decision, GoalCoverage, GuardValues, evaluated
+from .goals import Decision, GoalCoverage, evaluated
 
 
 class WatchedRegion(RegionRun):
@@ -28,20 +30,18 @@ class WatchedRegion(RegionRun):
     def _lets_through(self, transition: Transition) -> bool:
         if transition.guard is None:
             return True
-        found = evaluated(transition.guard, self._view)
-        self._decided(transition, Decision.GUARD, found)
-        return found[1]
+        return self._decided(transition, Decision.GUARD, transition.guard)
 
     def _triggers(self, transition: Transition, occurrence: Occurrence) -> bool:
         if not (isinstance(occurrence, Nothing) and isinstance(transition.trigger, When)):
             return super()._triggers(transition, occurrence)
-        found = evaluated(transition.trigger.condition, self._view)
-        self._decided(transition, Decision.TRIGGER, found)
-        return found[1]
+        return self._decided(transition, Decision.TRIGGER, transition.trigger.condition)
 
-    def _decided(self, transition: Transition, decision: Decision, found: GuardValues) -> None:
+    def _decided(self, transition: Transition, decision: Decision, condition: Expression) -> bool:
+        found = evaluated(condition, lambda one: holds(one, self._view))
         element = self.component, self.region.name, transition.name
         self.coverage.decide(element, decision, found)
+        return found[1]
 
     def _effect(self, transition: Transition) -> None:
         self.coverage.take((self.component, self.region.name, transition.name))

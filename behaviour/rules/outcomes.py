@@ -5,8 +5,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import z3
 
@@ -42,6 +43,8 @@ class Outcome:
     """The regions whose remembered leaf was any that is known of (`Past`)."""
     remembered: tuple[tuple[RegionKey, str], ...] = ()
     """What it remembers, where the configuration does not say."""
+    noted: tuple[Any, ...] = ()
+    """What a watched step has noted."""
 
 
 MOST_WAYS = 512
@@ -59,11 +62,13 @@ def outcomes(
     questions: Questions,
     past: Past | None = None,
     contested: Mapping[Variable, Term] | None = None,
+    make: Callable[..., OpenStep] = OpenStep,
 ) -> tuple[Outcome, ...]:
     """Every outcome of a step that some data allow, in order of the first answer `yes`.
 
     With a ``past``, a history may remember each of the leaves that this says. With ``contested``,
     ``before`` is a part of a configuration (`parts`): what these unknowns decide may be either.
+    ``make`` begins a step.
     """
     found: list[Outcome] = []
     waiting: list[tuple[list[bool], list[str | None]]] = [([], [])]
@@ -116,7 +121,7 @@ def outcomes(
                 asked.append(condition if answer else z3.Not(condition))
             return answer
 
-        step = OpenStep(tree, before, occurrence, questions, decide, recall, contested)
+        step = make(tree, before, occurrence, questions, decide, recall, contested)
         stuck = step.run()
         if stuck is not None and guessed:
             continue
@@ -138,6 +143,7 @@ def outcomes(
                 tuple(step.beaten),
                 frozenset(slots),
                 () if past is None else after.history,
+                tuple(step.noted),
             )
         )
         if len(found) > MOST_WAYS:

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Any
 
 import z3
 
@@ -110,6 +111,8 @@ class OpenStep:
     stopped: bool = False
     deferred: bool = False
     firing: bool = False
+    noted: list[Any] = field(default_factory=list)
+    """What a step that is watched has to tell."""
 
     def __post_init__(self) -> None:
         self.active = set(self.before.active)

@@ -371,6 +371,8 @@ class TestGoals(Described):
     """How many of them the cases show."""
     goals: int
     """How many there are."""
+    unreachable: int
+    """How many of them no execution can show."""
 
 
 @dataclass(slots=True)
@@ -402,7 +404,9 @@ class TestsResult(Result):
     goals: list[TestGoals]
     """What they show of the charts."""
     open: list[str]
-    """The goals that no case shows."""
+    """The goals that no case shows, and some execution may."""
+    unreachable: list[str]
+    """The goals that no execution can show."""
     different: list[str]
     """The files under which program and interpreter executed different behaviours."""
     coverage: list[BodyCoverage]

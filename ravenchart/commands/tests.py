@@ -83,7 +83,10 @@ def execute(options: argparse.Namespace) -> int:
         print(f"{file}: {len(case.stimuli.entries)} stimuli, {goals}")
     rows = _rows(found)
     for row in rows:
-        print(f"{row.kind:<38} {row.shown:>4} of {row.goals}")
+        rest = f", {row.unreachable} unreachable" if row.unreachable else ""
+        print(f"{row.kind:<38} {row.shown:>4} of {row.goals}{rest}")
+    for goal in found.unreachable:
+        print(f"{goal.origin}: unreachable: {goal.text()}")
     for goal in found.open:
         print(f"{goal.origin}: not shown: {goal.text()}")
     different = [] if options.no_run else _different(checked, found.cases, files)
@@ -95,6 +98,7 @@ def execute(options: argparse.Namespace) -> int:
         ],
         rows,
         [goal.text() for goal in found.open],
+        [goal.text() for goal in found.unreachable],
         [str(file) for file in different],
         [
             BodyCoverage(
@@ -127,8 +131,9 @@ def _rows(found: SearchResult) -> list[TestGoals]:
     """How many goals of each kind there are, and how many are shown."""
     every = Counter(goal.kind for goal in found.goals)
     left = Counter(goal.kind for goal in found.open)
+    never = Counter(goal.kind for goal in found.unreachable)
     return [
-        TestGoals(kind.value, every[kind] - left[kind], every[kind])
+        TestGoals(kind.value, every[kind] - left[kind] - never[kind], every[kind], never[kind])
         for kind in GoalKind
         if every[kind]
     ]

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from dataclasses import replace
 
 import pytest
 
@@ -15,18 +14,10 @@ from ravenchart.behaviour.rules import threads as thread_rules
 from ravenchart.behaviour.rules.budget import Budget
 from ravenchart.behaviour.rules.reach import Reachable
 from ravenchart.behaviour.rules.threads import Thread
-from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import Shutdown, System
-from tests.support.interpreted import stimuli_of, system_of
+from tests.support.interpreted import raised_outside, stimuli_of, system_of
 from tests.support.random_charts import events_of, instance_name, model_of
 
 CHARTS = (0, 2, 4, 7, 8, 11, 13, 15, 16, 21, 22, 23, 28)
-
-
-def _raised_outside(system: System) -> System:
-    """The system, told that any of its events may come from outside."""
-    pairs = ((one.name, event.name) for one in system.instances for event in one.component.events)
-    return replace(system, shutdown=Shutdown(tuple(pairs), Ns(0)))
 
 
 LIMITS = {
@@ -53,7 +44,7 @@ def test_every_configuration_and_transition_of_a_run_is_found(
 ) -> None:
     monkeypatch.setattr(thread_rules, "MOST_NODES", limits[0])
     monkeypatch.setattr(thread_rules, "MOST_CONFIGURATIONS", limits[1])
-    system = _raised_outside(system_of(model_of([seed])))
+    system = raised_outside(system_of(model_of([seed])))
     reach = Reachable(system.components[0], system, Budget(300_000_000))
     threads = {t.name: t for t in reach.threads}
     found = {name: {n.configuration.active for n in t.nodes} for name, t in threads.items()}

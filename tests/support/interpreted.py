@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import yaml
@@ -15,7 +16,8 @@ from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.region import RegionRun
 from ravenchart.behaviour.interpreter.stimuli import Stimuli, read_stimuli
 from ravenchart.behaviour.interpreter.traces import StepRecord
-from ravenchart.gen.model.system import System
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import Shutdown, System
 from tests.support.pump import loaded
 
 Json = dict[str, Any]
@@ -42,6 +44,12 @@ def system_of(text: str) -> System:
     result = loaded(text)
     assert result.system is not None, [f"{d.origin}: {d.message}" for d in result.diagnostics]
     return result.system
+
+
+def raised_outside(system: System) -> System:
+    """The system, told that any of its events may come from outside."""
+    pairs = ((one.name, event.name) for one in system.instances for event in one.component.events)
+    return replace(system, shutdown=Shutdown(tuple(pairs), Ns(0)))
 
 
 def stimuli_of(text: str, system: System) -> Stimuli:

@@ -48,7 +48,11 @@ def example(request: pytest.FixtureRequest) -> Example:
     return _example(request.param)
 
 
-def test_nothing_is_found_in_the_model(example: Example) -> None:
+@pytest.mark.parametrize(
+    "name", [pytest.param("pump", marks=pytest.mark.slow), "crossing", "qhsmtst"]
+)
+def test_nothing_is_found_in_the_model(name: str) -> None:
+    example = _example(name)
     assert example.loaded.system is not None
     found = findings(example.loaded.system, TO_THE_END)
     assert [str(one) for one in (*example.loaded.diagnostics, *found)] == []

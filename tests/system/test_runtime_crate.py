@@ -86,7 +86,10 @@ def _checkout(folder: Path, consumer: str) -> Path:
     return Path(shutil.copytree(ROOT / consumer, folder / consumer))
 
 
-@pytest.mark.parametrize("profile", PROFILES)
+@pytest.mark.parametrize(
+    "profile",
+    [p if p == "release" else pytest.param(p, marks=pytest.mark.slow) for p in PROFILES],
+)
 @pytest.mark.parametrize(("consumer", "crate"), CONSUMERS.items())
 def test_a_consumer_is_built_in_the_profile_and_runs(
     alr: Alire, tmp_path: Path, consumer: str, crate: str, profile: str

@@ -42,14 +42,21 @@ def test_value():
 @pytest.mark.parametrize(
     ("failing", "status", "named"),
     [
-        ("", 0, None),
-        ("value", 1, None),
-        ("value clock1", 1, None),
-        ("clock1", STATUS, ["test_clock[1]"]),
-        ("clock1 live", STATUS, ["test_clock[1]", "test_live"]),
-        (" ".join(f"clock{n}" for n in range(MOST + 1)), 1, None),
+        pytest.param("", 0, None, id="none", marks=pytest.mark.slow),
+        pytest.param("value", 1, None, id="value", marks=pytest.mark.slow),
+        pytest.param("value clock1", 1, None, id="both"),
+        pytest.param("clock1", STATUS, ["test_clock[1]"], id="clock"),
+        pytest.param(
+            "clock1 live", STATUS, ["test_clock[1]", "test_live"], id="live", marks=pytest.mark.slow
+        ),
+        pytest.param(
+            " ".join(f"clock{n}" for n in range(MOST + 1)),
+            1,
+            None,
+            id="many",
+            marks=pytest.mark.slow,
+        ),
     ],
-    ids=["none", "value", "both", "clock", "live", "many"],
 )
 def test_only_what_depends_on_the_clock_runs_again(
     tmp_path: Path, workers: list[str], failing: str, status: int, named: list[str] | None

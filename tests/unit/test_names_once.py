@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import ast
 from collections import defaultdict
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 from ravenchart.paths import ROOT
@@ -28,13 +28,16 @@ PROTOCOL = {"main": "a module that is run has it; of the command line, it is cal
 """Names of functions that several modules must have."""
 
 
-def modules() -> Iterator[tuple[str, ast.Module]]:
+@cache
+def modules() -> tuple[tuple[str, ast.Module], ...]:
     """Each file of the package with its tree, but for those of the independent checker."""
+    found = []
     for folder in FOLDERS:
         for path in sorted((ROOT / folder).rglob("*.py")):
             file = path.relative_to(ROOT).as_posix()
             if not file.startswith(INDEPENDENT) and path.resolve() == path:
-                yield file, ast.parse(path.read_text(encoding="utf-8"))
+                found.append((file, ast.parse(path.read_text(encoding="utf-8"))))
+    return tuple(found)
 
 
 def defined(kind: type[ast.stmt]) -> dict[str, list[str]]:

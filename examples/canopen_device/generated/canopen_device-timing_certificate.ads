@@ -18,14 +18,12 @@ is
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
-   --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period.
-   --  X_Up (W) is what X and all that goes before it ask for within W,
-   --  X_Rest (W) what X and those listed behind it at its level do. Needs
-   --  is the demand that arises within W, and equals it: where it is more,
-   --  W is too short; where it is less, a term is missing.
-   --  The claimed responses: each is some other's lateness, or its own
-   --  bound.
+   --  context switches) or transmission, B blocking, R claimed response
+   --  from the event, W claimed time from the start of a busy period. X_Up
+   --  (W): what X and all before it ask for within W; X_Rest (W): what X
+   --  and those behind it at its level do. Needs: the demand within W; if
+   --  it is more than W, W is too short, if it is less, a term is missing.
+   --  The claimed responses: each another's lateness, or its own bound.
    Reception_R : constant := 545_000;
    Protocol_R : constant := 1_435_000;
    Control_R : constant := 1_555_000;
@@ -276,7 +274,7 @@ is
    Line_Bit : constant :=
      (1_000_000_000 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
 
-   --  [line.nmt] 11-bit identifier Id, Length bytes from somebody outside
+   --  [line.nmt] 11-bit Id, Length bytes from outside
    Line_Nmt_Id : constant := 16#0#;
    Line_Nmt_Length : constant := 2;
    Line_Nmt_T : constant := 10_000_000;
@@ -284,7 +282,7 @@ is
    Line_Nmt_C : constant := Line_Time_Of (34 + 8 * Line_Nmt_Length);
    Line_Nmt_J : constant := 0;
 
-   --  [line.sync] 11-bit identifier Id, Length bytes from somebody outside
+   --  [line.sync] 11-bit Id, Length bytes from outside
    Line_Sync_Id : constant := 16#80#;
    Line_Sync_Length : constant := 1;
    Line_Sync_T : constant := 10_000_000;
@@ -292,7 +290,7 @@ is
    Line_Sync_C : constant := Line_Time_Of (34 + 8 * Line_Sync_Length);
    Line_Sync_J : constant := 0;
 
-   --  [line.tpdo_1] 11-bit identifier Id, Length bytes from device.tpdo_1
+   --  [line.tpdo_1] 11-bit Id, Length bytes from device.tpdo_1
    Line_Tpdo_1_Id : constant := 16#185#;
    Line_Tpdo_1_Length : constant := 3;
    Line_Tpdo_1_T : constant := 5_000_000;
@@ -300,8 +298,7 @@ is
    Line_Tpdo_1_C : constant := Line_Time_Of (34 + 8 * Line_Tpdo_1_Length);
    Line_Tpdo_1_J : constant := Line_Driver_Tx_Tpdo_1_R;
 
-   --  [line.rpdo_1] 11-bit identifier Id, Length bytes from somebody
-   --  outside
+   --  [line.rpdo_1] 11-bit Id, Length bytes from outside
    Line_Rpdo_1_Id : constant := 16#205#;
    Line_Rpdo_1_Length : constant := 2;
    Line_Rpdo_1_T : constant := 10_000_000;
@@ -309,8 +306,7 @@ is
    Line_Rpdo_1_C : constant := Line_Time_Of (34 + 8 * Line_Rpdo_1_Length);
    Line_Rpdo_1_J : constant := 0;
 
-   --  [line.sdo_response] 11-bit identifier Id, Length bytes from
-   --  device.sdo_response
+   --  [line.sdo_response] 11-bit Id, Length bytes from device.sdo_response
    Line_Sdo_Response_Id : constant := 16#585#;
    Line_Sdo_Response_Length : constant := 8;
    Line_Sdo_Response_T : constant := 5_000_000;
@@ -319,8 +315,7 @@ is
      Line_Time_Of (34 + 8 * Line_Sdo_Response_Length);
    Line_Sdo_Response_J : constant := Line_Driver_Tx_Sdo_Response_R;
 
-   --  [line.sdo_request] 11-bit identifier Id, Length bytes from somebody
-   --  outside
+   --  [line.sdo_request] 11-bit Id, Length bytes from outside
    Line_Sdo_Request_Id : constant := 16#605#;
    Line_Sdo_Request_Length : constant := 8;
    Line_Sdo_Request_T : constant := 5_000_000;
@@ -329,8 +324,7 @@ is
      Line_Time_Of (34 + 8 * Line_Sdo_Request_Length);
    Line_Sdo_Request_J : constant := 0;
 
-   --  [line.heartbeat] 11-bit identifier Id, Length bytes from
-   --  device.heartbeat
+   --  [line.heartbeat] 11-bit Id, Length bytes from device.heartbeat
    Line_Heartbeat_Id : constant := 16#705#;
    Line_Heartbeat_Length : constant := 1;
    Line_Heartbeat_T : constant := 5_000_000;

@@ -18,14 +18,12 @@ is
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
-   --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period.
-   --  X_Up (W) is what X and all that goes before it ask for within W,
-   --  X_Rest (W) what X and those listed behind it at its level do. Needs
-   --  is the demand that arises within W, and equals it: where it is more,
-   --  W is too short; where it is less, a term is missing.
-   --  The claimed responses: each is some other's lateness, or its own
-   --  bound.
+   --  context switches) or transmission, B blocking, R claimed response
+   --  from the event, W claimed time from the start of a busy period. X_Up
+   --  (W): what X and all before it ask for within W; X_Rest (W): what X
+   --  and those behind it at its level do. Needs: the demand within W; if
+   --  it is more than W, W is too short, if it is less, a term is missing.
+   --  The claimed responses: each another's lateness, or its own bound.
    Reception_R : constant := 555_000;
    Trajectory_R : constant := 865_000;
    Control_R : constant := 2_105_000;
@@ -383,8 +381,7 @@ is
    Robot_Bus_Bit : constant :=
      (1_000_000_000 + (Robot_Bus_Bit_Rate - 1)) / Robot_Bus_Bit_Rate;
 
-   --  [robot_bus.robot_command] 11-bit identifier Id, Length bytes from
-   --  somebody outside
+   --  [robot_bus.robot_command] 11-bit Id, Length bytes from outside
    Robot_Bus_Robot_Command_Id : constant := 16#80#;
    Robot_Bus_Robot_Command_Length : constant := 8;
    Robot_Bus_Robot_Command_T : constant := 100_000_000;
@@ -393,8 +390,7 @@ is
      Robot_Bus_Time_Of (34 + 8 * Robot_Bus_Robot_Command_Length);
    Robot_Bus_Robot_Command_J : constant := 0;
 
-   --  [robot_bus.x_set_point] 11-bit identifier Id, Length bytes from
-   --  joint_x.drive
+   --  [robot_bus.x_set_point] 11-bit Id, Length bytes from joint_x.drive
    Robot_Bus_X_Set_Point_Id : constant := 16#110#;
    Robot_Bus_X_Set_Point_Length : constant := 3;
    Robot_Bus_X_Set_Point_T : constant := 10_000_000;
@@ -403,8 +399,7 @@ is
      Robot_Bus_Time_Of (34 + 8 * Robot_Bus_X_Set_Point_Length);
    Robot_Bus_X_Set_Point_J : constant := Robot_Bus_Driver_Tx_X_Set_Point_R;
 
-   --  [robot_bus.y_set_point] 11-bit identifier Id, Length bytes from
-   --  joint_y.drive
+   --  [robot_bus.y_set_point] 11-bit Id, Length bytes from joint_y.drive
    Robot_Bus_Y_Set_Point_Id : constant := 16#111#;
    Robot_Bus_Y_Set_Point_Length : constant := 3;
    Robot_Bus_Y_Set_Point_T : constant := 10_000_000;
@@ -413,8 +408,7 @@ is
      Robot_Bus_Time_Of (34 + 8 * Robot_Bus_Y_Set_Point_Length);
    Robot_Bus_Y_Set_Point_J : constant := Robot_Bus_Driver_Tx_Y_Set_Point_R;
 
-   --  [robot_bus.z_set_point] 11-bit identifier Id, Length bytes from
-   --  joint_z.drive
+   --  [robot_bus.z_set_point] 11-bit Id, Length bytes from joint_z.drive
    Robot_Bus_Z_Set_Point_Id : constant := 16#112#;
    Robot_Bus_Z_Set_Point_Length : constant := 3;
    Robot_Bus_Z_Set_Point_T : constant := 10_000_000;
@@ -423,8 +417,7 @@ is
      Robot_Bus_Time_Of (34 + 8 * Robot_Bus_Z_Set_Point_Length);
    Robot_Bus_Z_Set_Point_J : constant := Robot_Bus_Driver_Tx_Z_Set_Point_R;
 
-   --  [robot_bus.x_feedback] 11-bit identifier Id, Length bytes from
-   --  somebody outside
+   --  [robot_bus.x_feedback] 11-bit Id, Length bytes from outside
    Robot_Bus_X_Feedback_Id : constant := 16#120#;
    Robot_Bus_X_Feedback_Length : constant := 6;
    Robot_Bus_X_Feedback_T : constant := 5_000_000;
@@ -433,8 +426,7 @@ is
      Robot_Bus_Time_Of (34 + 8 * Robot_Bus_X_Feedback_Length);
    Robot_Bus_X_Feedback_J : constant := 0;
 
-   --  [robot_bus.y_feedback] 11-bit identifier Id, Length bytes from
-   --  somebody outside
+   --  [robot_bus.y_feedback] 11-bit Id, Length bytes from outside
    Robot_Bus_Y_Feedback_Id : constant := 16#121#;
    Robot_Bus_Y_Feedback_Length : constant := 6;
    Robot_Bus_Y_Feedback_T : constant := 5_000_000;
@@ -443,8 +435,7 @@ is
      Robot_Bus_Time_Of (34 + 8 * Robot_Bus_Y_Feedback_Length);
    Robot_Bus_Y_Feedback_J : constant := 0;
 
-   --  [robot_bus.z_feedback] 11-bit identifier Id, Length bytes from
-   --  somebody outside
+   --  [robot_bus.z_feedback] 11-bit Id, Length bytes from outside
    Robot_Bus_Z_Feedback_Id : constant := 16#122#;
    Robot_Bus_Z_Feedback_Length : constant := 6;
    Robot_Bus_Z_Feedback_T : constant := 5_000_000;
@@ -453,7 +444,7 @@ is
      Robot_Bus_Time_Of (34 + 8 * Robot_Bus_Z_Feedback_Length);
    Robot_Bus_Z_Feedback_J : constant := 0;
 
-   --  [robot_bus.robot_status] 11-bit identifier Id, Length bytes from
+   --  [robot_bus.robot_status] 11-bit Id, Length bytes from
    --  coordinator.status
    Robot_Bus_Robot_Status_Id : constant := 16#180#;
    Robot_Bus_Robot_Status_Length : constant := 6;
@@ -557,20 +548,8 @@ is
    pragma Compile_Time_Error (Joint_Z_Ports_W /= Joint_Z_Ports_Needs,
       "joint_z.ports claims a wrong response time");
 
-   --  [joint_z.position_control] done, from the event of its processor
-   Joint_Z_Position_Control_Done : constant := 2_105_000;
-   Joint_Z_Position_Control_W : constant :=
-     Joint_Z_Position_Control_Done - Control_J;
-   Joint_Z_Position_Control_Needs : constant :=
-     2 * Controller_Context_Switch + Joint_X_Ports_Budget
-     + Joint_X_Monitoring_Budget + Joint_X_Position_Control_Budget
-     + Joint_Y_Ports_Budget + Joint_Y_Monitoring_Budget
-     + Joint_Y_Position_Control_Budget + Joint_Z_Ports_Budget
-     + Joint_Z_Monitoring_Budget + Joint_Z_Position_Control_Budget
-     + Control_B + Trajectory_Up (Joint_Z_Position_Control_W);
-   pragma Compile_Time_Error
-     (Joint_Z_Position_Control_W /= Joint_Z_Position_Control_Needs,
-      "joint_z.position_control claims a wrong response time");
+   --  [joint_z.position_control] the last row: done when control completes
+   Joint_Z_Position_Control_Done : constant := Control_R;
 
    --  [supervision] what delays it
    Supervision_W : constant := Supervision_R - Supervision_J;
@@ -608,20 +587,8 @@ is
      (Joint_X_Supervise_W /= Joint_X_Supervise_Needs,
       "joint_x.supervise claims a wrong response time");
 
-   --  [coordinator.summarise] done, from the event of its processor
-   Coordinator_Summarise_Done : constant := 3_405_000;
-   Coordinator_Summarise_W : constant :=
-     Coordinator_Summarise_Done - Supervision_J;
-   Coordinator_Summarise_Needs : constant :=
-     2 * Controller_Context_Switch + Coordinator_Ports_Budget
-     + Coordinator_Mission_Budget + Joint_X_Motion_Budget
-     + Joint_Y_Motion_Budget + Joint_Z_Motion_Budget
-     + Joint_X_Supervise_Budget + Joint_Y_Supervise_Budget
-     + Joint_Z_Supervise_Budget + Coordinator_Summarise_Budget
-     + Supervision_B + Control_Up (Coordinator_Summarise_W);
-   pragma Compile_Time_Error
-     (Coordinator_Summarise_W /= Coordinator_Summarise_Needs,
-      "coordinator.summarise claims a wrong response time");
+   --  [coordinator.summarise] the last row: done when supervision completes
+   Coordinator_Summarise_Done : constant := Supervision_R;
 
    --  [robot_bus.driver_rx.robot_command] what delays it
    Robot_Bus_Driver_Rx_Robot_Command_W : constant :=
@@ -1202,8 +1169,7 @@ is
      (Reception_Busy < 1 or else Reception_Busy /= Reception_Busy_Needs,
       "reception claims a wrong busy period");
 
-   --  [robot_bus.x_feedback] its turn in reception, and when it is handed
-   --  over
+   --  [robot_bus.x_feedback] its turn in reception, and when handed over
    Robot_Bus_X_Feedback_Turn_J : constant :=
      Robot_Bus_Driver_Rx_X_Feedback_R;
    pragma Compile_Time_Error
@@ -1236,8 +1202,7 @@ is
    Robot_Bus_X_Feedback_Handed : constant :=
      Robot_Bus_X_Feedback_Turn + 2 * Reception_R;
 
-   --  [robot_bus.y_feedback] its turn in reception, and when it is handed
-   --  over
+   --  [robot_bus.y_feedback] its turn in reception, and when handed over
    Robot_Bus_Y_Feedback_Turn_J : constant :=
      Robot_Bus_Driver_Rx_Y_Feedback_R;
    pragma Compile_Time_Error
@@ -1270,8 +1235,7 @@ is
    Robot_Bus_Y_Feedback_Handed : constant :=
      Robot_Bus_Y_Feedback_Turn + 2 * Reception_R;
 
-   --  [robot_bus.z_feedback] its turn in reception, and when it is handed
-   --  over
+   --  [robot_bus.z_feedback] its turn in reception, and when handed over
    Robot_Bus_Z_Feedback_Turn_J : constant :=
      Robot_Bus_Driver_Rx_Z_Feedback_R;
    pragma Compile_Time_Error

@@ -18,14 +18,12 @@ is
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
-   --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period.
-   --  X_Up (W) is what X and all that goes before it ask for within W,
-   --  X_Rest (W) what X and those listed behind it at its level do. Needs
-   --  is the demand that arises within W, and equals it: where it is more,
-   --  W is too short; where it is less, a term is missing.
-   --  The claimed responses: each is some other's lateness, or its own
-   --  bound.
+   --  context switches) or transmission, B blocking, R claimed response
+   --  from the event, W claimed time from the start of a busy period. X_Up
+   --  (W): what X and all before it ask for within W; X_Rest (W): what X
+   --  and those behind it at its level do. Needs: the demand within W; if
+   --  it is more than W, W is too short, if it is less, a term is missing.
+   --  The claimed responses: each another's lateness, or its own bound.
    Reception_R : constant := 265_000;
    Control_R : constant := 685_000;
    Street_Driver_Rx_Order_R : constant := 1_245_000;
@@ -195,8 +193,7 @@ is
    Street_Bit : constant :=
      (1_000_000_000 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
 
-   --  [street.order] 11-bit identifier Id, Length bytes from somebody
-   --  outside
+   --  [street.order] 11-bit Id, Length bytes from outside
    Street_Order_Id : constant := 16#100#;
    Street_Order_Length : constant := 1;
    Street_Order_T : constant := 1_000_000_000;
@@ -205,8 +202,7 @@ is
      Street_Time_Of (34 + 8 * Street_Order_Length);
    Street_Order_J : constant := 0;
 
-   --  [street.button] 11-bit identifier Id, Length bytes from somebody
-   --  outside
+   --  [street.button] 11-bit Id, Length bytes from outside
    Street_Button_Id : constant := 16#110#;
    Street_Button_Length : constant := 1;
    Street_Button_T : constant := 50_000_000;
@@ -215,8 +211,7 @@ is
      Street_Time_Of (34 + 8 * Street_Button_Length);
    Street_Button_J : constant := 0;
 
-   --  [street.car_lamp] 11-bit identifier Id, Length bytes from
-   --  school.car_lamp
+   --  [street.car_lamp] 11-bit Id, Length bytes from school.car_lamp
    Street_Car_Lamp_Id : constant := 16#120#;
    Street_Car_Lamp_Length : constant := 1;
    Street_Car_Lamp_T : constant := 100_000_000;
@@ -225,8 +220,7 @@ is
      Street_Time_Of (34 + 8 * Street_Car_Lamp_Length);
    Street_Car_Lamp_J : constant := Street_Driver_Tx_Car_Lamp_R;
 
-   --  [street.walk_lamp] 11-bit identifier Id, Length bytes from
-   --  school.walk_lamp
+   --  [street.walk_lamp] 11-bit Id, Length bytes from school.walk_lamp
    Street_Walk_Lamp_Id : constant := 16#121#;
    Street_Walk_Lamp_Length : constant := 1;
    Street_Walk_Lamp_T : constant := 100_000_000;
@@ -235,7 +229,7 @@ is
      Street_Time_Of (34 + 8 * Street_Walk_Lamp_Length);
    Street_Walk_Lamp_J : constant := Street_Driver_Tx_Walk_Lamp_R;
 
-   --  [street.sign] 11-bit identifier Id, Length bytes from school.sign
+   --  [street.sign] 11-bit Id, Length bytes from school.sign
    Street_Sign_Id : constant := 16#122#;
    Street_Sign_Length : constant := 1;
    Street_Sign_T : constant := 100_000_000;

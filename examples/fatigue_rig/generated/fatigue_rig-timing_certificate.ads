@@ -18,14 +18,12 @@ is
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
-   --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period.
-   --  X_Up (W) is what X and all that goes before it ask for within W,
-   --  X_Rest (W) what X and those listed behind it at its level do. Needs
-   --  is the demand that arises within W, and equals it: where it is more,
-   --  W is too short; where it is less, a term is missing.
-   --  The claimed responses: each is some other's lateness, or its own
-   --  bound.
+   --  context switches) or transmission, B blocking, R claimed response
+   --  from the event, W claimed time from the start of a busy period. X_Up
+   --  (W): what X and all before it ask for within W; X_Rest (W): what X
+   --  and those behind it at its level do. Needs: the demand within W; if
+   --  it is more than W, W is too short, if it is less, a term is missing.
+   --  The claimed responses: each another's lateness, or its own bound.
    Reception_R : constant := 385_000;
    Stations_R : constant := 1_665_000;
    Panel_R : constant := 1_785_000;
@@ -449,8 +447,7 @@ is
    Field_Bit : constant :=
      (1_000_000_000 + (Field_Bit_Rate - 1)) / Field_Bit_Rate;
 
-   --  [field.wanted] 11-bit identifier Id, Length bytes from somebody
-   --  outside
+   --  [field.wanted] 11-bit Id, Length bytes from outside
    Field_Wanted_Id : constant := 16#10#;
    Field_Wanted_Length : constant := 1;
    Field_Wanted_T : constant := 50_000_000;
@@ -459,7 +456,7 @@ is
      Field_Time_Of (34 + 8 * Field_Wanted_Length);
    Field_Wanted_J : constant := 0;
 
-   --  [field.state] 11-bit identifier Id, Length bytes from desk_1.state
+   --  [field.state] 11-bit Id, Length bytes from desk_1.state
    Field_State_Id : constant := 16#20#;
    Field_State_Length : constant := 1;
    Field_State_T : constant := 50_000_000;
@@ -467,8 +464,7 @@ is
    Field_State_C : constant := Field_Time_Of (34 + 8 * Field_State_Length);
    Field_State_J : constant := Field_Driver_Tx_State_R;
 
-   --  [field.cell_1] 11-bit identifier Id, Length bytes from somebody
-   --  outside
+   --  [field.cell_1] 11-bit Id, Length bytes from outside
    Field_Cell_1_Id : constant := 16#101#;
    Field_Cell_1_Length : constant := 2;
    Field_Cell_1_T : constant := 5_000_000;
@@ -477,8 +473,7 @@ is
      Field_Time_Of (34 + 8 * Field_Cell_1_Length);
    Field_Cell_1_J : constant := 0;
 
-   --  [field.cell_2] 11-bit identifier Id, Length bytes from somebody
-   --  outside
+   --  [field.cell_2] 11-bit Id, Length bytes from outside
    Field_Cell_2_Id : constant := 16#102#;
    Field_Cell_2_Length : constant := 2;
    Field_Cell_2_T : constant := 5_000_000;
@@ -487,8 +482,7 @@ is
      Field_Time_Of (34 + 8 * Field_Cell_2_Length);
    Field_Cell_2_J : constant := 0;
 
-   --  [field.cell_3] 11-bit identifier Id, Length bytes from somebody
-   --  outside
+   --  [field.cell_3] 11-bit Id, Length bytes from outside
    Field_Cell_3_Id : constant := 16#103#;
    Field_Cell_3_Length : constant := 2;
    Field_Cell_3_T : constant := 5_000_000;
@@ -497,8 +491,7 @@ is
      Field_Time_Of (34 + 8 * Field_Cell_3_Length);
    Field_Cell_3_J : constant := 0;
 
-   --  [field.valve_1] 11-bit identifier Id, Length bytes from
-   --  station_1.actuator.valve
+   --  [field.valve_1] 11-bit Id, Length bytes from station_1.actuator.valve
    Field_Valve_1_Id : constant := 16#201#;
    Field_Valve_1_Length : constant := 2;
    Field_Valve_1_T : constant := 5_000_000;
@@ -507,8 +500,7 @@ is
      Field_Time_Of (34 + 8 * Field_Valve_1_Length);
    Field_Valve_1_J : constant := Field_Driver_Tx_Valve_1_R;
 
-   --  [field.valve_2] 11-bit identifier Id, Length bytes from
-   --  station_2.actuator.valve
+   --  [field.valve_2] 11-bit Id, Length bytes from station_2.actuator.valve
    Field_Valve_2_Id : constant := 16#202#;
    Field_Valve_2_Length : constant := 2;
    Field_Valve_2_T : constant := 5_000_000;
@@ -517,8 +509,7 @@ is
      Field_Time_Of (34 + 8 * Field_Valve_2_Length);
    Field_Valve_2_J : constant := Field_Driver_Tx_Valve_2_R;
 
-   --  [field.valve_3] 11-bit identifier Id, Length bytes from
-   --  station_3.actuator.valve
+   --  [field.valve_3] 11-bit Id, Length bytes from station_3.actuator.valve
    Field_Valve_3_Id : constant := 16#203#;
    Field_Valve_3_Length : constant := 2;
    Field_Valve_3_T : constant := 5_000_000;
@@ -1069,7 +1060,7 @@ is
      (Reception_Busy < 1 or else Reception_Busy /= Reception_Busy_Needs,
       "reception claims a wrong busy period");
 
-   --  [field.cell_1] its turn in reception, and when it is handed over
+   --  [field.cell_1] its turn in reception, and when handed over
    Field_Cell_1_Turn_J : constant := Field_Driver_Rx_Cell_1_R;
    pragma Compile_Time_Error
      (Reception_Busy + Field_Cell_1_Turn_J > Field_Cell_1_T,

@@ -18,14 +18,12 @@ is
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
-   --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period.
-   --  X_Up (W) is what X and all that goes before it ask for within W,
-   --  X_Rest (W) what X and those listed behind it at its level do. Needs
-   --  is the demand that arises within W, and equals it: where it is more,
-   --  W is too short; where it is less, a term is missing.
-   --  The claimed responses: each is some other's lateness, or its own
-   --  bound.
+   --  context switches) or transmission, B blocking, R claimed response
+   --  from the event, W claimed time from the start of a busy period. X_Up
+   --  (W): what X and all before it ask for within W; X_Rest (W): what X
+   --  and those behind it at its level do. Needs: the demand within W; if
+   --  it is more than W, W is too short, if it is less, a term is missing.
+   --  The claimed responses: each another's lateness, or its own bound.
    Reception_R : constant := 665_000;
    Protocol_R : constant := 1_305_000;
    Control_R : constant := 1_425_000;
@@ -331,7 +329,7 @@ is
    Line_Bit : constant :=
      (1_000_000_000 + (Line_Bit_Rate - 1)) / Line_Bit_Rate;
 
-   --  [line.acknowledgement] 29-bit identifier Id, Length bytes from
+   --  [line.acknowledgement] 29-bit Id, Length bytes from
    --  fan.acknowledgement
    Line_Acknowledgement_Id : constant := 16#18E8FF80#;
    Line_Acknowledgement_Length : constant := 8;
@@ -341,8 +339,7 @@ is
      Line_Time_Of (54 + 8 * Line_Acknowledgement_Length);
    Line_Acknowledgement_J : constant := Line_Driver_Tx_Acknowledgement_R;
 
-   --  [line.request_to_us] 29-bit identifier Id, Length bytes from somebody
-   --  outside
+   --  [line.request_to_us] 29-bit Id, Length bytes from outside
    Line_Request_To_Us_Id : constant := 16#18EA80F9#;
    Line_Request_To_Us_Length : constant := 3;
    Line_Request_To_Us_T : constant := 10_000_000;
@@ -351,8 +348,7 @@ is
      Line_Time_Of (54 + 8 * Line_Request_To_Us_Length);
    Line_Request_To_Us_J : constant := 0;
 
-   --  [line.request_to_all] 29-bit identifier Id, Length bytes from
-   --  somebody outside
+   --  [line.request_to_all] 29-bit Id, Length bytes from outside
    Line_Request_To_All_Id : constant := 16#18EAFFF9#;
    Line_Request_To_All_Length : constant := 3;
    Line_Request_To_All_T : constant := 10_000_000;
@@ -361,8 +357,7 @@ is
      Line_Time_Of (54 + 8 * Line_Request_To_All_Length);
    Line_Request_To_All_J : constant := 0;
 
-   --  [line.request_without_address] 29-bit identifier Id, Length bytes
-   --  from somebody outside
+   --  [line.request_without_address] 29-bit Id, Length bytes from outside
    Line_Request_Without_Address_Id : constant := 16#18EAFFFE#;
    Line_Request_Without_Address_Length : constant := 3;
    Line_Request_Without_Address_T : constant := 10_000_000;
@@ -371,8 +366,7 @@ is
      Line_Time_Of (54 + 8 * Line_Request_Without_Address_Length);
    Line_Request_Without_Address_J : constant := 0;
 
-   --  [line.rival_claim] 29-bit identifier Id, Length bytes from somebody
-   --  outside
+   --  [line.rival_claim] 29-bit Id, Length bytes from outside
    Line_Rival_Claim_Id : constant := 16#18EEFF80#;
    Line_Rival_Claim_Length : constant := 8;
    Line_Rival_Claim_T : constant := 10_000_000;
@@ -381,8 +375,7 @@ is
      Line_Time_Of (54 + 8 * Line_Rival_Claim_Length);
    Line_Rival_Claim_J : constant := 0;
 
-   --  [line.cannot_claim] 29-bit identifier Id, Length bytes from
-   --  fan.cannot_claim
+   --  [line.cannot_claim] 29-bit Id, Length bytes from fan.cannot_claim
    Line_Cannot_Claim_Id : constant := 16#18EEFFFE#;
    Line_Cannot_Claim_Length : constant := 8;
    Line_Cannot_Claim_T : constant := 10_000_000;
@@ -391,8 +384,7 @@ is
      Line_Time_Of (54 + 8 * Line_Cannot_Claim_Length);
    Line_Cannot_Claim_J : constant := Line_Driver_Tx_Cannot_Claim_R;
 
-   --  [line.fan_drive_state] 29-bit identifier Id, Length bytes from
-   --  fan.state
+   --  [line.fan_drive_state] 29-bit Id, Length bytes from fan.state
    Line_Fan_Drive_State_Id : constant := 16#18FEBD80#;
    Line_Fan_Drive_State_Length : constant := 8;
    Line_Fan_Drive_State_T : constant := 10_000_000;
@@ -401,8 +393,7 @@ is
      Line_Time_Of (54 + 8 * Line_Fan_Drive_State_Length);
    Line_Fan_Drive_State_J : constant := Line_Driver_Tx_Fan_Drive_State_R;
 
-   --  [line.engine_temperature_1] 29-bit identifier Id, Length bytes from
-   --  somebody outside
+   --  [line.engine_temperature_1] 29-bit Id, Length bytes from outside
    Line_Engine_Temperature_1_Id : constant := 16#18FEEE00#;
    Line_Engine_Temperature_1_Length : constant := 8;
    Line_Engine_Temperature_1_T : constant := 500_000_000;
@@ -411,7 +402,7 @@ is
      Line_Time_Of (54 + 8 * Line_Engine_Temperature_1_Length);
    Line_Engine_Temperature_1_J : constant := 0;
 
-   --  [line.claim] 29-bit identifier Id, Length bytes from fan.claim
+   --  [line.claim] 29-bit Id, Length bytes from fan.claim
    Line_Claim_Id : constant := 16#1CEEFF80#;
    Line_Claim_Length : constant := 8;
    Line_Claim_T : constant := 10_000_000;

@@ -18,14 +18,12 @@ is
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
-   --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period.
-   --  X_Up (W) is what X and all that goes before it ask for within W,
-   --  X_Rest (W) what X and those listed behind it at its level do. Needs
-   --  is the demand that arises within W, and equals it: where it is more,
-   --  W is too short; where it is less, a term is missing.
-   --  The claimed responses: each is some other's lateness, or its own
-   --  bound.
+   --  context switches) or transmission, B blocking, R claimed response
+   --  from the event, W claimed time from the start of a busy period. X_Up
+   --  (W): what X and all before it ask for within W; X_Rest (W): what X
+   --  and those behind it at its level do. Needs: the demand within W; if
+   --  it is more than W, W is too short, if it is less, a term is missing.
+   --  The claimed responses: each another's lateness, or its own bound.
    Reception_R : constant := 225_000;
    Control_R : constant := 895_000;
    Ward_Driver_Rx_Line_R : constant := 1_365_000;
@@ -201,7 +199,7 @@ is
    Ward_Bit : constant :=
      (1_000_000_000 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
 
-   --  [ward.line] 11-bit identifier Id, Length bytes from somebody outside
+   --  [ward.line] 11-bit Id, Length bytes from outside
    Ward_Line_Id : constant := 16#100#;
    Ward_Line_Length : constant := 1;
    Ward_Line_T : constant := 1_000_000_000;
@@ -209,7 +207,7 @@ is
    Ward_Line_C : constant := Ward_Time_Of (34 + 8 * Ward_Line_Length);
    Ward_Line_J : constant := 0;
 
-   --  [ward.motor] 11-bit identifier Id, Length bytes from bed.motor
+   --  [ward.motor] 11-bit Id, Length bytes from bed.motor
    Ward_Motor_Id : constant := 16#101#;
    Ward_Motor_Length : constant := 2;
    Ward_Motor_T : constant := 50_000_000;
@@ -217,7 +215,7 @@ is
    Ward_Motor_C : constant := Ward_Time_Of (34 + 8 * Ward_Motor_Length);
    Ward_Motor_J : constant := Ward_Driver_Tx_Motor_R;
 
-   --  [ward.panel] 11-bit identifier Id, Length bytes from somebody outside
+   --  [ward.panel] 11-bit Id, Length bytes from outside
    Ward_Panel_Id : constant := 16#110#;
    Ward_Panel_Length : constant := 3;
    Ward_Panel_T : constant := 50_000_000;
@@ -225,7 +223,7 @@ is
    Ward_Panel_C : constant := Ward_Time_Of (34 + 8 * Ward_Panel_Length);
    Ward_Panel_J : constant := 0;
 
-   --  [ward.display] 11-bit identifier Id, Length bytes from bed.display
+   --  [ward.display] 11-bit Id, Length bytes from bed.display
    Ward_Display_Id : constant := 16#111#;
    Ward_Display_Length : constant := 3;
    Ward_Display_T : constant := 200_000_000;

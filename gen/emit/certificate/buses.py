@@ -107,9 +107,9 @@ def _terms(message: Message, bus: Bus) -> list[Decl]:
     """What is known of a message."""
     own = name_of(message.element)
     width = 29 if message.extended else 11
-    sender = "somebody outside" if message.source is None else str(message.source)
+    sender = "outside" if message.source is None else str(message.source)
     words = (
-        f"[{message.element}] {width}-bit identifier Id, Length bytes"
+        f"[{message.element}] {width}-bit Id, Length bytes"
         f"{' of CAN FD' if message.fd else ''} from {sender}"
     )
     mode = message.transmission
@@ -350,7 +350,7 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
             earlier = [times(number(instance), separation)] if instance else []
             return plus(*earlier, *ladder.others(own, plus(window, ONE)))
 
-        words = f"[{label}] its turn in {processor.name}, and when it is handed over"
+        words = f"[{label}] its turn in {processor.name}, and when handed over"
         items.append(Comment(words))
         if one.several:
             items.append(named_number(f"{own}_T", ref(f"{name_of(one.message.element)}_T")))

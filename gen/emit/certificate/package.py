@@ -70,10 +70,10 @@ from .transport import transfer_claims, transferred
 LETTERS = (
     "Times in nanoseconds. T period or least separation, D deadline, J longest time from the "
     "event to the release, C longest execution (with context switches) or transmission, "
-    "B blocking, R the claimed response from the event, W the time claimed from the start of a "
-    "busy period. X_Up (W) is what X and all that goes before it ask for within W, X_Rest (W) "
-    "what X and those listed behind it at its level do. Needs is the demand that arises within W, "
-    "and equals it: where it is more, W is too short; where it is less, a term is missing."
+    "B blocking, R claimed response from the event, W claimed time from the start of a busy "
+    "period. X_Up (W): what X and all before it ask for within W; X_Rest (W): what X and those "
+    "behind it at its level do. Needs: the demand within W; if it is more than W, W is too short, "
+    "if it is less, a term is missing."
 )
 
 
@@ -86,7 +86,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
         Comment(LETTERS),
     ]
     elements = [task.element for task in system.tasks] + [m.element for m in system.frames]
-    items.append(Comment("The claimed responses: each is some other's lateness, or its own bound."))
+    items.append(Comment("The claimed responses: each another's lateness, or its own bound."))
     items += [stated(f"{name_of(one)}_R", claims.of(one).response) for one in elements]
     for node in system.nodes:
         own = ada_case(node.name)
@@ -289,14 +289,19 @@ def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[
         items.append(assured(held, (bound, deadline)))
     for place, slot in enumerate(task.slots, 1):
         if slot.element in rows:
-            items += _row(system, task, place, claims.rows.get(slot.element, 0))
+            items += _row(system, task, place, claims)
     return items
 
 
-def _row(system: System, task: Task, place: int, bound: int) -> list[Decl]:
+def _row(system: System, task: Task, place: int, claims: Claims) -> list[Decl]:
     """When the first ``place`` rows of a job are done, in a release that executes them all."""
     row, own = task.slots[place - 1].element, name_of(task.element)
-    done = name_of(row)
+    done, bound = name_of(row), claims.rows.get(row, 0)
+    if place == len(task.slots) and bound == claims.of(task.element).response:
+        return [
+            Comment(f"[{row}] the last row: done when {task.element} completes"),
+            named_number(f"{done}_Done", ref(f"{own}_R")),
+        ]
     budgets = [ref(f"{name_of(slot.element)}_Budget") for slot in task.slots[:place]]
     needed = plus(switches(task), *budgets)
     window = ref(f"{done}_W")

@@ -18,14 +18,12 @@ is
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
-   --  context switches) or transmission, B blocking, R the claimed response
-   --  from the event, W the time claimed from the start of a busy period.
-   --  X_Up (W) is what X and all that goes before it ask for within W,
-   --  X_Rest (W) what X and those listed behind it at its level do. Needs
-   --  is the demand that arises within W, and equals it: where it is more,
-   --  W is too short; where it is less, a term is missing.
-   --  The claimed responses: each is some other's lateness, or its own
-   --  bound.
+   --  context switches) or transmission, B blocking, R claimed response
+   --  from the event, W claimed time from the start of a busy period. X_Up
+   --  (W): what X and all before it ask for within W; X_Rest (W): what X
+   --  and those behind it at its level do. Needs: the demand within W; if
+   --  it is more than W, W is too short, if it is less, a term is missing.
+   --  The claimed responses: each another's lateness, or its own bound.
    Reception_Panel_R : constant := 245_000;
    Reception_Drive_R : constant := 245_000;
    Supervision_R : constant := 765_000;
@@ -266,8 +264,7 @@ is
    Link_Bit : constant :=
      (1_000_000_000 + (Link_Bit_Rate - 1)) / Link_Bit_Rate;
 
-   --  [link.supervisor_order] 11-bit identifier Id, Length bytes from
-   --  supervisor.order
+   --  [link.supervisor_order] 11-bit Id, Length bytes from supervisor.order
    Link_Supervisor_Order_Id : constant := 16#1#;
    Link_Supervisor_Order_Length : constant := 3;
    Link_Supervisor_Order_T : constant := 20_000_000;
@@ -276,8 +273,7 @@ is
      Link_Time_Of (34 + 8 * Link_Supervisor_Order_Length);
    Link_Supervisor_Order_J : constant := Link_Driver_Tx_Supervisor_Order_R;
 
-   --  [link.servo_report] 11-bit identifier Id, Length bytes from
-   --  servo.report
+   --  [link.servo_report] 11-bit Id, Length bytes from servo.report
    Link_Servo_Report_Id : constant := 16#2#;
    Link_Servo_Report_Length : constant := 3;
    Link_Servo_Report_T : constant := 20_000_000;
@@ -337,16 +333,8 @@ is
    pragma Compile_Time_Error (Supervisor_Ports_W /= Supervisor_Ports_Needs,
       "supervisor.ports claims a wrong response time");
 
-   --  [supervisor.plan] done, from the event of its processor
-   Supervisor_Plan_Done : constant := 765_000;
-   Supervisor_Plan_W : constant := Supervisor_Plan_Done - Supervision_J;
-   Supervisor_Plan_Needs : constant :=
-     2 * Panel_Context_Switch + Link_Watch_Panel_Budget
-     + Supervisor_Ports_Budget + Supervisor_Mission_Budget
-     + Supervisor_Plan_Budget + Supervision_B
-     + Reception_Panel_Up (Supervisor_Plan_W);
-   pragma Compile_Time_Error (Supervisor_Plan_W /= Supervisor_Plan_Needs,
-      "supervisor.plan claims a wrong response time");
+   --  [supervisor.plan] the last row: done when supervision completes
+   Supervisor_Plan_Done : constant := Supervision_R;
 
    --  [control] what delays it
    Control_W : constant := Control_R - Control_J;
@@ -378,15 +366,8 @@ is
    pragma Compile_Time_Error (Servo_Control_W /= Servo_Control_Needs,
       "servo.control claims a wrong response time");
 
-   --  [servo.tell] done, from the event of its processor
-   Servo_Tell_Done : constant := 865_000;
-   Servo_Tell_W : constant := Servo_Tell_Done - Control_J;
-   Servo_Tell_Needs : constant :=
-     2 * Drive_Context_Switch + Link_Watch_Drive_Budget + Servo_Ports_Budget
-     + Servo_Drive_Budget + Servo_Control_Budget + Servo_Tell_Budget
-     + Control_B + Reception_Drive_Up (Servo_Tell_W);
-   pragma Compile_Time_Error (Servo_Tell_W /= Servo_Tell_Needs,
-      "servo.tell claims a wrong response time");
+   --  [servo.tell] the last row: done when control completes
+   Servo_Tell_Done : constant := Control_R;
 
    --  [link.driver_tx.supervisor_order] what delays it
    Link_Driver_Tx_Supervisor_Order_W : constant :=
@@ -576,8 +557,7 @@ is
       or else Reception_Panel_Busy /= Reception_Panel_Busy_Needs,
       "reception_panel claims a wrong busy period");
 
-   --  [link.servo_report] its turn in reception_panel, and when it is
-   --  handed over
+   --  [link.servo_report] its turn in reception_panel, and when handed over
    Link_Servo_Report_Turn_J : constant := Link_Driver_Rx_Servo_Report_R;
    pragma Compile_Time_Error
      (Reception_Panel_Busy + Link_Servo_Report_Turn_J > Link_Servo_Report_T,
@@ -608,8 +588,8 @@ is
       or else Reception_Drive_Busy /= Reception_Drive_Busy_Needs,
       "reception_drive claims a wrong busy period");
 
-   --  [link.supervisor_order] its turn in reception_drive, and when it is
-   --  handed over
+   --  [link.supervisor_order] its turn in reception_drive, and when handed
+   --  over
    Link_Supervisor_Order_Turn_J : constant :=
      Link_Driver_Rx_Supervisor_Order_R;
    pragma Compile_Time_Error
