@@ -82,7 +82,7 @@ class Choice:
 
 
 def choices(
-    system: System, wanted: Mapping[tuple[str, str], Sequence[PartialValue]]
+    system: System, wanted: Mapping[tuple[str, str], Sequence[PartialValue]] | None = None
 ) -> list[Choice]:
     """Everything that may come from outside, in model order.
 
@@ -90,7 +90,7 @@ def choices(
     """
     fed = {connection.target for connection in system.connections}
     return [
-        replace(one, wanted=tuple(_wanted(one, instance.component.name, wanted)))
+        replace(one, wanted=tuple(_wanted(one, instance.component.name, wanted or {})))
         for instance in system.instances
         for one in _of_instance(instance, system, fed)
     ]

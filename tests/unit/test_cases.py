@@ -209,7 +209,7 @@ def test_a_value_that_chance_would_not_find_is_computed() -> None:
     system = component_system(LOCK, more=CODE)
     assert CaseSearch(system, 2_000).found().open == []
     search = CaseSearch(system, 2_000)
-    search.choices = choices(system, {})
+    search.choices = choices(system)
     assert "Part.Main.open is taken" in [goal.text() for goal in search.found().open]
 
 
