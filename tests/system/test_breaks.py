@@ -83,15 +83,11 @@ def test_a_ceiling_that_is_too_low_is_not_proved(checkout: Path) -> None:
 
 
 @needs_gnatprove
-def test_a_queue_that_forgets_its_bound_is_not_proved(checkout: Path) -> None:
-    body = checkout / "spark_runtime" / "src" / "ravenchart-queues.adb"
-    _break(body, QUEUE_GUARD, QUEUE_BROKEN)
-    with pytest.raises(ToolFailed, match="precondition might fail"):
+def test_a_full_queue_that_forgets_an_element_is_not_proved(checkout: Path) -> None:
+    body = checkout / "spark_runtime" / "src" / "ravenchart-policy_queues.adb"
+    _break(body, "if Status /= Queueing.Rejected_Full then", "if Status = Queueing.Queued then")
+    with pytest.raises(ToolFailed, match="postcondition might fail"):
         _prove(checkout, "three_components-two.adb")
-
-
-QUEUE_GUARD = "< Capacity"
-QUEUE_BROKEN = "<= Capacity"
 
 
 def test_a_wcet_past_its_slack_does_not_compile(checkout: Path) -> None:
