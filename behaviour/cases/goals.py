@@ -220,6 +220,18 @@ class GoalCoverage:
         self.size += (element, state) not in self.left
         self.left.add((element, state))
 
+    def has(self, other: GoalCoverage) -> bool:
+        """Whether all that others have shown is known."""
+        return (
+            other.taken <= self.taken
+            and other.deferred <= self.deferred
+            and other.left <= self.left
+            and all(
+                evaluations <= self.evaluations.get(place, set())
+                for place, evaluations in other.evaluations.items()
+            )
+        )
+
     def join(self, other: GoalCoverage) -> None:
         """What others have shown, too."""
         for element in other.taken:

@@ -23,17 +23,10 @@ from ravenchart.behaviour.rules import logic
 from ravenchart.behaviour.rules.budget import Budget, Exhausted
 from ravenchart.behaviour.rules.outcomes import Outcome, TooManyWays, outcomes
 from ravenchart.behaviour.rules.reach import Reachable
-from ravenchart.behaviour.rules.stepping import OpenStep, TransitionPath
-from ravenchart.behaviour.rules.threads import Situation, Steps, Thread
+from ravenchart.behaviour.rules.stepping import Configuration, OpenStep, TransitionPath
+from ravenchart.behaviour.rules.threads import Situation, Thread
 from ravenchart.behaviour.tree import Occurrence
-from ravenchart.gen.language.terms import (
-    BOOLEAN,
-    Expression,
-    IntegerType,
-    Reading,
-    Scalar,
-    ScalarType,
-)
+from ravenchart.gen.language.terms import Expression, Reading
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import (
     After,
@@ -122,9 +115,8 @@ class _PossibleCoverage:
         if region not in self.looked:
             return False
         tree = self.reach.thread(region).tree
-        joins = any(t.name == name and tree.kinds.get(t.target) is PseudoKind.JOIN
-                    for t in tree.region.transitions)  # fmt: skip
-        if joins:
+        one = tree.transitions.get(name)
+        if one is not None and tree.kinds.get(one.target) is PseudoKind.JOIN:
             return False
         return not self.coverage.shows(goal) or self._is_left_before(goal)
 
@@ -133,11 +125,11 @@ class _PossibleCoverage:
 
         So it is where the leaf is entered only with the state around it, and both times begin.
         """
-        thread = self.reach.thread(goal.element[1])
-        tree = thread.tree
-        outer, leaf = tree.transitions.get(goal.element[2]), str(goal.detail)
-        if goal.kind is not GoalKind.LEFT or outer is None:
+        if goal.kind is not GoalKind.LEFT:
             return False
+        thread = self.reach.thread(goal.element[1])
+        tree, leaf = thread.tree, str(goal.detail)
+        outer = tree.transitions[goal.element[2]]
         if not isinstance(outer.trigger, After | Every):
             return False
         longest = outer.trigger.executions
@@ -158,23 +150,25 @@ class _PossibleCoverage:
     def _look_at(self, thread: Thread) -> None:
         """All steps from all situations of a region."""
         solver = logic.solver()
-        made: Steps = {}
+        made: dict[tuple[Configuration, Occurrence], list[tuple[Outcome, GoalCoverage]]] = {}
         solver.add(*self.reach.typed, *self.reach.of_others(thread))
         for node in thread.nodes:
             at = node.configuration
             for occurrence in self.reach.occurrences(thread, at):
                 if (at, occurrence) not in made:
-                    made[at, occurrence] = self._outcomes(thread, node, occurrence)
-                for outcome in made[at, occurrence]:
-                    new = self._seen_in(thread, outcome)
-                    if new.size and self._is_possible(thread, node, outcome, solver):
-                        self.coverage.join(new)
-
-    def _outcomes(
-        self, thread: Thread, node: Situation, occurrence: Occurrence
-    ) -> tuple[Outcome, ...]:
-        at, questions = node.configuration, self.reach.plain
-        return outcomes(thread.tree, at, occurrence, questions, thread.past, None, _WatchedStep)
+                    found = outcomes(
+                        thread.tree,
+                        at,
+                        occurrence,
+                        self.reach.plain,
+                        thread.past,
+                        make=_WatchedStep,
+                    )
+                    made[at, occurrence] = [(one, self._shown_by(thread, one)) for one in found]
+                for outcome, shown in made[at, occurrence]:
+                    known = self.coverage.has(shown)
+                    if not known and self._is_possible(thread, node, outcome, solver):
+                        self.coverage.join(shown)
 
     def _is_possible(
         self, thread: Thread, node: Situation, outcome: Outcome, solver: logic.Term
@@ -192,60 +186,45 @@ class _PossibleCoverage:
         """The least value of an event with which an outcome comes about."""
         event = outcome.occurrence.subject
         used = logic.unknowns([outcome.condition])
-        asked = [
-            variable
-            for variable in self.reach.symbols
+        asked = {
+            variable: symbol
+            for variable, symbol in self.reach.symbols.items()
             if variable[:2] == (Reading.EVENT.value, event) and str(variable) in used
-        ]
-        #  the first answer that comes would depend on what the process has asked before
-        least = z3.Optimize()
-        least.add(*solver.assertions())
-        for variable in asked:
-            symbol = self.reach.symbol(variable)
-            least.minimize(symbol if z3.is_int(symbol) else z3.If(symbol, 1, 0))
-        if not asked or least.check() != z3.sat:
+        }
+        if not asked:
             return
+        #  the first answer that comes would depend on what the process has asked before
+        least = logic.optimizer()
+        least.add(*solver.assertions())
+        for symbol in asked.values():
+            least.minimize(symbol if z3.is_int(symbol) else z3.If(symbol, 1, 0))
+        if self.reach.budget.ask(least) != z3.sat:
+            return
+        model = least.model()
         value = {
-            member: _scalar(
-                least.model().eval(self.reach.symbol(variable), model_completion=True),
-                self.reach.types[variable],
+            variable[2]: logic.scalar(
+                model.eval(symbol, model_completion=True), self.reach.types[variable]
             )
-            for variable in asked
-            for member in variable[2:]
+            for variable, symbol in asked.items()
         }
         known = self.values.setdefault(event, [])
         if value not in known:
             known.append(value)
 
-    def _seen_in(self, thread: Thread, outcome: Outcome) -> GoalCoverage:
-        """What an outcome shows that nothing has shown before."""
-        new, tree = GoalCoverage(), thread.tree
-        known, place = self.coverage, (self.component.name, thread.name)
+    def _shown_by(self, thread: Thread, outcome: Outcome) -> GoalCoverage:
+        """What an outcome shows where it comes about."""
+        shown, tree = GoalCoverage(), thread.tree
+        place = self.component.name, thread.name
         for name, decision, values in outcome.noted:
-            element = (*place, name)
-            if values not in known.evaluations.get((element, decision), ()):
-                new.decide(element, decision, values)
-        sources = {one.name: one.source for one in tree.region.transitions}
+            shown.decide((*place, name), decision, values)
         leaves = [s for s in {*outcome.before.active, *outcome.entered} if tree.states[s].is_leaf]
         for name in outcome.fired:
-            element = (*place, name)
-            if element not in known.taken:
-                new.take(element)
+            shown.take((*place, name))
             for leaf in leaves:
-                left = element, leaf
-                if sources[name] in tree.around(leaf) and left not in known.left:
-                    new.leave(element, leaf)
+                if tree.source_of(name) in tree.around(leaf):
+                    shown.leave((*place, name), leaf)
         for state in outcome.before.active if outcome.deferred else ():
-            event, element = outcome.occurrence.subject, (*place, state)
-            if event in tree.states[state].defers and (element, event) not in known.deferred:
-                new.defer(element, event)
-        return new
-
-
-def _scalar(value: logic.Term, type_: ScalarType) -> Scalar:
-    """A value of the solver as the interpreter has it."""
-    if isinstance(type_, IntegerType):
-        return int(value.as_long())
-    if type_ == BOOLEAN:
-        return BOOLEAN.literals[bool(z3.is_true(value))]
-    return type_.literals[int(value.as_long())]
+            event = outcome.occurrence.subject
+            if event in tree.states[state].defers:
+                shown.defer((*place, state), event)
+        return shown

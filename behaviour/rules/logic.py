@@ -116,14 +116,18 @@ def within(term: Term, type_: ScalarType) -> Term:
     return z3.And(term >= type_.first, term <= type_.last)
 
 
+def scalar(value: Term, type_: ScalarType) -> Scalar:
+    """The value of a type that a term is: of an enumeration the literal."""
+    if type_ == BOOLEAN:
+        return BOOLEAN.literals[bool(z3.is_true(value))]
+    number: int = value.as_long()
+    return type_.literals[number] if isinstance(type_, EnumerationType) else number
+
+
 def said(value: Term, type_: ScalarType) -> str:
     """A value of a type as a model writes it."""
-    if type_ == BOOLEAN:
-        return "true" if z3.is_true(value) else "false"
-    if isinstance(type_, EnumerationType):
-        position: int = value.as_long()
-        return type_.literals[position]
-    return str(value.as_long())
+    text = str(scalar(value, type_))
+    return text.lower() if type_ == BOOLEAN else text
 
 
 # --- Expressions -----------------------------------------------------------------
@@ -276,6 +280,13 @@ def solver() -> Term:
     """A solver that gives the same answer each time."""
     made = z3.Solver()
     made.set("random_seed", 0)
+    made.set("rlimit", EFFORT)
+    return made
+
+
+def optimizer() -> Term:
+    """One that looks for the least values, with as much work as a solver may take."""
+    made = z3.Optimize()
     made.set("rlimit", EFFORT)
     return made
 
