@@ -7,9 +7,14 @@ from __future__ import annotations
 
 import socket
 import threading
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from contextlib import suppress
+
+
+PATIENCE = 10.0
+"""Seconds within which clients are accepted, on a host that withholds the core as well."""
 
 
 class Listener(ABC):
@@ -42,6 +47,13 @@ class Listener(ABC):
                 link, _ = self._socket.accept()
                 link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 threading.Thread(target=self._serve, args=(link,), daemon=True).start()
+
+    def wait_for(self, clients: int) -> None:
+        """Until so many clients are served: what is said before reaches none of them."""
+        end = time.monotonic() + PATIENCE
+        while len(list(self._links())) < clients:
+            assert time.monotonic() < end, f"{clients} clients are awaited"
+            time.sleep(0.001)
 
     @abstractmethod
     def _links(self) -> Iterable[socket.socket]:

@@ -123,6 +123,7 @@ def test_a_new_project_is_proved(away: Path) -> None:
     assert "justified 0, assumed 0, outside SPARK 0" in told
 
 
+@pytest.mark.clock
 def test_the_bus_serves_and_the_loopback_test_passes(away: Path) -> None:
     server = subprocess.Popen(
         [away / "env" / "bin" / "ravenchart", "bus", "--port", "0"],

@@ -89,6 +89,7 @@ def relay() -> Iterator[SlcanRelay]:
 @pytest.mark.slow
 def test_slcan_passes_and_says_what_it_cannot(relay: SlcanRelay) -> None:
     ends = open_ends(Setup("slcan", relay.channel, "slcan", relay.channel, fd=True))
+    relay.wait_for(clients=2)
     try:
         result = run(ends)
     finally:
@@ -102,6 +103,7 @@ def test_slcan_passes_and_says_what_it_cannot(relay: SlcanRelay) -> None:
 @pytest.mark.slow
 def test_slcan_that_is_cut_fails_in_words(relay: SlcanRelay) -> None:
     ends = open_ends(Setup("slcan", relay.channel, "slcan", relay.channel), patience=0.3)
+    relay.wait_for(clients=2)
     try:
         result = run(ends, lambda name: relay.cut() if name == "burst" else None)
     finally:
