@@ -73,6 +73,7 @@ check: setup
 	@$(PYTHON) -P -m ruff format --check .
 	@$(PYTHON) -P -m mypy
 	@.venv/bin/lint-imports --no-cache --no-logo
+	@$(PYTHON) -P -m pytest -q -p no:cacheprovider tests/sources
 	@$(PYTHON) -P -m tests.house check
 
 prove: setup

@@ -10,10 +10,13 @@ from hypothesis import strategies as st
 
 from ravenchart.gen.diagnostics import render
 from tests.support.chart_models import chart_text
+from tests.support.effort import drawn
 from tests.support.pump import loaded
 
 KINDS = ("final", "choice", "junction", "history", "deep_history", "fork", "join", "terminate")
-RELAXED = settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+RELAXED = settings(
+    max_examples=drawn(20, 80), deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
 
 
 PLAIN = (

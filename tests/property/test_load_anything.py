@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from ravenchart.gen.diagnostics import render
 from ravenchart.gen.language.expressions import Malformed, Term, parse
 from ravenchart.gen.pipeline import Loaded, load
+from tests.support.effort import drawn
 from tests.support.pump import PUMP
 
 ROOT = Path(__file__).parent.parent.parent
@@ -27,7 +28,9 @@ EXAMPLES = [
     ),
 ]
 WORDS = sorted({word for text in EXAMPLES for word in text.split()})
-RELAXED = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+RELAXED = settings(
+    max_examples=drawn(15, 60), deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
 
 
 def loads(content: bytes) -> Loaded:

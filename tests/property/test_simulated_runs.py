@@ -17,10 +17,9 @@ from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.behaviour.tree import ChartTree
 from ravenchart.gen.model.statechart import PseudoKind
 from ravenchart.running.traces.simulated_runs import FollowedChart, observed_simulation
+from tests.support.effort import seeds
 from tests.support.interpreted import stimuli_of, system_of
 from tests.support.random_charts import events_of, model_of
-
-SEEDS = range(300)
 
 Shown = dict[str, str]
 """The active leaf by the name of its lane."""
@@ -66,8 +65,7 @@ def played(seed: int) -> tuple[list[StepRecord], dict[str, list[Shown]], dict[st
     return records, Own.noted, trees
 
 
-@pytest.mark.parametrize("seed", [pytest.param(n, marks=[pytest.mark.slow] if n > 59 else [])
-                                  for n in SEEDS])  # fmt: skip
+@pytest.mark.parametrize("seed", seeds(20, 300))
 def test_the_followed_states_are_those_of_the_interpreter(seed: int) -> None:
     records, noted, trees = played(seed)
     followed = {name: FollowedChart(tree) for name, tree in trees.items()}
@@ -95,7 +93,7 @@ def test_the_charts_have_final_states_lanes_and_ends() -> None:
     assert lanes > 5 and finals > 5 and ends > 0, (lanes, finals, ends)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", seeds(6, 20))
 def test_the_observation_has_each_step_with_its_transitions_and_leaves(seed: int) -> None:
     records, noted, _ = played(seed)
     system = system_of(model_of([seed]))

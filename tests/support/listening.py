@@ -12,7 +12,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from contextlib import suppress
 
-
 PATIENCE = 10.0
 """Seconds within which clients are accepted, on a host that withholds the core as well."""
 

@@ -18,6 +18,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.paths import ROOT
+from tests.support.once import made_once
 from tests.support.progress import without_progress
 from tests.support.workbench import pieces, running
 
@@ -34,7 +35,11 @@ WITHOUT = shutil.ignore_patterns("__pycache__")
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The wheel, made of a copy: setuptools leaves files behind."""
-    folder = tmp_path_factory.mktemp("wheel")
+    (made,) = (made_once(tmp_path_factory, "wheel", _make_wheel) / "made").glob("*.whl")
+    return made
+
+
+def _make_wheel(folder: Path) -> None:
     for name in SOURCES:
         source, target = ROOT / name, folder / "source" / name
         if source.is_dir():
@@ -45,8 +50,6 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     options = ["--quiet", "--no-deps", "--no-build-isolation", "--disable-pip-version-check"]
     words = [sys.executable, "-m", "pip", "wheel", *options, "-w", "made", "./source"]
     subprocess.run(words, cwd=folder, check=True)
-    (made,) = (folder / "made").glob("*.whl")
-    return made
 
 
 @pytest.fixture(scope="module")
@@ -55,20 +58,30 @@ def away(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path
 
     The packages it depends on are those of this environment.
     """
-    folder = tmp_path_factory.mktemp("far away")
-    subprocess.run([sys.executable, "-m", "venv", "env"], cwd=folder, check=True)
-    python = folder / "env" / "bin" / "python"
-    options = ["--quiet", "--no-deps", "--no-index", "--disable-pip-version-check"]
-    subprocess.run([python, "-m", "pip", "install", *options, wheel], cwd=folder, check=True)
-    home = next((folder / "env" / "lib").glob("python*/site-packages"))
-    (home / "others.pth").write_text(f"{sysconfig.get_path('purelib')}\n", encoding="utf-8")
-    before = _files(home / "ravenchart")
+    folder = made_once(tmp_path_factory, "far away", lambda folder: _install(wheel, folder))
+    before = json.loads((folder / "files.json").read_text(encoding="utf-8"))
     yield folder
-    assert _files(home / "ravenchart") == before
+    assert _files(_packages(folder) / "ravenchart") == before
 
 
-def _files(folder: Path) -> set[Path]:
-    return {path for path in folder.rglob("*") if "__pycache__" not in path.parts}
+def _install(wheel: Path, folder: Path) -> None:
+    run = subprocess.run
+    run([sys.executable, "-m", "venv", "--without-pip", "env"], cwd=folder, check=True)
+    options = ["--quiet", "--no-deps", "--no-index", "--disable-pip-version-check"]
+    pip = [sys.executable, "-m", "pip", "--python", "env/bin/python", "install", *options]
+    run([*pip, str(wheel)], cwd=folder, check=True)
+    home = _packages(folder)
+    (home / "others.pth").write_text(f"{sysconfig.get_path('purelib')}\n", encoding="utf-8")
+    files = json.dumps(_files(home / "ravenchart"))
+    (folder / "files.json").write_text(files, encoding="utf-8")
+
+
+def _packages(folder: Path) -> Path:
+    return next((folder / "env" / "lib").glob("python*/site-packages"))
+
+
+def _files(folder: Path) -> list[str]:
+    return sorted(str(path) for path in folder.rglob("*") if "__pycache__" not in path.parts)
 
 
 def _called(away: Path, *words: str, status: int = 0) -> str:

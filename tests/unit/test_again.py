@@ -44,7 +44,7 @@ def test_value():
     [
         pytest.param("", 0, None, id="none", marks=pytest.mark.slow),
         pytest.param("value", 1, None, id="value", marks=pytest.mark.slow),
-        pytest.param("value clock1", 1, None, id="both"),
+        pytest.param("value clock1", 1, None, id="both", marks=pytest.mark.slow),
         pytest.param("clock1", STATUS, ["test_clock[1]"], id="clock"),
         pytest.param(
             "clock1 live", STATUS, ["test_clock[1]", "test_live"], id="live", marks=pytest.mark.slow

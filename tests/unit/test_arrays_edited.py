@@ -162,11 +162,12 @@ def test_a_row_moves_behind_those_of_an_array_which_stay_one_item() -> None:
     assert "      - shadow_*.ports\n      - driver.steer\n      - shadow_*.follow\n" in made
 
 
-def test_any_row_moves_to_any_place() -> None:
+@pytest.mark.parametrize("apart", [9, pytest.param(3, marks=pytest.mark.slow)])
+def test_any_row_moves_to_any_place(apart: int) -> None:
     places = state().places
     for source, target in (("wheels", "displays"), ("displays", "wheels"), ("wheels", "wheels")):
-        for row in rows(places, source)[::3]:
-            for place in range(0, len(rows(places, target)), 4):
+        for row in rows(places, source)[::apart]:
+            for place in range(0, len(rows(places, target)), apart + 1):
                 wanted = [one for one in rows(places, target) if one != row]
                 wanted.insert(place, row)
                 made = changed(state(), wish_to_move(row=row, to=target, place=place)).texts
