@@ -32,6 +32,7 @@ from ravenchart.gen.model.statechart import (
     Trigger,
     When,
 )
+from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
 GoalElement = tuple[str, str, str]
@@ -87,6 +88,12 @@ class Goal:
             case GoalKind.LEFT:
                 return f"{place} leaves {self.detail}"
         return f"{self.detail} is deferred in {place}"
+
+
+def goals_of(system: System) -> list[Goal]:
+    """The goals of all components that have instances, in model order."""
+    components = {one.component.name: one.component for one in system.instances}
+    return [goal for component in components.values() for goal in goals(component)]
 
 
 def goals(component: Component) -> Iterator[Goal]:
@@ -257,6 +264,14 @@ class GoalCoverage:
             assert isinstance(goal.detail, int)
             return any(_decides(goal.detail, *pair) for pair in combinations(known, 2))
         return any(outcome is (goal.kind is GoalKind.TRUE) for _, outcome in known)
+
+
+def union(*parts: GoalCoverage) -> GoalCoverage:
+    """What several have shown."""
+    found = GoalCoverage()
+    for one in parts:
+        found.join(one)
+    return found
 
 
 def _decides(number: int, one: GuardValues, other: GuardValues) -> bool:

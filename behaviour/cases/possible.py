@@ -7,14 +7,14 @@ The rules look at each region against all that may come from elsewhere, under ev
 and leave nothing out (`behaviour.rules.reach`). Here each step from each situation is made
 once more, with the conditions of its guards asked one by one. So this coverage has all that any
 execution shows, and more. A goal that it does not show is unreachable. Which time-out comes first
-is looked at only where a state and a leaf in it are always entered together. Of each step the
-solver tells an event's value with which it is made: such values guide the search.
+is looked at only where a state and a leaf in it are always entered together. Of each step that
+shows something new the solver tells with which values it is made: such scenes guide the search.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import z3
 
@@ -26,7 +26,7 @@ from ravenchart.behaviour.rules.reach import Reachable
 from ravenchart.behaviour.rules.stepping import Configuration, OpenStep, TransitionPath
 from ravenchart.behaviour.rules.threads import Situation, Thread
 from ravenchart.behaviour.tree import Occurrence
-from ravenchart.gen.language.terms import Expression, Reading
+from ravenchart.gen.language.terms import Expression, IntegerType, Reading, Scalar
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import (
     After,
@@ -42,13 +42,49 @@ from .goals import Decision, Goal, GoalCoverage, GoalKind, evaluated
 from .stimulation import PartialValue
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """What lets a region make a step: active states, an event, and values from outside."""
+
+    region: str
+    active: tuple[str, ...]
+    event: str | None
+    values: tuple[tuple[str, PartialValue | None], ...]
+    """Of the event and of input ports and data items; those that matter. None: a port at which
+    nothing comes, so that it is not fresh."""
+    equal: Mapping[tuple[str, str | None], tuple[str, str | None]]
+    """Which of the values must be that of a data item of the component, each with its field."""
+    raises: tuple[str, ...]
+    """The events that the step raises."""
+    shows: GoalCoverage
+    """What it shows."""
+
+    def renamed(self, names: Mapping[str, str]) -> Scene:
+        """The same with other names of ports and data items that values come by."""
+        return replace(
+            self,
+            values=tuple((names.get(name, name), value) for name, value in self.values),
+            equal={(names.get(name, name), part): one for (name, part), one in self.equal.items()},
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class Outlook:
-    """Goals that no execution can show, and values that others may need."""
+    """Goals that no execution can show, and what others may need."""
 
     unreachable: list[Goal] = field(default_factory=list)
-    values: dict[tuple[str, str], list[PartialValue]] = field(default_factory=dict)
-    """By component and event."""
+    scenes: dict[str, list[Scene]] = field(default_factory=dict)
+    """By component."""
+
+    def values(self) -> dict[tuple[str, str], list[PartialValue]]:
+        """Values that steps need, by component and event, port or data item."""
+        found: dict[tuple[str, str], list[PartialValue]] = {}
+        for component, scenes in self.scenes.items():
+            for name, value in (pair for scene in scenes for pair in scene.values):
+                known = found.setdefault((component, name), [])
+                if value and value not in known:
+                    known.append(value)
+        return found
 
 
 def outlook(system: System, goals: Sequence[Goal], effort: int = EFFORT) -> Outlook:
@@ -67,7 +103,7 @@ def outlook(system: System, goals: Sequence[Goal], effort: int = EFFORT) -> Outl
             continue
         if looked is not None:
             found.unreachable.extend(goal for goal in own if looked.excludes(goal))
-            found.values.update(((name, one), some) for one, some in looked.values.items())
+            found.scenes[name] = looked.scenes
     return found
 
 
@@ -101,7 +137,8 @@ class _PossibleCoverage:
     def __init__(self, component: Component, system: System, effort: int) -> None:
         self.component = component
         self.coverage = GoalCoverage()
-        self.values: dict[str, list[PartialValue]] = {}
+        self.scenes: list[Scene] = []
+        self.outside = component.from_outside()
         self.reach = Reachable(component, system, Budget(effort))
         regions = [self.reach.thread(region.name) for region in component.regions]
         self.looked = {thread.name for thread in regions if thread.parts is None}
@@ -167,49 +204,102 @@ class _PossibleCoverage:
                     made[at, occurrence] = [(one, self._shown_by(thread, one)) for one in found]
                 for outcome, shown in made[at, occurrence]:
                     known = self.coverage.has(shown)
-                    if not known and self._is_possible(thread, node, outcome, solver):
+                    if not known and self._is_possible(thread, node, outcome, shown, solver):
                         self.coverage.join(shown)
 
     def _is_possible(
-        self, thread: Thread, node: Situation, outcome: Outcome, solver: logic.Term
+        self,
+        thread: Thread,
+        node: Situation,
+        outcome: Outcome,
+        shown: GoalCoverage,
+        solver: logic.Term,
     ) -> bool:
         """Whether some data of a situation lead to an outcome; when in doubt, yes."""
         solver.push()
         solver.add(*self.reach.of_node(thread, node.cells), outcome.condition)
         answer = self.reach.budget.ask(solver)
         if answer == z3.sat:
-            self._keep(outcome, solver)
+            self._keep(thread, outcome, shown, solver)
         solver.pop()
         return bool(answer != z3.unsat)
 
-    def _keep(self, outcome: Outcome, solver: logic.Term) -> None:
-        """The least value of an event with which an outcome comes about."""
-        event = outcome.occurrence.subject
-        used = logic.unknowns([outcome.condition])
+    def _keep(
+        self, thread: Thread, outcome: Outcome, shown: GoalCoverage, solver: logic.Term
+    ) -> None:
+        """The least values from outside with which an outcome comes about."""
+        occurrence, used = outcome.occurrence, logic.unknowns([outcome.condition])
+        event = occurrence.subject if occurrence.kind == "event" else None
         asked = {
-            variable: symbol
-            for variable, symbol in self.reach.symbols.items()
-            if variable[:2] == (Reading.EVENT.value, event) and str(variable) in used
+            one: symbol
+            for one, symbol in self.reach.symbols.items()
+            if str(one) in used and self._is_from_outside(one, event)
         }
-        if not asked:
-            return
-        #  the first answer that comes would depend on what the process has asked before
+        values: dict[str, dict[str | None, Scalar]] = {} if event is None else {event: {}}
+        silent: list[str] = []
+        equal: dict[tuple[str, str | None], tuple[str, str | None]] = {}
+        if asked:
+            model = self._least(asked.values(), solver)
+            if model is None:
+                return
+            equal = self._equal(asked, used, model, solver)
+            for one, symbol in asked.items():
+                found = model.eval(symbol, model_completion=True)
+                kind, name, part = one
+                if kind != "port state":
+                    values.setdefault(name, {})[part] = logic.scalar(found, self.reach.types[one])
+                elif found.as_long() == logic.PORT_STATES.index("fresh"):
+                    values.setdefault(name, {})
+                else:
+                    silent.append(name)
+        active = outcome.before.active
+        items = (*values.items(), *((name, None) for name in silent))
+        raised = tuple(name for name, _ in outcome.raised)
+        self.scenes.append(Scene(thread.name, active, event, items, equal, raised, shown))
+
+    def _equal(
+        self,
+        asked: Mapping[logic.Variable, logic.Term],
+        used: Collection[str],
+        model: logic.Term,
+        solver: logic.Term,
+    ) -> dict[tuple[str, str | None], tuple[str, str | None]]:
+        """The values that must be those of the component's own data."""
+        found = {}
+        own = [
+            (one, symbol)
+            for one, symbol in self.reach.symbols.items()
+            if one[0] == Reading.DATA.value and one not in asked and str(one) in used
+        ]
+        for one, symbol in asked.items():
+            for other, value in own:
+                kinds = self.reach.types[one], self.reach.types[other]
+                if not all(isinstance(kind, IntegerType) for kind in kinds):
+                    continue
+                if not z3.is_true(model.eval(symbol == value, model_completion=True)):
+                    continue
+                solver.push()
+                solver.add(symbol != value)
+                if self.reach.budget.ask(solver) == z3.unsat:
+                    found[one[1:]] = other[1:]
+                solver.pop()
+        return found
+
+    def _is_from_outside(self, one: logic.Variable, event: str | None) -> bool:
+        kind, name, _ = one
+        if kind == Reading.EVENT.value:
+            return name == event
+        if kind == Reading.DATA.value:
+            return name in self.outside
+        return kind in (Reading.PORT.value, "port state")
+
+    def _least(self, symbols: Iterable[logic.Term], solver: logic.Term) -> logic.Term | None:
+        """The model with the least values; the first that comes would depend on what was asked."""
         least = logic.optimizer()
         least.add(*solver.assertions())
-        for symbol in asked.values():
+        for symbol in symbols:
             least.minimize(symbol if z3.is_int(symbol) else z3.If(symbol, 1, 0))
-        if self.reach.budget.ask(least) != z3.sat:
-            return
-        model = least.model()
-        value = {
-            variable[2]: logic.scalar(
-                model.eval(symbol, model_completion=True), self.reach.types[variable]
-            )
-            for variable, symbol in asked.items()
-        }
-        known = self.values.setdefault(event, [])
-        if value not in known:
-            known.append(value)
+        return least.model() if self.reach.budget.ask(least) == z3.sat else None
 
     def _shown_by(self, thread: Thread, outcome: Outcome) -> GoalCoverage:
         """What an outcome shows where it comes about."""

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import random
 from bisect import bisect
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from ravenchart.behaviour.interpreter.branching import branched
@@ -25,11 +25,12 @@ from ravenchart.behaviour.rules.cells import every
 from ravenchart.gen.language.terms import Ns, Raise, Value
 from ravenchart.gen.model.component import Component, PortKind
 from ravenchart.gen.model.instances import End
-from ravenchart.gen.model.statechart import OnEvent
+from ravenchart.gen.model.statechart import After, Every, OnEvent
 from ravenchart.gen.model.system import Slot, System
 
-from .goals import Goal, GoalCoverage, GoalElement, GoalKind, goals
-from .possible import outlook
+from .goals import Goal, GoalCoverage, GoalElement, GoalKind, goals_of, union
+from .possible import Outlook, outlook
+from .scenes import ScenePlayer
 from .stimulation import Choice, choices
 from .watched import watched_machine
 
@@ -49,6 +50,13 @@ MORE = 3
 """Once each thing is shown, the leaves that are left are looked for so many times as long."""
 ALIKE = 6
 """Branches kept of one condition of the system."""
+GUIDED, PLAYED = 0.5, 0.7
+"""Part of the effort in which scenes come, and how often it is a scene then."""
+WAITED = 0.2
+"""Part of the effort in which time alone goes on until a time-out that is to be shown."""
+MANY = 64
+"""Instants over which their distance is taken."""
+NOTHING: Mapping[str, str] = {}
 
 Stimulus = Raised | Arrived
 Instant = tuple[Ns, list[Slot]]
@@ -85,6 +93,8 @@ class FoundCase:
 
     stimuli: Stimuli
     shows: tuple[Goal, ...]
+    instance: str | None = None
+    """The one that stands alone; None: the case is of the system."""
 
 
 @dataclass(slots=True)
@@ -103,20 +113,42 @@ class SearchResult:
 class CaseSearch:
     """One search over a system."""
 
-    def __init__(self, system: System, effort: int = EFFORT) -> None:
-        """Nothing is shown yet."""
+    def __init__(
+        self,
+        system: System,
+        effort: int = EFFORT,
+        *,
+        needed: Sequence[Goal] | None = None,
+        ahead: Outlook | None = None,
+        patience: int | None = None,
+        given: Mapping[str, str] = NOTHING,
+    ) -> None:
+        """Nothing is shown yet; ``needed`` are the goals that are looked for, or all.
+
+        ``ahead`` is what is known of the goals before.
+
+        The search ends once ``patience`` instants have shown nothing new, where it is given. What
+        is written to a data item comes by the port that ``given`` has for it.
+        """
         self.system, self.effort = system, effort
+        self.patience = effort if patience is None else patience
         self.chance = random.Random(system.name)
         self.coverage = GoalCoverage()
-        self.goals = [
-            goal
-            for component in {i.component.name: i.component for i in system.instances}.values()
-            for goal in goals(component)
-        ]
-        ahead = outlook(system, self.goals)
+        self.goals = goals_of(system)
+        self.needed = self.goals if needed is None else needed
+        ahead = outlook(system, self.goals) if ahead is None else ahead
         self.unreachable = ahead.unreachable
         self.open = [goal for goal in self.goals if goal not in self.unreachable]
-        self.choices = choices(system, ahead.values)
+        values = {(c, given.get(name, name)): some for (c, name), some in ahead.values().items()}
+        self.choices = choices(system, values)
+        self.ages = {(one.instance, one.name): one.max_age for one in self.choices}
+        scenes = {
+            instance.name: [
+                one.renamed(given) for one in ahead.scenes.get(instance.component.name, ())
+            ]
+            for instance in system.instances
+        }
+        self.player = ScenePlayer(scenes, self.choices, self.chance)
         self.instants: list[Instant] = []
         start = watched_machine(system, self.coverage)
         self._coming = start.instants(Ns(2**62))
@@ -126,15 +158,19 @@ class CaseSearch:
         """By the condition of the system."""
         self.alike: list[list[Branch]] = [[Branch(start, 0, ())]]
         self.paths: list[Stimuli] = []
-        self.executed = 0
+        self.executed = self.waited = self.guided = 0
         self.stuck: list[Stuck] = []
         self.causes = {i.name: _causes(i.component) for i in system.instances}
         self.cuts = sorted({number for choice in self.choices for number in choice.numbers})
 
     def found(self) -> SearchResult:
         """Search, and choose the cases."""
-        first = 0
-        while self.open and self.executed < self.effort:
+        first = new = size = 0
+        while self._is_needed() and self.executed < self.effort:
+            if self.coverage.size > size:
+                size, new = self.coverage.size, self.executed
+            if self.executed - new > self.patience:
+                break
             if any(goal.kind is not GoalKind.LEFT for goal in self.open):
                 first = self.executed
             elif self.executed > max(MORE * first, self.effort // 10):
@@ -142,8 +178,12 @@ class CaseSearch:
             self._go_on(self._best())
         cases = list(self._chosen())
         met = {goal for case in cases for goal in case.shows}
-        left = [g for g in self.goals if g not in met and g not in self.unreachable]
+        left = [g for g in self.needed if g not in met and g not in self.unreachable]
         return SearchResult(cases, self.goals, left, self.unreachable, self.executed, self.stuck)
+
+    def _is_needed(self) -> bool:
+        """Whether something is open that is looked for."""
+        return any(goal in self.needed for goal in self.open)
 
     # --- one try
 
@@ -166,20 +206,20 @@ class CaseSearch:
         first = [goal for goal in self.open if goal.kind is not GoalKind.LEFT]
         return first if first and 2 * self.executed < self.effort else self.open
 
-    def _keep(self, machine: Machine, at: int, entries: tuple[Stimulus, ...]) -> None:
+    def _keep(self, branch: Branch) -> None:
         """A branch, unless there are enough that are like it."""
         key = tuple(
-            (name, *self._condition(run)) for name, run in sorted(machine.instances.items())
+            (name, *self._condition(run)) for name, run in sorted(branch.machine.instances.items())
         )
         alike = self.known.setdefault(key, [])
         if len(alike) >= ALIKE:
             return
         if not alike:
             self.alike.append(alike)
-        branch = Branch(branched(machine), at, entries)
-        alike.append(branch)
-        for place in self._active(branch):
-            self.near.setdefault(place, []).append(branch)
+        kept = Branch(branched(branch.machine), branch.at, branch.entries)
+        alike.append(kept)
+        for place in self._active(kept):
+            self.near.setdefault(place, []).append(kept)
 
     def _active(self, branch: Branch) -> dict[GoalElement, str]:
         """The active states of each component and region, each with an instance."""
@@ -197,48 +237,111 @@ class CaseSearch:
         return [(active[place], goal) for goal, place in places if place in active]
 
     def _go_on(self, branch: Branch) -> None:
+        """Go on from a branch in one of three ways, each of which has its part of the effort."""
         branch.tries += 1
-        machine = branched(branch.machine)
-        entries = branch.entries
-        at = branch.at
+        branch = Branch(branched(branch.machine), branch.at, branch.entries)
+        before = self.executed
+        due = self._until_due(branch) if self.waited <= WAITED * self.executed else 0
+        if due:
+            self._execute(branch, due, (), self._fed(branch.machine, often=1.0))
+            self.waited += self.executed - before
+        elif self.guided <= GUIDED * self.executed:
+            self._play(branch)
+            self.guided += self.executed - before
+        else:
+            self._try(branch)
+
+    def _try(self, branch: Branch) -> None:
+        """Anything may come, or nothing for long."""
         mood = self.chance.random()
-        fed = [] if mood < QUIET else self._fed(machine)
+        fed = [] if mood < QUIET else self._fed(branch.machine)
         waits = WAITS if mood > CALM else LONG_WAITS
         for wait in self.chance.choices(waits, k=self.chance.randint(1, 4)):
-            now = self._instant(at)[0]
+            now = self._instant(branch.at)[0]
             coming = self._drawn(branch, now) if mood > CALM and self.choices else ()
-            for _ in range(wait):
-                before = self.coverage.size
-                now, slots = self._instant(at)
-                coming = (*coming, *(entry for one in fed for entry in one.due(now)))
-                entries = (*entries, *coming)
-                self.executed += 1
-                try:
-                    for _ in machine.execute(now, slots, coming):
-                        pass
-                except Stuck as stuck:
-                    if all(one.origin != stuck.origin for one in self.stuck):
-                        self.stuck.append(stuck)
-                    return
-                coming = ()
-                at += 1
-                if self.coverage.size > before:
-                    self.paths.append(Stimuli(entries, now))
-                    self.open = [goal for goal in self.open if not self.coverage.shows(goal)]
-                    self._keep(machine, at, entries)
-            self._keep(machine, at, entries)
+            if not self._execute(branch, wait, coming, fed):
+                break
 
-    def _fed(self, machine: Machine) -> list[Feed]:
+    def _play(self, branch: Branch) -> None:
+        """Scenes come, with as much time as each needs, or anything."""
+        fed = self._fed(branch.machine)
+        for wait in self.chance.choices(WAITS, k=self.chance.randint(1, 4)):
+            now = self._instant(branch.at)[0]
+            scene = None
+            if self.chance.random() < PLAYED:
+                scene = self.player.played(branch.machine, now, self.coverage)
+            if scene is None:
+                stages = [self._drawn(branch, now) if self.choices else ()]
+            else:
+                stages = [some for some in (scene.values, scene.events) if some] or [()]
+                fed = [feed for feed in fed if feed.entry.place not in scene.places]
+                fed += self._kept_fresh(scene.values)
+                wait = self._instants_in(scene.time)
+            for coming in stages:
+                now = self._instant(branch.at)[0]
+                moved = tuple(replace(one, at=now) for one in coming)
+                if not self._execute(branch, wait, moved, fed):
+                    return
+
+    def _execute(
+        self, branch: Branch, wait: int, coming: tuple[Stimulus, ...], fed: Sequence[Feed]
+    ) -> bool:
+        """Go on for so many instants, and keep what is new; False where the machine got stuck."""
+        for _ in range(wait):
+            before = self.coverage.size
+            now, slots = self._instant(branch.at)
+            coming = (*coming, *(entry for one in fed for entry in one.due(now)))
+            branch.entries = (*branch.entries, *coming)
+            self.executed += 1
+            try:
+                for _ in branch.machine.execute(now, slots, coming):
+                    pass
+            except Stuck as stuck:
+                if all(one.origin != stuck.origin for one in self.stuck):
+                    self.stuck.append(stuck)
+                return False
+            coming = ()
+            branch.at += 1
+            if self.coverage.size > before:
+                self.paths.append(Stimuli(branch.entries, now))
+                self.open = [goal for goal in self.open if not self.coverage.shows(goal)]
+                self._keep(branch)
+        self._keep(branch)
+        return True
+
+    def _fed(self, machine: Machine, often: float = FED) -> list[Feed]:
         """Ports that get a value again and again, so that it does not become stale."""
         feeds = []
         for one in self.choices:
-            if one.max_age is not None and self.chance.random() < FED:
+            if one.max_age is not None and self.chance.random() < often:
                 entry = one.drawn(Ns(0), self.chance)
                 port = machine.instances[one.instance].ports[one.name]
-                if port.state != "never_received" and self.chance.random() < FED:
+                if port.state != "never_received" and self.chance.random() < often:
                     entry = Arrived(Ns(0), End(one.instance, one.name), port.value)
                 feeds.append(Feed(entry, one.max_age // 2))
         return feeds
+
+    def _until_due(self, branch: Branch) -> int:
+        """Instants until the longest time-out is due that is to be shown from the active states."""
+        longest = 0
+        for instance, goal in self._near(branch):
+            _, name, transition = goal.element
+            region = branch.machine.instances[instance].regions[name].region
+            for one in region.transitions:
+                if one.name == transition and isinstance(one.trigger, After | Every):
+                    longest = max(longest, one.trigger.executions * region.timing.period)
+        return self._instants_in(longest) + 2 * WAITS[-1] if longest else 0
+
+    def _instants_in(self, time: int) -> int:
+        """So many instants, and one more, are in a time."""
+        return time * MANY // max(1, self._instant(MANY)[0]) + 1
+
+    def _kept_fresh(self, coming: Sequence[Stimulus]) -> Iterator[Feed]:
+        """The values that came come again and again, where they grow stale."""
+        for entry in coming:
+            age = self.ages.get(entry.place)
+            if age is not None:
+                yield Feed(entry, age // 2, entry.at + age // 2)
 
     def _drawn(self, branch: Branch, now: Ns) -> tuple[Stimulus, ...]:
         """What comes from outside at an instant: nothing, one thing or two."""
@@ -297,17 +400,20 @@ class CaseSearch:
 
     def _chosen(self) -> Iterator[FoundCase]:
         """Few paths that show together what all have shown, those that show most first."""
-        shown = [(path, self._replayed(path)) for path in self.paths]
-        total, left = GoalCoverage(), [g for g in self.goals if self.coverage.shows(g)]
-        for path, coverage in sorted(shown, key=lambda one: (-one[1].size, one[0].until)):
-            before = total.size
-            total.join(coverage)
-            if total.size == before:
-                continue
-            met = tuple(goal for goal in left if total.shows(goal))
+        paths = [(path, self._replayed(path)) for path in self.paths]
+        paths.sort(key=lambda one: (-one[1].size, one[0].until))
+        total, left = GoalCoverage(), [g for g in self.needed if self.coverage.shows(g)]
+        for path, coverage in paths:
+            more = union(total, coverage)
+            met = tuple(goal for goal in left if more.shows(goal))
             if met:
-                left = [goal for goal in left if goal not in met]
+                total, left = more, [goal for goal in left if goal not in met]
                 yield FoundCase(path, met)
+        for goal in left:
+            #  a condition decides by itself where two evaluations are compared
+            for path, coverage in _together(goal, total, paths):
+                total = union(total, coverage)
+                yield FoundCase(path, (goal,) if total.shows(goal) else ())
 
     def _replayed(self, path: Stimuli) -> GoalCoverage:
         """What one path shows by itself."""
@@ -315,6 +421,22 @@ class CaseSearch:
         for _ in watched_machine(self.system, coverage).run(path):
             pass
         return coverage
+
+
+def _together(
+    goal: Goal, total: GoalCoverage, paths: Sequence[tuple[Stimuli, GoalCoverage]]
+) -> list[tuple[Stimuli, GoalCoverage]]:
+    """The paths that show a goal only together, and with what is shown already."""
+    found: list[tuple[Stimuli, GoalCoverage]] = []
+    for one in paths:
+        if union(total, *(coverage for _, coverage in found)).shows(goal):
+            break
+        found.append(one)
+    for one in list(found):
+        others = [other for other in found if other is not one]
+        if union(total, *(coverage for _, coverage in others)).shows(goal):
+            found = others
+    return found
 
 
 def _causes(component: Component) -> dict[str, set[str]]:

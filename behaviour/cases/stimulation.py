@@ -32,6 +32,8 @@ from ravenchart.gen.model.system import System
 PartialValue = Mapping[str | None, Scalar]
 """Some fields of a value, or a scalar without a field."""
 
+REUSED = 0.3
+"""How often a number is one that the component has at that time."""
 WANTED = 0.3
 """How often a value is one that something is known to need, where there is such a value."""
 
@@ -53,24 +55,50 @@ class Choice:
     wanted: tuple[PartialValue, ...] = ()
     """What decisions of the component need."""
 
-    def drawn(self, at: Ns, chance: random.Random) -> Raised | Arrived:
-        """It comes with a value drawn at random, more often one that matters."""
-        value = None if self.type is None else self._value(self.type, chance)
+    def drawn(
+        self,
+        at: Ns,
+        chance: random.Random,
+        known: PartialValue | None = None,
+        present: Sequence[int] = (),
+    ) -> Raised | Arrived:
+        """It comes with a value drawn at random, more often one that matters.
+
+        Of a value that is ``known`` the other fields are drawn, and now and then a number is one
+        of those ``present``: a step may need that two are equal.
+        """
+        value = None if self.type is None else self._value(self.type, chance, known, present)
         if self.is_port:
             assert value is not None
             return Arrived(at, End(self.instance, self.name), value)
         return Raised(at, self.instance, self.name, value)
 
-    def _value(self, kind: Type, chance: random.Random) -> Value:
-        known: PartialValue = {}
-        if self.wanted and chance.random() < WANTED:
-            known = chance.choice(self.wanted)
+    def _value(
+        self,
+        kind: Type,
+        chance: random.Random,
+        known: PartialValue | None,
+        present: Sequence[int],
+    ) -> Value:
+        if known is None:
+            known = {}
+            if self.wanted and chance.random() < WANTED:
+                known = chance.choice(self.wanted)
         if isinstance(kind, IntegerType | EnumerationType):
-            return known[None] if None in known else self._scalar(kind, chance)
+            return self._part(kind, chance, known.get(None), present)
         return tuple(
-            (one.name, known[one.name] if one.name in known else self._scalar(one.type, chance))
+            (one.name, self._part(one.type, chance, known.get(one.name), present))
             for one in kind.fields
         )
+
+    def _part(
+        self, kind: ScalarType, chance: random.Random, known: Scalar | None, present: Sequence[int]
+    ) -> Scalar:
+        if present and isinstance(kind, IntegerType) and chance.random() < REUSED:
+            inside = [number for number in present if kind.first <= number <= kind.last]
+            if inside:
+                return chance.choice(inside)
+        return self._scalar(kind, chance) if known is None else known
 
     def _scalar(self, kind: ScalarType, chance: random.Random) -> Scalar:
         if isinstance(kind, EnumerationType):
@@ -86,7 +114,7 @@ def choices(
 ) -> list[Choice]:
     """Everything that may come from outside, in model order.
 
-    ``wanted`` has values of events that decisions need, by component and event.
+    ``wanted`` has values that decisions need, by component and event or port.
     """
     fed = {connection.target for connection in system.connections}
     return [

@@ -359,6 +359,8 @@ class TestCase(Described):
     """Where it is."""
     shows: list[str]
     """The goals that it is the first of all to show."""
+    instance: str | None = None
+    """The instance that it is played on alone; null: it is played on the system."""
 
 
 @dataclass(slots=True)

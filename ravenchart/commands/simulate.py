@@ -33,6 +33,7 @@ from ravenchart.building.checking import Checked
 from ravenchart.building.generation import replace_file, without_clashes, write_first_versions
 from ravenchart.building.programs import build_home
 from ravenchart.failures import OK, Refused, ToolFailed, Unusable
+from ravenchart.gen.derive.alone import alone, hindrance
 from ravenchart.gen.derive.distribution import as_one
 from ravenchart.gen.diagnostics import Diagnostic, error, render, render_all, warning
 from ravenchart.gen.emit.commands.lifecycle import RUNTIME_FOLDER, has_lifecycle
@@ -103,24 +104,39 @@ def refused_as(stuck: Stuck) -> Refused:
     return Refused(render(found, {}), [found])
 
 
-def simulated_by_program(checked: Checked, stimuli: Stimuli) -> Played:
-    """What the generated program executes, and records."""
-    return executed(checked.system, _built(checked), stimuli)
+def simulated_by_program(checked: Checked, stimuli: Stimuli, instance: str | None = None) -> Played:
+    """What the generated program executes, and records; ``instance`` as for others."""
+    return executed(checked.system, _built(checked, instance), stimuli)
 
 
-def played_by_program(checked: Checked) -> Callable[[Stimuli], list[StepRecord]]:
-    """The generated program, built: what it executes under stimuli."""
-    return partial(run_simulation, checked.system, _built(checked))
+def played_by_program(
+    checked: Checked, instance: str | None = None
+) -> Callable[[Stimuli], list[StepRecord]]:
+    """The generated program, built: what it executes under stimuli.
+
+    It is apart from others where ``checked`` is an ``instance`` alone.
+    """
+    return partial(run_simulation, checked.system, _built(checked, instance))
 
 
-def _built(checked: Checked) -> Path:
+def _built(checked: Checked, instance: str | None) -> Path:
     without_clashes(checked)
     write_first_versions(checked)
-    return build_simulation(checked.system, checked.folder, _home(checked))
+    own = "" if instance is None else f"-{instance.replace('.', '-')}"
+    return build_simulation(checked.system, checked.folder, build_home(checked, f"simulation{own}"))
 
 
-def _home(checked: Checked) -> Path:
-    return build_home(checked, "simulation")
+def only(checked: Checked, instance: str) -> Checked:
+    """The model with one instance alone; Unusable where that is not possible."""
+    try:
+        found = checked.system.instance(instance)
+    except KeyError:
+        names = ", ".join(one.name for one in checked.system.instances)
+        raise Unusable(f"there is no instance `{instance}`; there are: {names}") from None
+    reason = hindrance(found.component)
+    if reason is not None:
+        raise Unusable(f"{found.name} cannot be executed alone: {reason}")
+    return replace(checked, system=alone(checked.system, found.name))
 
 
 def build_simulation(
@@ -239,7 +255,14 @@ def unexpected(system: System, stimuli: Stimuli) -> list[Diagnostic]:
     return found
 
 
-def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: bool) -> str:
+def simulated(
+    checked: Checked,
+    events: Path,
+    *,
+    interpreter: bool,
+    as_json: bool,
+    instance: str | None = None,
+) -> str:
     """The trace of a model under the stimuli of a file, one step a line."""
     if interpreter:
         hint = "leave out `--interpreter`: the program in virtual time has them"
@@ -250,7 +273,7 @@ def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: boo
     if interpreter:
         played = interpreted(checked.system, stimuli)
     else:
-        played = simulated_by_program(checked, stimuli)
+        played = simulated_by_program(checked, stimuli, instance)
     return "".join(f"{one.json() if as_json else one.text()}\n" for one in played.lines())
 
 
@@ -262,6 +285,11 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         type=Path,
         metavar="FILE",
         help="the event file: stimuli with their times; only with --open it may be left out",
+    )
+    sub.add_argument(
+        "--alone",
+        metavar="INSTANCE",
+        help="only this instance: nothing is connected, and what the user writes has stubs",
     )
     sub.add_argument(
         "--interpreter",
@@ -292,9 +320,13 @@ def execute(options: argparse.Namespace) -> int:
         return _played(options)
     if options.events is None:
         raise Unusable("`simulate` needs an event file by --events, or --open for a page")
-    checked = common.checked(options, deadlines=False)
+    checked = _chosen(options)
     trace = simulated(
-        checked, options.events, interpreter=options.interpreter, as_json=options.json
+        checked,
+        options.events,
+        interpreter=options.interpreter,
+        as_json=options.json,
+        instance=options.alone,
     )
     missing = left_out(checked.system) if options.interpreter else None
     if missing is not None:
@@ -305,14 +337,19 @@ def execute(options: argparse.Namespace) -> int:
     return OK
 
 
+def _chosen(options: argparse.Namespace) -> Checked:
+    """The model, or an instance of it alone."""
+    checked = common.checked(options, deadlines=False)
+    return checked if options.alone is None else only(checked, options.alone)
+
+
 def _played(options: argparse.Namespace) -> int:
     """Execute it in a page, until that is stopped; the exit status."""
     from ravenchart.workbench.play.server import PlayHub, PlayPages
     from ravenchart.workbench.play.session import Play
 
     def made() -> PlayPages:
-        checked = common.checked(options, deadlines=False)
-        system = checked.system
+        system = _chosen(options).system
         hint = "simulate it without --open: the program in virtual time has them"
         interpreted_alone(system, hint)
         stimuli = None if options.events is None else stimuli_of(system, options.events)

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from ravenchart.behaviour.cases.goals import GoalCoverage, GoalKind, goals
+from ravenchart.behaviour.cases.possible import Outlook
 from ravenchart.behaviour.cases.search import CaseSearch, SearchResult
-from ravenchart.behaviour.cases.stimulation import choices
 from ravenchart.behaviour.cases.watched import watched_machine
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.stimuli import read_stimuli, written_stimuli
@@ -208,8 +208,7 @@ CODE = "types: {Wide: {range: [0, 1000000]}, Code: {fields: {left: Wide, right: 
 def test_a_value_that_chance_would_not_find_is_computed() -> None:
     system = component_system(LOCK, more=CODE)
     assert CaseSearch(system, 2_000).found().open == []
-    search = CaseSearch(system, 2_000)
-    search.choices = choices(system)
+    search = CaseSearch(system, 2_000, ahead=Outlook())
     assert "Part.Main.open is taken" in [goal.text() for goal in search.found().open]
 
 
@@ -304,7 +303,27 @@ def test_old_cases_are_replaced_and_other_files_stay(crossing: Path) -> None:
     assert "case-01.yaml" in names and "mine.yaml" in names and "case-77.yaml" not in names
 
 
-def test_a_model_with_drivers_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    model = ROOT / "examples" / "surgical_robot" / "model.yaml"
-    assert main(["tests", str(model), "--no-run"]) == 1
-    assert "RV-1008" in capsys.readouterr().err
+PAIR = """
+ports:
+  level: {in: Small}
+port_region: {period: 10 ms, wcet: 1 us}
+regions:
+  Main:
+    period: 10 ms
+    wcet: 1 us
+    initial: A
+    states: {A: {}, B: {}}
+    transitions:
+      go: {from: A, to: B, when: level = 3 or level = 7}
+"""
+
+
+def test_two_executions_that_show_a_goal_together_are_both_cases() -> None:
+    system = component_system(PAIR, more=BUS)
+    found = CaseSearch(system, 20_000).found()
+    assert found.open == []
+    shown = GoalCoverage()
+    for case in found.cases:
+        for _ in watched_machine(system, shown).run(case.stimuli):
+            pass
+    assert all(shown.shows(goal) for goal in found.goals)
