@@ -26,7 +26,7 @@ from .search import EFFORT, CaseSearch, SearchResult
 def found_cases(system: System, effort: int = EFFORT) -> SearchResult:
     """The cases that together show what can be shown with ``effort`` instants, of a valid system.
 
-    Half of the effort at the most is for the system, and that ends once a quarter of this has
+    Half of the effort, and at least an instant, is for the system, and that ends once a quarter of this has
     shown nothing new. The components share the rest alike. A system that calls drivers is not
     executed.
     """
@@ -36,7 +36,7 @@ def found_cases(system: System, effort: int = EFFORT) -> SearchResult:
     if system.bindings:
         found = SearchResult([], goals, [g for g in goals if g not in ahead.unreachable], [], 0)
     else:
-        search = CaseSearch(whole, effort // 2, ahead=ahead, patience=max(1, effort // 8))
+        search = CaseSearch(whole, max(1, effort // 2), ahead=ahead, patience=max(1, effort // 8))
         found = search.found()
     cases, open_, executed = list(found.cases), list(found.open), found.executed
     stuck = list(found.stuck)

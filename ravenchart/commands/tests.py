@@ -22,7 +22,7 @@ from ravenchart.behaviour.interpreter.stimuli import written_stimuli
 from ravenchart.building.checking import Checked
 from ravenchart.building.generation import replace_file
 from ravenchart.building.programs import build_home
-from ravenchart.failures import OK, WRONG
+from ravenchart.failures import OK, WRONG, Unusable
 from ravenchart.gen.diagnostics import render
 from ravenchart.running import coverage
 from ravenchart.running.coverage import SourceCoverage
@@ -174,6 +174,8 @@ def _different(checked: Checked, cases: list[FoundCase], files: list[Path]) -> l
 
 def _covered(checked: Checked, cases: list[FoundCase], file: Path) -> list[SourceCoverage]:
     """What the cases execute of the program; it is written, and what it comes to is printed."""
+    if all(case.instance is not None for case in cases):
+        raise Unusable("no case is of the system, so there is no coverage of its program")
     home = build_home(checked, "coverage")
     home.mkdir(parents=True, exist_ok=True)
     switches, scenario = coverage.switches(home)

@@ -134,12 +134,15 @@ def test_what_is_missing_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert reasons[-1].startswith(f"there is no kernel in {tmp_path}")
 
 
-def test_only_the_tests_of_the_hardware_wait_for_their_own_command() -> None:
+def test_each_folder_of_tests_has_a_command() -> None:
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     collected = set(settings["tool"]["pytest"]["ini_options"]["testpaths"])
     folders = {path.parent.relative_to(ROOT).as_posix() for path in ROOT.glob("tests/**/test_*.py")}
-    assert folders - collected == {"tests/hardware"}
+    others = {"tests/hardware", "tests/sources"}
+    assert folders - collected == others
     assert collected <= folders
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert all(f" {folder}" in makefile for folder in others)
 
 
 def test_the_program_is_read_by_its_lines(tmp_path: Path) -> None:

@@ -160,6 +160,15 @@ def test_a_model_with_drivers_has_cases_of_its_components() -> None:
     assert {case.instance for case in found.cases} == {"supervisor_1"}
 
 
+def test_without_a_case_of_the_system_there_is_no_coverage(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = Path(shutil.copytree(ROOT / "examples" / "surgical_robot", tmp_path / "robot"))
+    words = ["tests", str(model / "model.yaml"), "--no-run", "--coverage", str(tmp_path / "x")]
+    assert main([*words, "--effort", "2000"]) == 2
+    assert "no case is of the system" in capsys.readouterr().err
+
+
 @pytest.fixture
 def nodes(tmp_path: Path) -> Path:
     """A copy of an example."""
