@@ -26,9 +26,9 @@ from .search import EFFORT, CaseSearch, SearchResult
 def found_cases(system: System, effort: int = EFFORT) -> SearchResult:
     """The cases that together show what can be shown with ``effort`` instants, of a valid system.
 
-    Half of the effort, and at least an instant, is for the system, and that ends once a quarter of this has
-    shown nothing new. The components share the rest alike. A system that calls drivers is not
-    executed.
+    Half of the effort, and at least an instant, is for the system, and that ends once a quarter
+    of this has shown nothing new. The components share the rest alike. A system that calls
+    drivers is not executed.
     """
     whole = as_one(system)
     goals = goals_of(whole)
