@@ -18,9 +18,7 @@ from xdist.workermanage import WorkerController
 
 from ravenchart.paths import work
 from tests.support import again, compiler, live, scheduling
-
-ALL = "RAVENCHART_ALL_TESTS"
-"""Set in the environment, nothing is left out for its time; so it is where files are named."""
+from tests.support.effort import ALL
 
 AGAIN = "RAVENCHART_TESTS_AGAIN"
 """A file: where only tests that depend on the clock failed, it names them for a second run."""

@@ -25,7 +25,7 @@ from ravenchart.behaviour.rules.cells import every
 from ravenchart.gen.language.terms import Ns, Raise, Value
 from ravenchart.gen.model.component import Component, PortKind
 from ravenchart.gen.model.instances import End
-from ravenchart.gen.model.statechart import After, Every, OnEvent
+from ravenchart.gen.model.statechart import After, Every, OnEvent, Region, Transition
 from ravenchart.gen.model.system import Slot, System
 
 from .goals import Goal, GoalCoverage, GoalElement, GoalKind, goals_of, union
@@ -125,10 +125,9 @@ class CaseSearch:
     ) -> None:
         """Nothing is shown yet; ``needed`` are the goals that are looked for, or all.
 
-        ``ahead`` is what is known of the goals before.
-
-        The search ends once ``patience`` instants have shown nothing new, where it is given. What
-        is written to a data item comes by the port that ``given`` has for it.
+        ``ahead`` is what is known of the goals before. The search ends once ``patience`` instants
+        have shown nothing new, where it is given. What is written to a data item comes by the
+        port that ``given`` has for it.
         """
         self.system, self.effort = system, effort
         self.patience = effort if patience is None else patience
@@ -136,6 +135,7 @@ class CaseSearch:
         self.coverage = GoalCoverage()
         self.goals = goals_of(system)
         self.needed = self.goals if needed is None else needed
+        self._sought = frozenset(self.needed)
         ahead = outlook(system, self.goals) if ahead is None else ahead
         self.unreachable = ahead.unreachable
         self.open = [goal for goal in self.goals if goal not in self.unreachable]
@@ -166,7 +166,7 @@ class CaseSearch:
     def found(self) -> SearchResult:
         """Search, and choose the cases."""
         first = new = size = 0
-        while self._is_needed() and self.executed < self.effort:
+        while not self._sought.isdisjoint(self.open) and self.executed < self.effort:
             if self.coverage.size > size:
                 size, new = self.coverage.size, self.executed
             if self.executed - new > self.patience:
@@ -180,10 +180,6 @@ class CaseSearch:
         met = {goal for case in cases for goal in case.shows}
         left = [g for g in self.needed if g not in met and g not in self.unreachable]
         return SearchResult(cases, self.goals, left, self.unreachable, self.executed, self.stuck)
-
-    def _is_needed(self) -> bool:
-        """Whether something is open that is looked for."""
-        return any(goal in self.needed for goal in self.open)
 
     # --- one try
 
@@ -325,11 +321,9 @@ class CaseSearch:
         """Instants until the longest time-out is due that is to be shown from the active states."""
         longest = 0
         for instance, goal in self._near(branch):
-            _, name, transition = goal.element
-            region = branch.machine.instances[instance].regions[name].region
-            for one in region.transitions:
-                if one.name == transition and isinstance(one.trigger, After | Every):
-                    longest = max(longest, one.trigger.executions * region.timing.period)
+            region, one = _of_goal(branch, instance, goal)
+            if one is not None and isinstance(one.trigger, After | Every):
+                longest = max(longest, one.trigger.executions * region.timing.period)
         return self._instants_in(longest) + 2 * WAITS[-1] if longest else 0
 
     def _instants_in(self, time: int) -> int:
@@ -359,11 +353,9 @@ class CaseSearch:
             if goal.kind is GoalKind.DEFERRED:
                 names.add((instance, str(goal.detail)))
                 continue
-            _, region, name = goal.element
-            run = branch.machine.instances[instance].regions[region].region
-            for transition in run.transitions:
-                if transition.name == name and isinstance(transition.trigger, OnEvent):
-                    names.add((instance, transition.trigger.event))
+            _, transition = _of_goal(branch, instance, goal)
+            if transition is not None and isinstance(transition.trigger, OnEvent):
+                names.add((instance, transition.trigger.event))
         while (
             more := {
                 (instance, cause)
@@ -421,6 +413,13 @@ class CaseSearch:
         for _ in watched_machine(self.system, coverage).run(path):
             pass
         return coverage
+
+
+def _of_goal(branch: Branch, instance: str, goal: Goal) -> tuple[Region, Transition | None]:
+    """The region of a goal, and its transition; None where the goal is a state's."""
+    _, name, element = goal.element
+    run = branch.machine.instances[instance].regions[name]
+    return run.region, run.tree.transitions.get(element)
 
 
 def _together(

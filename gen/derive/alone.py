@@ -12,7 +12,7 @@ requires has read or replied is given alike.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from ravenchart.gen.language.terms import (
@@ -29,6 +29,7 @@ from ravenchart.gen.language.terms import (
     RecordType,
     Set,
     Type,
+    all_joined,
     leaves,
     named,
 )
@@ -206,11 +207,13 @@ def _stub(activity: Activity, given: dict[str, Port]) -> Activity:
     allowed = [_of_given(c.condition, items) for c in activity.ensures if _is_known(c.condition)]
     for item, port in items.items():
         sets = tuple(_sets(activity.origin, item, port))
-        asked = _all([PortTest(port.name, "fresh"), *allowed])
+        asked = all_joined("and", [PortTest(port.name, "fresh"), *allowed])
         flow.append(If(activity.origin, asked, sets, ()))
     if DONE in given:
         port = given[DONE]
-        asked = _all([PortTest(port.name, "fresh"), Name(Reading.PORT, port.name, None, BOOLEAN)])
+        asked = all_joined(
+            "and", [PortTest(port.name, "fresh"), Name(Reading.PORT, port.name, None, BOOLEAN)]
+        )
         flow.append(If(activity.origin, asked, (Raise(activity.origin, DONE),), ()))
     old = {leaf.name for c in allowed for leaf in leaves(c) if isinstance(leaf, Name)}
     reads = (*activity.reads, *(name for name in items if name in old))
@@ -234,13 +237,6 @@ def _sets(origin: Origin, item: str, port: Port) -> Iterator[Set]:
             yield Set(origin, item, one.name, value)
     else:
         yield Set(origin, item, None, Name(Reading.PORT, port.name, None, port.type))
-
-
-def _all(conditions: Iterable[Expression]) -> Expression:
-    first, *others = conditions
-    for one in others:
-        first = Operation("and", (first, one), BOOLEAN)
-    return first
 
 
 def _is_known(condition: Expression) -> bool:

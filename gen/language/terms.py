@@ -9,7 +9,7 @@ and typed: their names are known, their integer bounds computed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import NewType, Protocol, TypeVar
@@ -185,6 +185,14 @@ def leaves(expression: Expression) -> Iterator[Leaf]:
             yield from leaves(operand)
     else:
         yield expression
+
+
+def all_joined(operator: str, parts: Sequence[Expression]) -> Expression:
+    """Conditions joined by ``and`` or by ``or``; there is at least one."""
+    made = parts[0]
+    for part in parts[1:]:
+        made = Operation(operator, (made, part), BOOLEAN)
+    return made
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,7 @@ from ravenchart.gen.language.terms import (
     RecordType,
     ScalarType,
     Type,
+    all_joined,
     named,
 )
 
@@ -48,7 +49,7 @@ class Fact:
         of_type = item.type if self.field is None else _record(item.type).field(self.field).type
         assert not isinstance(of_type, RecordType)
         parts = [_within(item, of_type, span) for span in self.spans]
-        return _joined("or", parts) if parts else Literal("False", BOOLEAN)
+        return all_joined("or", parts) if parts else Literal("False", BOOLEAN)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,11 +94,11 @@ def _within(item: Name, of_type: ScalarType, span: ValueRange) -> Expression:
     if of_type == BOOLEAN:
         return item if first else Operation("not", (item,), BOOLEAN)
     if isinstance(of_type, EnumerationType):
-        one = [
+        one: list[Expression] = [
             Operation("=", (item, Literal(of_type.literals[at], of_type)), BOOLEAN)
             for at in range(first, last + 1)
         ]
-        return _joined("or", list(one))
+        return all_joined("or", one)
     if first == last:
         return Operation("=", (item, Literal(first, None)), BOOLEAN)
     parts: list[Expression] = []
@@ -105,11 +106,4 @@ def _within(item: Name, of_type: ScalarType, span: ValueRange) -> Expression:
         parts.append(Operation(">=", (item, Literal(first, None)), BOOLEAN))
     if last < of_type.last:
         parts.append(Operation("<=", (item, Literal(last, None)), BOOLEAN))
-    return _joined("and", parts)
-
-
-def _joined(operator: str, parts: list[Expression]) -> Expression:
-    made = parts[0]
-    for part in parts[1:]:
-        made = Operation(operator, (made, part), BOOLEAN)
-    return made
+    return all_joined("and", parts)

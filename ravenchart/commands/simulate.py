@@ -122,7 +122,7 @@ def played_by_program(
 def _built(checked: Checked, instance: str | None) -> Path:
     without_clashes(checked)
     write_first_versions(checked)
-    own = "" if instance is None else f"-{instance.replace('.', '-')}"
+    own = "" if instance is None else f"-{instance.lower().replace('.', '-')}"
     return build_simulation(checked.system, checked.folder, build_home(checked, f"simulation{own}"))
 
 

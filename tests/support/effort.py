@@ -10,10 +10,13 @@ from collections.abc import Sequence
 
 import pytest
 
+ALL = "RAVENCHART_ALL_TESTS"
+"""Set in the environment, nothing is left out for its time; so it is where files are named."""
+
 
 def drawn(some: int, whole: int) -> int:
     """``some`` in `make test`, ``whole`` in `make test-all`."""
-    return whole if "RAVENCHART_ALL_TESTS" in os.environ else some
+    return whole if ALL in os.environ else some
 
 
 def seeds(some: int, whole: int) -> Sequence[object]:

@@ -7,13 +7,11 @@ from __future__ import annotations
 
 import socket
 import threading
-import time
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from contextlib import suppress
 
-PATIENCE = 10.0
-"""Seconds within which clients are accepted, on a host that withholds the core as well."""
+from .examples import becomes
 
 
 class Listener(ABC):
@@ -49,10 +47,7 @@ class Listener(ABC):
 
     def wait_for(self, clients: int) -> None:
         """Until so many clients are served: what is said before reaches none of them."""
-        end = time.monotonic() + PATIENCE
-        while len(list(self._links())) < clients:
-            assert time.monotonic() < end, f"{clients} clients are awaited"
-            time.sleep(0.001)
+        assert becomes(lambda: len(list(self._links())) >= clients), f"{clients} are awaited"
 
     @abstractmethod
     def _links(self) -> Iterable[socket.socket]:
