@@ -9,6 +9,7 @@ import os
 import shutil
 import sys
 import sysconfig
+import time
 from collections.abc import Iterator
 from importlib.util import cache_from_source
 from pathlib import Path
@@ -22,6 +23,8 @@ from tests.support.effort import ALL
 
 AGAIN = "RAVENCHART_TESTS_AGAIN"
 """A file: where only tests that depend on the clock failed, it names them for a second run."""
+QUIET = 0.2
+"""Seconds in which a worker that has nothing to do any more is watched."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -52,6 +55,18 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for item in items:
             if item.get_closest_marker("slow") is not None:
                 item.add_marker(pytest.mark.skip(reason="slow: `make test-all` runs it"))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _nothing_goes_on() -> Iterator[None]:
+    """After the last test no thread of a test is busy: it would slow all that come after it."""
+    yield
+    before = time.process_time()
+    time.sleep(QUIET)
+    used = time.process_time() - before
+    assert used < QUIET / 4, (
+        f"a thread of a test goes on: {used:.2f} s of the processor in {QUIET} s"
+    )
 
 
 @pytest.hookimpl(wrapper=True)

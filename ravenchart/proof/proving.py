@@ -128,6 +128,12 @@ def prove(
     return proof
 
 
+def is_kept(task: ProofTask) -> bool:
+    """Whether results of an earlier run on the same content are there, so `prove` takes no time."""
+    key = proof_cache.key(ages.version(), task, _inputs(task.sources))
+    return proof_cache.load(key) is not None
+
+
 def examples(task: ProofTask, proof: Proof, tell: Callable[[str], None] = lambda _: None) -> str:
     """The messages about what is not proved, with values for which it fails where there are some.
 

@@ -24,7 +24,7 @@ SET_POINT = b"t11030080FF\r"
 
 
 class Board:
-    """Writes ``said`` look by look and keeps each answer, until EOT or the end of ``said``."""
+    """Writes ``said`` look by look and keeps each answer, until EOT or the end of either."""
 
     def __init__(self, folder: Path, said: list[bytes]) -> None:
         self.heard: list[bytes] = []
@@ -42,7 +42,10 @@ class Board:
                 out.write(text + b"\n")
                 answer = b""
                 while not answer.endswith(b"\n"):
-                    answer += into.read(64)
+                    part = into.read(64)
+                    if not part:
+                        return
+                    answer += part
                 self.heard.append(answer.removesuffix(b"\n"))
                 if b"\x04" in answer:
                     break
