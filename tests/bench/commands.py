@@ -41,6 +41,7 @@ procedure Commands_Bench is
 
    Reply : Requests_Feature.Outcome;
    Full  : Ravenchart.Queueing.Put_Status;
+   Row   : Ravenchart.Element_Id;
 
    type Kind is (Plain, Direct, Queued);
    Best : array (Kind) of Duration := (others => Duration'Last);
@@ -63,7 +64,8 @@ procedure Commands_Bench is
                  ((Name   => Requests_Feature.Mover.Motion_Requests.Hold_Asked,
                    others => <>),
                   Full);
-               Requests_Feature.Mover_1.Run_Serve;
+               Row := 0;
+               Requests_Feature.Mover_1.Run_Serve (Row);
             end loop;
       end case;
       Best (What) :=

@@ -50,6 +50,11 @@ HARDWARE = "hardware"
 """The folder below generated/ of the bodies with the registers at their addresses."""
 
 STATE = "Registers"
+_OF_ADDRESSES = (
+    "writing to * is assumed to have no effects on other*",
+    "address specification on * is imprecisely supported*",
+)
+"""What gnatprove warns of an object at an address, in the words of each of its ages."""
 
 
 def types_with_registers(system: System) -> tuple[DeviceType, ...]:
@@ -184,17 +189,18 @@ def _at_addresses(system: System, kind: DeviceType, header: str) -> Unit:
     items: list[Decl] = []
     placed = any(device.address is not None for device in devices)
     if placed:
-        items.append(
+        items += [
             Pragma(
                 "Warnings",
                 (
                     ref("GNATprove"),
                     ref("Off"),
-                    StringLiteral("writing to * is assumed to have no effects on other*"),
+                    StringLiteral(text),
                     Arg("Reason", StringLiteral("ASM-018, registers are where the model says")),
                 ),
             )
-        )
+            for text in _OF_ADDRESSES
+        ]
     given = not all(one.access.writes for one in kind.registers)
     if given and any(device.address is None for device in devices):
         pattern = StringLiteral("* is not modified, consider pragma Export *")

@@ -25,6 +25,9 @@ is
    pragma Warnings (GNATprove, Off,
       "writing to * is assumed to have no effects on other*",
       Reason => "ASM-018, registers are where the model says");
+   pragma Warnings (GNATprove, Off,
+      "address specification on * is imprecisely supported*",
+      Reason => "ASM-018, registers are where the model says");
 
    --  [Left]
    Left_Control : Interfaces.Unsigned_32
