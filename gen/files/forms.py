@@ -288,6 +288,7 @@ def _form_at(form: type[BaseModel], steps: list[str | int]) -> type[BaseModel] |
     kind: Any = form
     for step in steps:
         if isinstance(kind, type) and issubclass(kind, BaseModel):
+            kind.model_rebuild()  # forms inside each other; nothing where it is complete
             fields = {f.alias or name: f for name, f in kind.model_fields.items()}
             if step not in fields:
                 return None

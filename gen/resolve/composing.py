@@ -284,14 +284,16 @@ class _Composing:
                     hint = "list the names of all its commands and events under `commands`"
                     self.findings.error("RV-0806", form.at_key(key), message, hint=hint)
             commands: set[str] = set()
+            damaged = form.damaged
             for text, at, said in named_commands(form):
                 command = self.known.dictionary.look_up(text, at, self.findings)
                 commands |= set() if command is None else {command.name}
+                damaged = damaged or command is None
                 if said is not None and said.tree:
                     message = f"{text} has no properties here: {name} leads to another interface"
                     hint = "give them to the interface that requires it in the end"
                     self.findings.error("RV-0806", at, message, hint=hint)
-            interface = Interface(name, form.axes, frozenset(commands))
+            interface = Interface(name, form.axes, frozenset(commands), is_damaged=damaged)
             scope.declare(name, form.origin, interface, self.findings)
         return scope
 
@@ -359,7 +361,7 @@ class _Composing:
             (own.commands - to.commands, own.name, end),
             (to.commands - own.commands, end, own.name),
         ):
-            if names:
+            if names and not (own.is_damaged or to.is_damaged):
                 message = f"{has} has {', '.join(sorted(names))}, which {lacks} lacks"
                 notes = [(declared, f"`{own.name}` is declared here")]
                 hint = f"list under `commands` of {own.name} what {end} has"

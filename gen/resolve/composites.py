@@ -36,7 +36,7 @@ class Interface:
     """An interface of an instance, and who requires or provides it in the end, by paths.
 
     ``requirers`` name their own interfaces; ``server`` is there of a provided one that is sound.
-    ``axes`` are 0 where nothing depends on them.
+    ``axes`` are 0 where nothing depends on them. Of a damaged one some commands may be lost.
     """
 
     name: str
@@ -44,6 +44,7 @@ class Interface:
     commands: frozenset[str]
     requirers: tuple[tuple[str, str], ...] = ()
     server: tuple[str, Provided] | None = None
+    is_damaged: bool = False
 
     def under(self, path: str) -> Interface:
         """The same, seen from outside of the instance at the path."""
@@ -140,7 +141,8 @@ def required_by(component: Component, *, damaged: bool) -> NameScope[Interface]:
     for one in both:
         names.setdefault(one.interface, []).append(one.name)
     for name, commands in names.items():
-        found = Interface(name, axes.get(name, 0), frozenset(commands), (("", name),))
+        of = frozenset(commands)
+        found = Interface(name, axes.get(name, 0), of, (("", name),), is_damaged=damaged)
         scope.declare(name, None, found)
     return scope
 
@@ -157,5 +159,6 @@ def provided_by(component: Component, *, damaged: bool) -> NameScope[Interface]:
                 *(event.name for event in one.events),
             )
         )
-        scope.declare(one.name, one.origin, Interface(one.name, one.axes, names, server=("", one)))
+        made = Interface(one.name, one.axes, names, server=("", one), is_damaged=damaged)
+        scope.declare(one.name, one.origin, made)
     return scope

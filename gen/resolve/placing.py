@@ -28,8 +28,20 @@ from .composites import Composite, within
 from .paths import DeploymentNames, Placed, ends_at, outermost
 from .values import constant
 
-Values = Mapping[str, tuple[Parameter, Scalar | None]]
-"""The parameters of the composite around an instance, by their names in lower case."""
+
+@dataclass(frozen=True, slots=True)
+class Passing:
+    """The parameters of the composite around an instance, and their values by name in lower case.
+
+    A parameter whose declaration is wrong has none.
+    """
+
+    declared: NameScope[Parameter]
+    values: Mapping[str, tuple[Parameter, Scalar | None]]
+
+
+TOP = Passing(NameScope("parameter"), {})
+"""Around the instances of the model itself there is nothing."""
 
 
 def place_instance(name: str, form: InstanceForm, site: DeploymentNames) -> None:
@@ -39,11 +51,11 @@ def place_instance(name: str, form: InstanceForm, site: DeploymentNames) -> None
     node = site.nodes.look_up(form.node, form.at("node"), findings)
     if of is None or node is None:
         if isinstance(of, Parts):
-            values_of(name, form, of.members.parameters, {}, findings)
+            values_of(name, form, of.members.parameters, TOP, findings)
         site.owners.declare(name, form.origin, None, findings)
         site.instances.declare(name, form.origin, None)
         return
-    _Placing(site, node.name).declare(name, form, of, {}, ())
+    _Placing(site, node.name).declare(name, form, of, TOP, ())
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +72,7 @@ class _Placing:
         path: str,
         form: InstanceForm | InnerInstanceForm,
         of: Parts | Composite,
-        around: Values,
+        around: Passing,
         delegations: tuple[Delegation, ...],
     ) -> None:
         """Declare the instance at the path, with its parameters, and those inside it."""
@@ -86,13 +98,14 @@ class _Placing:
             *delegations,
             *(one for one in own_ends if (one.end.instance, one.end.port) not in known),
         )
+        passing = Passing(of.members.parameters, values)
         placing = replace(self, composites=(*self.composites, of.name))
         for inside in of.inside.sound():
             inner = f"{path}.{inside.name}"
             theirs = tuple(
                 one for one in all_of_them if f"{one.end.instance}.".startswith(f"{inner}.")
             )
-            placing.declare(inner, inside.form, inside.of, values, theirs)
+            placing.declare(inner, inside.form, inside.of, passing, theirs)
 
 
 def _delegations(
@@ -111,9 +124,9 @@ def values_of(
     name: str,
     form: InstanceForm | InnerInstanceForm,
     declared: NameScope[Parameter],
-    around: Values,
+    around: Passing,
     findings: Findings,
-) -> Values:
+) -> dict[str, tuple[Parameter, Scalar | None]]:
     """The value of each parameter: given, passed by the composite around it, or the default."""
     own = plain_parameters(form)
     given = {key.lower(): key for key in own}
@@ -126,8 +139,8 @@ def values_of(
         value = parameter.default
         if entry is not None:
             text = own[entry]
-            if isinstance(text, str) and text.lower() in around:
-                value = _passed(form, entry, parameter, around[text.lower()], findings)
+            if isinstance(text, str) and around.declared.knows(text):
+                value = _passed(form, entry, parameter, around.values.get(text.lower()), findings)
             else:
                 place = form.place("parameters", entry)
                 value = constant(text, place, parameter.name, parameter.type, findings)
@@ -144,10 +157,16 @@ def _passed(
     form: InstanceForm | InnerInstanceForm,
     entry: str,
     parameter: Parameter,
-    given: tuple[Parameter, Scalar | None],
+    given: tuple[Parameter, Scalar | None] | None,
     findings: Findings,
 ) -> Scalar | None:
-    """The value of a parameter of the composite around an instance, for one of its own type."""
+    """The value of a parameter of the composite around an instance, for one of its own type.
+
+    None, without another word, where the declaration of that parameter is wrong.
+    """
+    if given is None:
+        findings.lose()
+        return None
     own, value = given
     at = form.place("parameters", entry).origin
     findings.uses.append(NameUse(own.name, at, "parameter", own.origin))

@@ -161,12 +161,17 @@ def inputs_have_one_source(resolved: Resolved) -> Iterator[Diagnostic]:
                 notes = [(found[0], "the first is here")]
                 hint = "give the second an input port of its own"
                 yield error("RV-0603", origin, message, notes=notes, hint=hint)
-            if not found and complete:
+            if not found and complete and not _may_be_told(instance.component, resolved):
                 unfed, at = instance.outside(port.name)
                 message = f"{unfed} has no source"
                 notes = [(port.origin, f"`{port.name}` is declared here")]
                 hint = "connect it under `connections:`, or let a message lead to it"
                 yield error("RV-0602", at, message, notes=notes, hint=hint)
+
+
+def _may_be_told(component: Component, resolved: Resolved) -> bool:
+    """Whether a port of it may have lost the event of an interface that it is told."""
+    return component.name in resolved.damaged and bool(component.needs or component.hears)
 
 
 def outputs_lead_somewhere(resolved: Resolved) -> Iterator[Diagnostic]:

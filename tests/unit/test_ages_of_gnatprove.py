@@ -30,11 +30,7 @@ compiled with GCC version 14.2.0
     "version, age, switches",
     [
         (OLDER, "gnat-12", ("--prover=z3,cvc4", "--checks-as-errors")),
-        (
-            YOUNGER,
-            "gnat-14",
-            ("--prover=z3,cvc5", "--checks-as-errors=on", "--timeout=30", "--proof=progressive"),
-        ),
+        (YOUNGER, "gnat-14", ("--prover=z3,cvc5", "--checks-as-errors=on", "--timeout=30")),
     ],
 )
 def test_each_age_has_switches_of_its_own(
