@@ -33,6 +33,7 @@ CALLED_BY_OTHERS = {
     "audsley_tasks": "theory beside the one for frames, compared with references",
     "with_priorities": "theory beside the one for frames, compared with references",
     "with_ranks": "theory beside the one for frames, compared with references",
+    "is_kept": "`make prove` asks it when its time is over",
     "stale_sources": "the tests of the proof records are built on it",
 }
 """Names that nothing of the package uses, and who uses them."""

@@ -7,8 +7,11 @@ from __future__ import annotations
 
 import argparse
 import ast
+import inspect
+import io
 import json
 import re
+import tokenize
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,6 +34,15 @@ SPOKEN = (
     *("ravenchart/databases", "ravenchart/building", "ravenchart/proof", "ravenchart/workbench"),
 )
 """Folders whose texts reach a user."""
+
+PRODUCT = ("gen", "behaviour", "analysis", "hw_can", "ravenchart")
+"""Folders of the product's Python; `ravenchart` holds links to the others."""
+TEMPLATES = (
+    *sorted((ROOT / "analysis/present/templates").glob("*.html")),
+    *sorted((ROOT / "ravenchart/evidence/templates").glob("*.html")),
+    ROOT / "ravenchart/commands/loopback.html",
+    *sorted((ROOT / "ravenchart/workbench/assets").glob("*.html")),
+)
 
 SENTENCE = re.compile(r"(?<=[.?!])\)? (?=[\"(`*A-Z0-9]|gnatprove)")
 
@@ -155,3 +167,62 @@ def of_explanations() -> Iterator[Sentence]:
         text = path.read_text(encoding="utf-8")
         for found in re.finditer(r"^ *why: (?:[|>]-?\n)?(.*(?:\n    +\S.*)*)", text, re.M):
             yield from sentences(f"{name}:{text[: found.start()].count(chr(10)) + 1}", found[1])
+
+
+def of_comments() -> Iterator[Sentence]:
+    """The sentences of docstrings, of the texts below attributes, and of comments in Python."""
+    for folder in PRODUCT:
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            if path.is_relative_to(ROOT / folder) and not path.resolve().is_relative_to(
+                (ROOT / folder).resolve()
+            ):
+                continue  # behind a link: it is read where it is
+            name, text = str(path.relative_to(ROOT)), path.read_text(encoding="utf-8")
+            for node in ast.walk(ast.parse(text)):
+                match node:
+                    case ast.Expr(ast.Constant(str(said)) as at):
+                        yield from _of_docstring(name, at.lineno, said)
+            yield from _of_hashes(name, text)
+
+
+def _of_docstring(name: str, line: int, said: str) -> Iterator[Sentence]:
+    """Its paragraphs and list items, without listings."""
+    for paragraph in re.finditer(r"(?:^(?! {4,}\S).*\S.*\n?)+", inspect.cleandoc(said), re.M):
+        for part in re.split(r"\n(?=[-*] )", paragraph[0]):
+            yield from sentences(f"{name}:{line}", part.removeprefix("- "))
+
+
+def _of_hashes(name: str, text: str) -> Iterator[Sentence]:
+    """Comments; those of lines that follow each other are one text."""
+    block: list[str] = []
+    first = last = 0
+    tokens = [*tokenize.generate_tokens(io.StringIO(text).readline)]
+    for token in tokens:
+        if token.type != tokenize.COMMENT or token.string.startswith(("# SPDX", "# ---", "#!")):
+            continue
+        number = token.start[0]
+        said = re.sub(r"^#+|\b(noqa|type: ignore|fmt:|pragma:).*", "", token.string).strip()
+        if block and number != last + 1:
+            yield from sentences(f"{name}:{first}", " ".join(block))
+            block = []
+        if not block:
+            first = number
+        block.append(said)
+        last = number
+    yield from sentences(f"{name}:{first}", " ".join(block))
+
+
+def of_templates() -> Iterator[Sentence]:
+    """The sentences of pages that the tool writes: their text without marks and code."""
+    for path in TEMPLATES:
+        text = re.sub(r"(?s)<(script|style|svg)\b.*?</\1>|{#.*?#}|{%.*?%}|<!--.*?-->",
+                      _lines, path.read_text(encoding="utf-8"))  # fmt: skip
+        text = re.sub(r"(?s){{.*?}}", lambda m: "x" + _lines(m), text)
+        text = re.sub(r"(?s)</?(b|i|em|strong|code|a|span|abbr|sub|sup|kbd)\b[^>]*>", _lines, text)
+        for found in re.finditer(r"(?s)[^<>]*\w[^<>]*(?=<)", text):
+            line = text[: found.start()].count("\n") + 1
+            yield from sentences(f"{path.relative_to(ROOT)}:{line}", found[0])
+
+
+def _lines(found: re.Match[str]) -> str:
+    return "\n" * found[0].count("\n")

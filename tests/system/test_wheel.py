@@ -117,6 +117,7 @@ def test_a_wheel_has_one_import_package_and_all_that_a_program_needs(wheel: Path
 def test_a_new_project_is_checked_built_run_and_drawn(away: Path) -> None:
     _called(away, "new", "tank")
     assert "every deadline is met" in _called(away, "check", "tank/model.yaml")
+    assert "tank/generated" in _called(away, "generate", "tank/model.yaml")
     built = _called(away, "build", "tank/model.yaml")
     assert f"built {away / 'cache' / 'ravenchart'}" in built and "warning" not in built
     assert "verdict: PASS" in _called(away, "run", "tank/model.yaml", "--seconds", "2")
