@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Rules of behaviour: what the charts of a model can and cannot come to.
+"""Rules of behaviour: the situations that the charts of a model can and cannot reach.
 
-`findings` looks at each component by search and by z3. Nothing is said to be
-impossible that is possible, and nothing to happen without a way to it.
+`findings` checks each component by search and by z3. No finding calls something
+impossible that is possible. Each finding of a possible situation has a way to it.
 """
 
 from __future__ import annotations
@@ -22,13 +22,14 @@ from .inductive import contracts
 from .invariants import NOT_PROVED, VIOLATED, invariants_hold
 from .livelock import eventless_steps_end
 from .outcomes import TooManyWays
+from .protocols import protocols_followed
 from .reach import Reachable
 
 
 def behaviour(system: System, effort: int = EFFORT) -> Behaviour:
-    """What the behaviour of a valid model gets wrong, and the invariants for its code.
+    """The findings on the behaviour of a valid model, and the invariants for its code.
 
-    ``effort`` is that of the search; what becomes a contract does not depend on it.
+    ``effort`` is that of the search; the contracts do not depend on it.
     """
     found = findings(system, effort)
     kept = contracts(system)
@@ -38,7 +39,7 @@ def behaviour(system: System, effort: int = EFFORT) -> Behaviour:
 
 
 def findings(system: System, effort: int = EFFORT) -> tuple[Diagnostic, ...]:
-    """What the behaviour of a valid model gets wrong, in order of place."""
+    """The findings on the behaviour of a valid model, in order of location."""
     budget = Budget(effort)
     found: list[Diagnostic] = []
     for component in system.components:
@@ -61,6 +62,7 @@ def _of_component(component: Component, system: System, budget: Budget) -> Itera
             for rule in (*RULES, eventless_steps_end):
                 yield from rule(reach, thread)
     yield from invariants_hold(reach, system)
+    yield from protocols_followed(component, system, budget)
 
 
 def _limit(component: Component, how_far: str) -> Diagnostic:

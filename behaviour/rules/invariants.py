@@ -34,11 +34,33 @@ VIOLATED = "RV-1108"
 NOT_PROVED = "RV-1109"
 
 Pairs = Sequence[tuple[Term, Term]]
-"""What stands for what in a substitution."""
+"""A substitution: each term with its replacement."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unproved:
+    """An invariant that is violated, or that a step may violate as far as its proof can tell."""
+
+    invariant: Invariant
+    broken: Broken
+    """The step at which the proof ends."""
+    violation: Violation | None
+    """A way from the start to a situation that violates it, where one was found."""
+    looked: int
+    """How many situations were searched for such a way."""
 
 
 def invariants_hold(reach: Reachable, system: System) -> Iterator[Diagnostic]:
     """Each declared invariant holds in every reachable situation."""
+    for one in unproved(reach, system):
+        if one.violation is None:
+            yield _not_inductive(one)
+        else:
+            yield _violated(reach, one.invariant, one.violation)
+
+
+def unproved(reach: Reachable, system: System) -> Iterator[Unproved]:
+    """The invariants of the component that are not proved; `Exhausted` behind the last one."""
     for invariant in reach.component.invariants:
         bad = logic.term(invariant.condition, reach.symbol)
         if _is_excluded(reach, bad):
@@ -53,12 +75,9 @@ def invariants_hold(reach: Reachable, system: System) -> Iterator[Diagnostic]:
         try:
             violation = next((v for v in map(WaySearch.violation, searches) if v), None)
         except Exhausted:
-            yield _not_inductive(invariant, broken, sum(search.looked for search in searches))
+            yield Unproved(invariant, broken, None, sum(search.looked for search in searches))
             raise
-        if violation is None:
-            yield _not_inductive(invariant, broken, sum(search.looked for search in searches))
-        else:
-            yield _violated(reach, invariant, violation)
+        yield Unproved(invariant, broken, violation, sum(search.looked for search in searches))
 
 
 # --- Proof ---------------------------------------------------------------------------
@@ -87,7 +106,7 @@ def _somewhere(reach: Reachable, thread: Thread) -> Term:
 
 
 def _states(reach: Reachable, thread: Thread, at: Configuration) -> list[Term]:
-    """What a thread publishes in a configuration, as far as anything asks for it."""
+    """The states that a thread publishes in a configuration, as far as they are asked for."""
     active = thread.tree.default if at == Configuration() else at.active
     asked = _asked(reach, thread, active)
     return [
@@ -96,7 +115,7 @@ def _states(reach: Reachable, thread: Thread, at: Configuration) -> list[Term]:
 
 
 def _asked(reach: Reachable, thread: Thread, active: tuple[str, ...]) -> list[Variable]:
-    """The states of a thread that are asked for, and of which active ones say whether they are."""
+    """The states of a thread that are asked for and that ``active`` determines."""
     asked = [n for n in reach.symbols if n[0] == "in" and n[1] == thread.name]
     if thread.parts is None:
         return asked
@@ -186,7 +205,7 @@ def _start(reach: Reachable) -> Pairs:
 
 
 def _inputs(reach: Reachable) -> Iterator[tuple[str, Origin, list[Variable]]]:
-    """What writes without a flow: each port's handler, each body of the user's."""
+    """The writers without a flow: each port's handler, each body of the user's, each command."""
     for port in reach.component.inputs():
         names = [n for n in reach.types if n[0] in ("port", "port state") and n[1] == port.name]
         yield f"the port {port.name}", port.origin, names
@@ -206,7 +225,7 @@ def _distinct(thread: Thread) -> Iterator[Edge]:
 
 
 def _stale(reach: Reachable, system: System, thread: Thread) -> Pairs:
-    """Copies of what a thread may have read before another processor wrote it anew."""
+    """Copies of variables that a thread may have read before another processor wrote them."""
     component = reach.component
     rows = {r.name: r for r in component.runnables()}
     beside = {name for name in (*rows, PORTS) if in_one_table(system, component, thread.name, name)}
@@ -228,8 +247,8 @@ def _written(reach: Reachable, thread: Thread) -> list[tuple[Variable, ScalarTyp
 
 
 def _lasting(reach: Reachable, thread: Thread, condition: Term) -> Term:
-    """What holds of a step for as long as it lasts: where regions are looked at one by one, another
-    one may have set the data of the chart since they were read."""
+    """The part of a step's condition that holds until its end. Where regions are explored one by
+    one, another one may have set the chart's data: conditions on these data are left out."""
     if thread.parts is None:
         return condition
     own = {str(name) for name, _ in _written(reach, thread)}
@@ -238,7 +257,7 @@ def _lasting(reach: Reachable, thread: Thread, condition: Term) -> Term:
 
 
 def _after(reach: Reachable, thread: Thread, edge: Edge, stale: Pairs) -> Pairs:
-    """What a step changes."""
+    """The states and data that a step changes, each with its value after the step."""
     active = edge.outcome.after.active
     states = [
         (reach.symbol(name), z3.BoolVal(name[2] in active))
@@ -272,13 +291,14 @@ def _violated(reach: Reachable, invariant: Invariant, found: Violation) -> Diagn
     return error(VIOLATED, invariant.origin, message, notes=notes)
 
 
-def _not_inductive(invariant: Invariant, broken: Broken, looked: int) -> Diagnostic:
+def _not_inductive(one: Unproved) -> Diagnostic:
+    invariant, broken = one.invariant, one.broken
     message = f"the invariant {invariant.name} is not proved: {broken.step} may violate it"
     data = f"when {broken.data}" if broken.data else "whatever the data"
     notes = [(broken.origin, f"the step violates it {data}")]
     searched = (
-        f"no way from the start to it was found among {looked} situations"
-        if looked
+        f"no way from the start to it was found among {one.looked} situations"
+        if one.looked
         else "there was no time left to look for a way from the start to it"
     )
     hint = f"{searched}; exclude it by a guard, or say more in the condition of `never`"

@@ -1,15 +1,14 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Why each code matters, with what is wrong and its correction.
+"""Why each code matters, with an error and its correction.
 
 The one source of `ravenchart explain` and docs/errors.md, beside the table of meanings in
 `gen.diagnostics`. ``bases`` holds correct models. An entry of ``NN.yaml`` names one of them,
 makes of it the corrected model (``also``) and of that the wrong one (``wrong``). Each edit is
 text that stands once, its replacement and, where it is long, how often that is repeated. Where
 a code is not about a model alone, ``beside`` has the other files by their names, and ``command``
-is what reports the code. Then ``wrong`` may edit any of the files, or the command. Tests apply
-all of them.
+reports the code. Then ``wrong`` may edit any of the files, or the command. Tests apply all edits.
 """
 
 from __future__ import annotations
@@ -57,7 +56,7 @@ class Example:
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """What a code means, why it matters, and two examples: with the error and without."""
+    """The meaning of a code, why it matters, and two examples: with the error and without."""
 
     code: str
     why: str
@@ -135,7 +134,7 @@ def _base(name: str) -> str:
 
 
 def text(code: str) -> str:
-    """What `ravenchart explain` prints, at most 80 columns wide."""
+    """The text that `ravenchart explain` prints, at most 80 columns wide."""
     found = explanations()[code]
     lines = [f"{code}  {GROUPS[code[3:5]]}", *textwrap.wrap(found.meaning, WIDTH), ""]
     lines += textwrap.wrap(found.why, WIDTH)

@@ -50,6 +50,8 @@ TITLES: Mapping[str, str] = {
     "RequiredForm": "Required interface",
     "NeedForm": "Required command",
     "ProvidedForm": "Provided interface",
+    "ProtocolForm": "Protocol",
+    "ProtocolStepForm": "Protocol: transition",
     "DeviceTypeForm": "Device type",
     "DeviceParameterForm": "Device parameter",
     "RegisterForm": "Register",
@@ -209,7 +211,7 @@ def reference() -> str:
 
 
 def _kind(value: Mapping[str, Any]) -> str:
-    """What a key takes, in words."""
+    """The kind of a key's value, in words."""
     if "$ref" in value:
         return _link(value["$ref"])
     if "enum" in value:
@@ -236,7 +238,7 @@ def _kind(value: Mapping[str, Any]) -> str:
 
 
 def _text_kind(pattern: str) -> str:
-    """What kind of text a pattern stands for."""
+    """The kind of text that a pattern stands for."""
     for mark, word in (("ns|", "duration"), ("KiB", "size"), ("kbit", "bit rate")):
         if mark in pattern:
             return word

@@ -68,6 +68,25 @@ class RequiredForm(Element):
     )
 
 
+class ProtocolStepForm(Element):
+    """A transition of a protocol: where a command may be called."""
+
+    from_: Reference = key("A state in which the command may be called.", alias="from")
+    to: Reference | None = optional("The state after the call; `from` unless given.")
+    on: Reference = key("The command.")
+
+
+class ProtocolForm(Element):
+    """The order in which each client may call the commands of an interface.
+
+    Commands that no transition names may be called in every state.
+    """
+
+    initial: Reference = key("The state before the first call.")
+    states: list[Name] = key("Its states.", min_length=1)
+    transitions: dict[Name, ProtocolStepForm] = key("Its transitions.", min_length=1)
+
+
 class ProvidedForm(Element):
     """A provided interface of a component: queued commands, and data that it publishes."""
 
@@ -85,6 +104,7 @@ class ProvidedForm(Element):
     events: dict[Reference, Reference] | None = optional(
         "Events, each with the output port that it is sent on."
     )
+    protocol: ProtocolForm | None = optional("The order in which a client may call `commands`.")
 
 
 class DeviceParameterForm(Element):
@@ -135,6 +155,9 @@ class DeviceTypeForm(Element):
     make_safe: PositiveSpan | None = optional(
         "Worst-case execution time of the driver's `Make_Safe`, called when the controller ends, "
         "also by a failure; from then on the device executes no command that acts."
+    )
+    protocol: ProtocolForm | None = optional(
+        "The order in which a client may call its commands, `read` ones left out."
     )
 
 

@@ -5,7 +5,7 @@
 
 A *device* has no task: its commands are procedures of a driver, called directly. A *task*
 is a component instance: its commands are queued, and executed by one of its activities.
-What provides a required command is decided at generation; see docs/devices.md.
+The provider of a required command is decided at generation; see docs/devices.md.
 """
 
 from __future__ import annotations
@@ -16,16 +16,18 @@ from enum import Enum
 from ravenchart.gen.language.terms import Ns, Scalar, ScalarType, Type, Value, named
 from ravenchart.gen.origins import Origin
 
+from .protocols import Protocol
+
 
 class CommandKind(Enum):
-    """What a command takes and gives."""
+    """The kind of a command: whether it has an argument and a reply."""
 
     VOID = "void"
     WRITE = "write"
     READ = "read"
     QUALIFIED_READ = "qualified_read"
     EVENT = "event"
-    """Comes from whoever provides it: `argument` is what it tells."""
+    """Comes from the provider: `argument` is its value."""
 
     @property
     def takes(self) -> bool:
@@ -52,7 +54,7 @@ class Command:
 
 @dataclass(frozen=True, slots=True)
 class StandIn:
-    """What stands in for a command: ``activity`` keeps the data item ``item`` up for it."""
+    """The fallback of a command: ``activity`` keeps the data item ``item`` up to date for it."""
 
     activity: str
     item: str
@@ -137,6 +139,7 @@ class Provided:
     requests: tuple[Request, ...]
     published: tuple[Published, ...]
     events: tuple[InterfaceEvent, ...] = ()
+    protocol: Protocol | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +173,7 @@ class DeviceParameter:
 
 
 class Access(Enum):
-    """What a driver may do with a register."""
+    """The access of a driver to a register."""
 
     READ = "read"
     WRITE = "write"
@@ -213,7 +216,7 @@ class Lifecycle:
 
     @property
     def start(self) -> Ns:
-        """What a device takes before the first release."""
+        """The time that a device takes before the first release."""
         return Ns((self.initialise or 0) + (self.self_test or 0))
 
     @property
@@ -235,6 +238,7 @@ class DeviceType:
     registers: tuple[Register, ...] = ()
     """Those that the driver uses: a simulated one uses none."""
     lifecycle: Lifecycle = Lifecycle()
+    protocol: Protocol | None = None
 
     @property
     def span(self) -> int:
@@ -243,7 +247,7 @@ class DeviceType:
 
     @property
     def tells_apart(self) -> bool:
-        """Whether its driver is told which device it works for; a simulated one is not."""
+        """Whether its driver gets the device that it works for; a simulated one does not."""
         return not self.simulated and bool(self.parameters or self.registers)
 
 
@@ -286,7 +290,7 @@ class Poll:
 
     @property
     def wcet(self) -> Ns:
-        """What it adds to the execution of the port handler."""
+        """The time that it adds to the execution of the port handler."""
         return self.device.command(self.event).wcet
 
 
@@ -327,7 +331,7 @@ class Remote:
 
 @dataclass(frozen=True, slots=True)
 class RemoteRead:
-    """A read command of an instance on another node: the message that brings what it publishes.
+    """A read command of an instance on another node: the message that brings the published value.
 
     When none has come for so many ``executions`` of the row ``watcher``, the ``time_limit``
     of the value is over.
@@ -337,7 +341,7 @@ class RemoteRead:
     server: Server
     message: str
     initial: Value
-    """What is read before the first message."""
+    """The value before the first message."""
     time_limit: Ns
     executions: int
     watcher: str
@@ -346,7 +350,7 @@ class RemoteRead:
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """What provides a required command of an instance; None: what stands in for it."""
+    """The provider of a required command of an instance; None: the fallback."""
 
     instance: str
     origin: Origin
@@ -357,5 +361,5 @@ class Binding:
 
 
 def wcet_of(provider: Device | Server | Remote | RemoteRead | None, command: str) -> Ns:
-    """What a call adds to the WCET of its caller; only a driver's work is counted apart."""
+    """The time that a call adds to its caller's WCET; only a driver's work is counted apart."""
     return provider.command(command).wcet if isinstance(provider, Device) else Ns(0)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The forms of composite components resolved: what is inside, and what their ports lead to."""
+"""The forms of composite components resolved: their insides, and the ends of their ports."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ OF_COMPOSITES = ("instances", "connections", "bindings")
 OF_DELEGATED = ("in", "out", "req")
 """Keys of a port that leads to another."""
 
-OF_SERVERS = ("queue", "served_by", "published", "events")
+OF_SERVERS = ("queue", "served_by", "published", "events", "protocol")
 """Keys of an interface that belong to who requires or provides it in the end."""
 
 
@@ -78,7 +78,7 @@ class Components:
     under_way: list[str] = field(default_factory=list)
 
     def of(self, name: str, form: ComponentForm) -> Parts | Composite | None:
-        """A component; None where an instance inside it cannot be told."""
+        """A component; None where an instance inside it cannot be resolved."""
         key = name.lower()
         if key in self.made and self.forms.find(name) is form:
             return self.made[key]

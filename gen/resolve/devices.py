@@ -3,7 +3,7 @@
 
 """Device types, devices and their composites: their forms resolved.
 
-An array and a facade are decided here: what calls them calls the pieces.
+An array and a facade are decided here: their callers call the pieces.
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ from .equipment import (
 )
 from .interfaces import at_axes
 from .paths import Owners, Placed, owner_at, reached, split
+from .protocols import protocol_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +85,10 @@ def device_type_of(
             made = DriverCommand(command, *at_axes(command, form.axes, types), Ns(wcet))
             found.declare(command.name, at, made, findings)
     parameters, registers = device_parameters(form, types, findings), registers_of(form, findings)
-    lost = form.damaged or parameters is None or registers is None
+    before = findings.count()
+    commands = (one.command for one in found.sound())
+    protocol = protocol_of(name, form.protocol, commands, findings)
+    lost = form.damaged or parameters is None or registers is None or findings.count() > before
     if len(found.sound()) < len(form.provides) or lost:
         return None
     simulated = form.body == "simulated"
@@ -97,6 +101,7 @@ def device_type_of(
         parameters or (),
         () if simulated else registers or (),
         lifecycle_of(form),
+        protocol,
     )
 
 
@@ -228,7 +233,7 @@ class Devices:
         )
 
     def _members(self, form: DeviceForm, key: str) -> list[Provider] | None:
-        """What a composite is made of."""
+        """The members of an array or facade; None where one is wrong."""
         texts = (form.array if key == "array" else form.facade) or []
         found: list[Provider] = []
         for index, text in enumerate(texts):
@@ -317,7 +322,7 @@ Report = Callable[[str, str, str | None], None]
 
 
 def found_in(provider: Provider, command: str, report: Report) -> Device | Server | None:
-    """What of a provider has that command; None when nothing has, or it was reported."""
+    """The part of a provider that has a command; None when no part has, or it was reported."""
     if not isinstance(provider, Facade):
         return provider if command in offered(provider) else None
     meant_by = dict(provider.chosen).get(command.lower())

@@ -25,9 +25,10 @@ from ravenchart.gen.model.component import Activity, Component, Data, Direction,
 from ravenchart.gen.origins import Origin
 
 from .members import Members, Namespace
+from .protocols import protocol_of
 
 NOTHING = "nothing"
-"""What stands in for a call that nobody has to take."""
+"""The fallback of a call that may be lost."""
 
 
 # --- The dictionary ----------------------------------------------------------------
@@ -257,7 +258,7 @@ def _stand_in(
 def _declare(
     name: str, origin: Origin, command: Command | None, need: Need | None, members: Members
 ) -> None:
-    """What activities and flows see of a required command: data to read, or a port to send on."""
+    """A required command as activities and flows see it: data to read, or a port to send on."""
     if command is None or command.kind is CommandKind.READ:
         made = None
         if need is not None and need.reply is not None:
@@ -284,7 +285,7 @@ def _declare(
 
 
 def stand_ins_agree(form: ComponentForm, component: Component, findings: Findings) -> None:
-    """What stands in is written by the activity named, which does nothing else for others."""
+    """The named activity writes the item of a fallback, and does nothing else for others."""
     for need in component.needs:
         if need.stand_in is None:
             continue
@@ -455,9 +456,10 @@ def provided_of(
             findings.error("RV-1209", at, message, notes=notes)
         requests.declare(command.name, at, Published(command, data.name), findings)
     events = _events(name, form, Direction.OUT, dictionary, types, members, findings)
+    sound = requests.sound()
+    protocol = protocol_of(name, form.protocol, (one.command for one in sound), findings)
     if findings.count() > before or form.damaged:
         return None
-    sound = requests.sound()
     return Provided(
         name,
         form.origin,
@@ -467,6 +469,7 @@ def provided_of(
         tuple(one for one in sound if isinstance(one, Request)),
         tuple(one for one in sound if isinstance(one, Published)),
         events,
+        protocol,
     )
 
 

@@ -1,0 +1,322 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Protocols of interfaces: clients that follow them, that break them, and that nobody can judge."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+import pytest
+
+from ravenchart.behaviour.rules import findings
+from ravenchart.building import checking, generation
+from ravenchart.gen.diagnostics import Diagnostic
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.files.load import read_file
+from ravenchart.gen.model.system import System
+from ravenchart.gen.pipeline import load
+from ravenchart.paths import ROOT
+from tests.support.effort import seeds
+
+GRIPPER = ROOT / "tests" / "nodes" / "gripper" / "model.yaml"
+PROTOCOL = """\
+{initial: Off, states: [Off, On], transitions: {enable: {from: Off, to: On, on: Enable}, \
+move: {from: On, on: Move}, disable: {from: On, to: Off, on: Disable}}}"""
+DOOR = """\
+system: Door_House
+types:
+  Opening: {range: [0, 100]}
+commands:
+  Enable: {kind: void}
+  Move: {kind: write, argument: Opening}
+  Disable: {kind: void}
+  Ping: {kind: void}
+  Get_Opening: {kind: read, reply: Opening}
+components:
+  Drive:
+    provides:
+      Motion: {queue: 4, served_by: serve, commands: [Enable, Move, Disable, Ping], \
+published: {Get_Opening: opening}, protocol: PROTOCOL}
+    data:
+      opening: {type: Opening, initial: 0}
+    activities:
+      serve: {period: 10 ms, wcet: 50 us, writes: [opening], body: user}
+  Door:
+    events: {Open: {external: true}, Close: {external: true}, Stop: {external: true}}
+    requires:
+      Gate: {commands: [Enable, Move, Disable, Ping, Get_Opening]}
+    data:
+      ready: {type: Boolean, initial: false}
+      seen: {type: Opening, initial: 0}
+    regions:
+      Sequence:
+        period: 20 ms
+        wcet: 100 us
+        queue: 4
+        initial: Closed
+        states:
+          Closed: {}
+          Opened:
+            entry: [{call: Enable}, {call: Move, with: 100}, {set: ready, to: true}]
+            exit: [{call: Move, with: 0}, {call: Disable}, {set: ready, to: false}]
+        transitions:
+          open: {from: Closed, to: Opened, on: Open}
+          close: {from: Opened, to: Closed, on: Close}
+          stop: {from: Opened, on: Stop, effect: [{call: Move, with: 50}]}
+          ping: {from: Closed, on: Stop, effect: [{call: Ping}]}
+    activities:
+      note: {period: 20 ms, wcet: 20 us, body: [{set: seen, to: Get_Opening}]}
+nodes:
+  board: {context_switch: 5 us, critical_section: 2 us}
+instances:
+  drive_1: {component: Drive, node: board}
+  door_1: {component: Door, node: board}
+bindings:
+  - {from: door_1.Gate, to: drive_1.Motion}
+processors:
+  work: {node: board, stack: 32 KiB, activities: [door_1.Sequence, door_1.note, drive_1.serve]}
+shutdown: {raises: [], grace: 0 ms}
+"""
+MODEL = Path("model.yaml")
+
+
+def loaded(text: str, path: Path = MODEL) -> tuple[System | None, list[Diagnostic]]:
+    """The model, and its errors."""
+
+    def read(wanted: Path, limit: int) -> bytes:
+        return text.encode() if wanted == path else read_file(wanted, limit)
+
+    found = load(path, read)
+    return found.system, [one for one in found.diagnostics if one.is_error]
+
+
+def door(*changes: tuple[str, str], protocol: str = PROTOCOL) -> str:
+    """The model of the door, changed."""
+    text = DOOR.replace("PROTOCOL", protocol)
+    for old, new in changes:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return text
+
+
+def judged(text: str, path: Path = MODEL) -> list[Diagnostic]:
+    """The findings about protocols."""
+    system, errors = loaded(text, path)
+    assert system is not None, errors
+    return [one for one in findings(system) if one.code in ("RV-1112", "RV-1113")]
+
+
+def test_a_client_that_follows_the_protocol_is_accepted() -> None:
+    assert judged(door()) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("effect: [{call: Ping}]", "effect: [{call: Move, with: 50}]",
+         "Door calls Move in the state Off of Motion: Closed -Stop-> Closed"),
+        ("{call: Move, with: 0}, {call: Disable}, ", "{call: Move, with: 0}, ",
+         "Door calls Enable in the state On of Motion: "
+         "Closed -Open-> Opened -Close-> Closed -Open-> Opened"),
+        ("[{call: Enable}, {call: Move, with: 100}", "[{call: Move, with: 100}, {call: Enable}",
+         "Door calls Move in the state Off of Motion: Closed -Open-> Opened"),
+        ("effect: [{call: Move, with: 50}]",
+         "effect: [{if: seen > 50, then: [{call: Disable}]}]",
+         "Door calls Disable in the state Off of Motion: Sequence: Closed -Open-> Opened; "
+         "note runs; Sequence: Opened -Stop-> Opened -Stop-> Opened"),
+    ],
+)  # fmt: skip
+def test_a_call_that_the_state_does_not_allow_is_an_error_with_the_steps_to_it(
+    old: str, new: str, message: str
+) -> None:
+    found = judged(door((old, new)))
+    assert message in [one.message for one in found if one.code == "RV-1112"]
+    assert found[0].notes[0][1].startswith("the protocol allows there: ")
+
+
+def test_a_guard_that_keeps_to_the_protocol_is_seen() -> None:
+    before, guarded = "effect: [{call: Ping}]", "guard: ready, effect: [{call: Move, with: 50}]"
+    assert judged(door((before, guarded))) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (("body: [{set: seen, to: Get_Opening}]", "body: [{set: seen, to: Get_Opening}, "
+          "{call: Disable}]"), "Sequence and note both call, and their order is not fixed"),
+        (("body: [{set: seen, to: Get_Opening}]", "calls: [Enable], writes: [seen], "
+          "reads: [Get_Opening], body: user"), "Sequence and note both call"),
+    ],
+)  # fmt: skip
+def test_calls_whose_order_is_not_known_are_named(change: tuple[str, str], reason: str) -> None:
+    (found,) = judged(door(change))
+    assert found.code == "RV-1113" and reason in found.message
+
+
+def test_the_body_of_a_user_may_call_in_any_order() -> None:
+    calls = "            entry: [{call: Enable}, {call: Move, with: 100}, {set: ready, to: true}]\n"
+    exits = "            exit: [{call: Move, with: 0}, {call: Disable}, {set: ready, to: false}]\n"
+    body = "calls: [Enable, Move, Disable], writes: [seen, ready], reads: [Get_Opening], body: user"
+    stop = ", effect: [{call: Move, with: 50}]"
+    (found,) = judged(
+        door(
+            (calls, "            entry: [{call: Ping}]\n"),
+            (exits, ""),
+            (stop, ""),
+            ("body: [{set: seen, to: Get_Opening}]", body),
+        )
+    )
+    assert "the body of note is the user's" in found.message
+
+
+def test_an_activity_with_actions_is_a_client_too() -> None:
+    body = "[{if: ready, then: [{call: Move, with: 1}], "
+    body += "else: [{call: Enable}, {set: ready, to: true}]}]"
+    for text, codes in ((body, []), (body.replace("Enable", "Disable"), ["RV-1112"])):
+        found = judged(
+            door(
+                ("[{call: Enable}, {call: Move, with: 100}, {set: ready, to: true}]", "[]"),
+                ("[{call: Move, with: 0}, {call: Disable}, {set: ready, to: false}]", "[]"),
+                (", effect: [{call: Move, with: 50}]", ""),
+                ("body: [{set: seen, to: Get_Opening}]", f"body: {text}"),
+            )
+        )
+        assert [one.code for one in found][:1] == codes
+
+
+@pytest.mark.parametrize(
+    ("protocol", "code", "message"),
+    [
+        (PROTOCOL.replace("{from: On, on: Move}", "{from: On, on: Enable, to: Off}, "
+                          "more: {from: On, on: Enable}"),
+         "RV-1219", "On has two transitions for Enable"),
+        (PROTOCOL.replace("on: Move", "on: Get_Opening"), "RV-1219",
+         "Get_Opening is a read command: a protocol rules the order of calls"),
+        (PROTOCOL.replace("[Off, On]", "[Off, On, Broken]"), "RV-1219",
+         "no transitions lead from Off to the state Broken"),
+        (PROTOCOL.replace("initial: Off", "initial: Of"), "RV-0305",
+         "there is no state of the protocol of Motion named `Of`"),
+        (PROTOCOL.replace("on: Move", "on: Moove"), "RV-0305",
+         "there is no command of Motion named `Moove`"),
+        (PROTOCOL.replace("[Off, On]", "[Off, On, off]"), "RV-0303",
+         "a second state of the protocol of Motion is named `off`, like `Off`: "
+         "case does not count"),
+    ],
+)  # fmt: skip
+def test_a_wrong_protocol_is_one_error(protocol: str, code: str, message: str) -> None:
+    _, errors = loaded(door(protocol=protocol))
+    assert [(one.code, one.message) for one in errors] == [(code, message)]
+
+
+def test_the_program_is_the_same_with_and_without_a_protocol(tmp_path: Path) -> None:
+    path = tmp_path / "model.yaml"
+    made = []
+    for text in (door(), door().replace(f", protocol: {PROTOCOL}", "")):
+        path.write_text(text, encoding="utf-8")
+        checked = checking.check(path)
+        files = generate(checked.system, generation.claims(checked))
+        made.append({name: re.sub("[0-9a-f]{64}", "digest", made) for name, made in files.items()})
+    assert made[0] == made[1] and len(made[0]) > 10
+
+
+def test_devices_arrays_and_other_nodes_have_protocols_too() -> None:
+    text = GRIPPER.read_text(encoding="utf-8")
+    finger = "provides: {Get_Width: 10 us, Set_Force: 10 us, Open_Up: 5 us}"
+    rule = "protocol: {initial: Shut, states: [Shut, Open], transitions: {"
+    right = "open: {from: Shut, to: Open, on: Open_Up}, press: {from: Open, on: Set_Force}}}"
+    wrong = "press: {from: Shut, to: Open, on: Set_Force}, open: {from: Open, on: Open_Up}}}"
+    assert text.count(finger) == 1
+    assert judged(text.replace(finger, f"{finger}\n    {rule}{right}"), GRIPPER) == []
+    found = judged(text.replace(finger, f"{finger}\n    {rule}{wrong}"), GRIPPER)
+    assert found[0].message.startswith("Grasp calls Open_Up in the state Shut of Finger: ")
+    queued = "        commands: [Grip]\n"
+    once = "        protocol: {initial: Unused, states: [Unused, Used], transitions: "
+    once += "{grip: {from: Unused, to: Used, on: Grip}}}\n"
+    assert text.count(queued) == 1
+    found = judged(text.replace(queued, queued + once), GRIPPER)
+    assert found[0].message.startswith("Boss calls Grip in the state Used of Work: ")
+
+
+# --- beside an exploration of pairs of states
+
+
+def _reached(start: str, steps: Iterable[tuple[tuple[str, str], str]]) -> set[str]:
+    """The states that steps ((from, on), to) lead to."""
+    known, each = {start}, list(steps)
+    for _ in each:
+        known |= {to for (at, _), to in each if at in known}
+    return known
+
+
+def random_client(seed: int) -> tuple[str, set[tuple[str, str]]]:
+    """A model with a random chart and protocol; the misuses that pairs of their states show."""
+    choice = random.Random(seed)
+    commands = ("Enable", "Move", "Disable")
+    states = ("P", "Q", "R")[: choice.randint(2, 3)]
+    follows = {
+        (state, command): choice.choice(states)
+        for state in states
+        for command in commands
+        if choice.random() < 0.75 or (state, command) == ("P", "Enable")
+    }
+    states = tuple(one for one in states if one in _reached("P", follows.items()))
+    follows = {key: to for key, to in follows.items() if key[0] in states}
+    steps = ", ".join(
+        f"t{n}: {{from: {at}, to: {to}, on: {command}}}"
+        for n, ((at, command), to) in enumerate(follows.items())
+    )
+    protocol = f"{{initial: P, states: [{', '.join(states)}], transitions: {{{steps}}}}}"
+    leaves = ["A", "B", "C"]
+    moves = [
+        (choice.choice(leaves), choice.choice(("Open", "Close", "Stop")), choice.choice(leaves),
+         choice.sample(commands, choice.randint(0, 2)))
+        for _ in range(5)
+    ]  # fmt: skip
+    moves = list({(at, event): (at, event, to, calls) for at, event, to, calls in moves}.values())
+    leaves = sorted(_reached("A", (((at, ""), to) for at, _, to, _ in moves)))
+    moves = [one for one in moves if one[0] in leaves]
+
+    def argued(command: str) -> str:
+        return f"{{call: {command}, with: 1}}" if command == "Move" else f"{{call: {command}}}"
+
+    lines = "".join(
+        f"          m{n}: {{from: {at}, to: {to}, on: {event}, "
+        f"effect: [{', '.join(map(argued, calls))}]}}\n"
+        for n, (at, event, to, calls) in enumerate(moves)
+    )
+    start, end = DOOR.index("        initial: Closed"), DOOR.index("    activities:\n      note")
+    chart = "        initial: A\n        states:\n"
+    chart += "".join(f"          {leaf}: {{}}\n" for leaf in leaves)
+    chart += "        transitions:\n" if moves else ""
+    text = (DOOR[:start] + chart + lines + DOOR[end:]).replace("PROTOCOL", protocol)
+    seen, found, todo = {("A", "P")}, set(), [("A", "P")]
+    while todo:
+        leaf, state = todo.pop()
+        for at, _, to, calls in moves:
+            now: str | None = state
+            for command in calls if at == leaf else ():
+                if now is not None and (now, command) not in follows:
+                    if any(one == command for _, one in follows):
+                        found.add((command, now))
+                        now = None
+                elif now is not None:
+                    now = follows[now, command]
+            if at == leaf and now is not None and (to, now) not in seen:
+                seen.add((to, now))
+                todo.append((to, now))
+    return text, found
+
+
+@pytest.mark.parametrize("seed", seeds(20, 200))
+def test_the_misuses_are_those_of_the_pairs_of_states(seed: int) -> None:
+    text, expected = random_client(seed)
+    system, errors = loaded(text)
+    assert system is not None, errors
+    found = [one for one in findings(system) if one.code in ("RV-1112", "RV-1113")]
+    assert all(one.code == "RV-1112" for one in found)
+    named = {(words[2], words[6]) for one in found if (words := one.message.split())}
+    assert named == expected
