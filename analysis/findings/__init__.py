@@ -1,4 +1,4 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What an analysis says of a model: missed deadlines, claims, advice."""
+"""Findings of an analysis of a model: missed deadlines, claims, advice."""

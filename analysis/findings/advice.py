@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What to change: single changes that suffice, those of least effect on the design first.
+"""Advice: single changes that suffice, those of least effect on the design first.
 
-Where deadlines are missed, the aim is to meet them; where they are met with little room,
-that all execution times may still grow by `ROOM`. The same for models and plain files:
-these say what can be changed, `core.changes` how much of it.
+Where deadlines are missed, the aim is to meet them. Where they are met with little room,
+the aim is that all execution times may still grow by `ROOM`. Models and plain files
+determine the parts that can be changed, `core.changes` determines the amounts.
 """
 
 from __future__ import annotations
@@ -26,26 +26,26 @@ if TYPE_CHECKING:
     from ravenchart.analysis.system.timing import Analysis
 
 ROOM = Fraction(1, 5)
-"""With less than that to grow by, a system that meets its deadlines is tight."""
+"""With less room than this, a system that meets its deadlines is tight."""
 
 LARGEST = 120
-"""With more tasks and messages than this, no changes are looked for."""
+"""With more tasks and messages than this, no changes are searched for."""
 
 TRIED = 24
 """Execution times and periods that are tried, those of most load first."""
 
 SHOWN = 12
-"""Changes that are told."""
+"""Changes that are shown."""
 
 WEIGHED = 6
-"""Parts of most load of which it is told what they are worth where nothing is enough."""
+"""Parts of most load whose relief is shown where no change is enough."""
 
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """What of a network can be changed.
+    """The parts of a network that can be changed.
 
-    ``wcets`` are parts by what people call them, ``periods`` items that events release,
+    ``wcets`` are parts by their names in reports, ``periods`` items that events release,
     ``order`` tasks and frames whose priority or identifier is free.
     """
 
@@ -58,8 +58,8 @@ class Choices:
 class Advice:
     """The changes, best first, and whether they are for ``room`` or to meet deadlines.
 
-    Where none is enough, ``relief`` tells what each of some parts is worth, most first: the
-    factor of all execution times with which deadlines are met without that part.
+    Where none is enough, ``relief`` has a factor for each of some parts, the largest first:
+    without that part, execution times scaled by the factor meet the deadlines.
     """
 
     network: Network
@@ -68,11 +68,11 @@ class Advice:
     changes: tuple[Change, ...]
     relief: tuple[tuple[str, Fraction], ...] = ()
     limits: bool = False
-    """A chain is above its limit: the changes bring it below that, too."""
+    """Whether a chain is above its limit: the changes also bring it below the limit."""
 
 
 def of_model(analysis: Analysis) -> Advice | None:
-    """What to change in a model; None where there is room enough, or too much to look at."""
+    """The advice for a model; None where there is room enough, or the model is too large."""
     system, network = analysis.system, analysis.network
     wcets: dict[str, list[Part]] = {}
     for task in system.tasks:
@@ -93,7 +93,7 @@ def of_model(analysis: Analysis) -> Advice | None:
 
 
 def keeps_all(analysis: Analysis) -> Met:
-    """Whether a changed network of a model keeps every deadline and limit, and loses nothing."""
+    """Whether a changed network meets every deadline and limit, and loses no values."""
 
     def holds(other: Network) -> bool:
         return any(
@@ -105,7 +105,7 @@ def keeps_all(analysis: Analysis) -> Met:
 
 
 def of_network(network: Network, scaling: NetworkScaling | None, *, met: bool) -> Advice | None:
-    """What to change in a plain file."""
+    """The advice for a plain file."""
     wcets = {
         f"{task.name}.{row}" if row else task.name: [(task.name, row)]
         for task in network.tasks
@@ -120,7 +120,7 @@ def of_network(network: Network, scaling: NetworkScaling | None, *, met: bool) -
 def advice(
     network: Network, choices: Choices, scaling: NetworkScaling | None, met: bool, holds: Met
 ) -> Advice | None:
-    """The changes that are tried, ranked; ``met`` says how the network is as it stands."""
+    """The changes that are tried, ranked; ``met``: the network already meets its deadlines."""
     if len(network.items()) > LARGEST:
         return None
     if met and (scaling is None or scaling.factor >= 1 + ROOM):
@@ -150,7 +150,7 @@ def advice(
 def _relief(
     network: Network, wcets: Mapping[str, Sequence[Part]], tasks: Collection[str]
 ) -> list[tuple[str, Fraction]]:
-    """What meeting all deadlines takes without each part, where that is less than with it."""
+    """The factor that meets all deadlines without each part, where it is larger than with it."""
     nearly_none = Fraction(1, changes.STEPS)
     present = network_scaling(network, tasks, changes.STEPS)
     if present is not None and present.factor >= 1:
@@ -176,7 +176,7 @@ def _load(network: Network, chosen: Sequence[Part]) -> Fraction:
 
 
 def lines(found: Advice | None) -> tuple[str, ...]:
-    """The advice in words: a heading, what suffices, and what does not."""
+    """The advice in words: a heading, the sufficient changes, and the insufficient ones."""
     if found is None:
         return ()
     aim = "keep all deadlines and limits" if found.limits else "meet all deadlines"
@@ -193,14 +193,14 @@ def lines(found: Advice | None) -> tuple[str, ...]:
 
 
 def _worth(name: str, factor: Fraction) -> str:
-    """What a part is worth, in words."""
+    """The relief without a part, in words."""
     if factor >= 1:
         return f"without {name}, all else may grow by {float(factor - 1) * 100:.1f} %"
     return f"without {name}, all else must still shrink by {percent(1 - factor)}"
 
 
 def figures(found: Advice | None) -> list[dict[str, object]]:
-    """The changes for JSON: factors of present times, to meet all deadlines or to ``grow`` by."""
+    """The changes for JSON: factors of present times, to meet deadlines or to ``grow`` by."""
     if found is None:
         return []
     return [
@@ -217,7 +217,7 @@ def figures(found: Advice | None) -> list[dict[str, object]]:
 
 
 def _not_enough(rest: Sequence[Change]) -> Iterator[str]:
-    """What cannot do it alone, in a sentence for each kind."""
+    """The changes that do not suffice alone, in a sentence for each kind."""
     longer = f"A longer period (up to {changes.LONGEST} times)"
     words = {
         ChangeKind.ORDER: "Reordering alone was not found to be enough on",
@@ -233,7 +233,7 @@ def _not_enough(rest: Sequence[Change]) -> Iterator[str]:
 
 
 def _told(change: Change, found: Advice) -> str:
-    """One change in words; times are rounded to where they suffice."""
+    """One change in words; times are rounded so that they suffice."""
     if change.factor is None:
         what = "priorities" if change.order[0] in _tasks(found) else "identifiers"
         if change.kind is ChangeKind.PLACE:
@@ -257,7 +257,7 @@ def _tasks(found: Advice) -> set[str]:
 
 
 def _wcet(found: Advice, name: str) -> int:
-    """The time of one of the parts that are called so: they are alike."""
+    """The time of one of the parts with that name: all have the same."""
     task_name, row_name = found.choices.wcets[name][0]
     task = next(task for task in found.network.tasks if task.name == task_name)
     return next((row.wcet for row in task.rows if row.name == row_name), task.wcet)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Which failures are the causes, and which only depend on others.
+"""The failures that are causes, and those that only depend on others.
 
-A bus or core that is full delays everything that it leads to, and a late message delays the task
-that it releases. Such a dependent is judged when its cause is corrected, and not before.
+A full bus or core delays everything that follows it, and a late message delays the task
+that it releases. Such a dependent is judged only after its cause is corrected.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ravenchart.gen.diagnostics import Diagnostic
 
 
 def is_full(response: Response | FrameResponse) -> bool:
-    """Whether its level needs more than all of the core or bus, whatever delays it besides."""
+    """Whether its level needs more than all of the core or bus, apart from other delays."""
     return response.reason is Reason.OVERLOAD or response.level.load > 1
 
 
@@ -35,7 +35,7 @@ class Causes:
     analysis: Analysis
     failed: Sequence[str]
     dependents: dict[str, int] = field(default_factory=dict)
-    """How many errors are left out, by their cause."""
+    """The number of errors that are left out, by their cause."""
 
     def __post_init__(self) -> None:
         """Find the cause of each failure that has another one."""
@@ -47,7 +47,7 @@ class Causes:
         self.cause |= dict(self._less_urgent(unbounded))
         first = [n for n in unbounded if n not in self.cause and not _is_delayed(responses[n])]
         self.first = next(iter([*buses, *first]), None)
-        """What has no bound, and is delayed by nothing without one."""
+        """The first bus, task or message without a bound that none of these delays."""
         if self.first is not None:
             for name in unbounded:
                 if name not in self.cause and _is_delayed(responses[name]):
@@ -58,7 +58,7 @@ class Causes:
                 self.cause[name] = self.cause.get(late[-1], late[-1])
 
     def _less_urgent(self, unbounded: Sequence[str]) -> Iterator[tuple[str, str]]:
-        """The tasks of a core below the first one for which it has no time left."""
+        """The tasks of a core below the first one for which the core has no time left."""
         found = [self.analysis.found.responses[name] for name in unbounded]
         full = [one for one in found if isinstance(one, Response) and is_full(one)]
         heads: dict[str, str] = {}

@@ -3,8 +3,8 @@
 
 """The claims of a system's certificate, with the windows that show them.
 
-A response keeps the window of its worst job; the certificate needs those of all jobs
-of the busy period, and of a message the busy period itself.
+A response keeps the window of its worst job. The certificate needs the windows of all jobs
+of the busy period and, for a message, the busy period itself.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from ravenchart.gen.model.system import UNREADY
 from .deadlines import findings
 
 EFFORT = 200_000
-"""Work for the windows of one task or message: as much as for its response."""
+"""The work for the windows of one task or message: as much as for its response."""
 
 MOST_JOBS = 1_000
 """Jobs or instances of one busy period that a certificate lists at most."""
@@ -43,15 +43,15 @@ MOST_INSTANTS = 200
 
 
 class Unclaimed(Exception):  # noqa: N818
-    """Something has a bound, but no busy period that ends: its resource is full."""
+    """A task or message has a bound, but no busy period that ends: its resource is full."""
 
 
 def claims_of(analysis: Analysis) -> Claims:
-    """What the certificate of a system whose deadlines are met claims.
+    """The claimed bounds of the certificate of a system whose deadlines are met.
 
-    Responses are those for all offsets; a processor that is late with some, not with its
-    own, has the instants that show it besides. Unclaimed where a processor or bus is loaded
-    to exactly its whole time.
+    Responses are those for all offsets. A processor that is late with some offsets, but not
+    with its own, also has the instants that show it. Unclaimed where a processor or bus is
+    loaded to exactly its whole time.
     """
     since = by_offsets(analysis)
     analysis = analysis.for_all_offsets
@@ -84,7 +84,7 @@ def claims_of(analysis: Analysis) -> Claims:
 
 
 def uncertified(analysis: Analysis) -> Iterator[Diagnostic]:
-    """An error for each deadline or limit that offsets keep in a way that no certificate shows."""
+    """An error for each deadline or limit that is met only by offsets no certificate shows."""
     if analysis.for_all_offsets is analysis:
         return
     for one in findings(analysis.for_all_offsets, but=by_offsets(analysis)):
@@ -113,7 +113,7 @@ def by_offsets(analysis: Analysis) -> dict[str, tuple[Ns, ...]]:
 def _since(
     response: Response, offsets: Mapping[str, int | None], analysis: Analysis
 ) -> tuple[Ns, ...] | None:
-    """The windows from all instants, with what others inherit for any offsets; None if too late."""
+    """The windows from all instants, with inherited jitter for any offsets; None if too late."""
     level, task = response.level, analysis.tasks[response.task.name]
     order = tuple(replace(one, offset=offsets[one.name]) for one in level.order)
     own = next(one for one in order if one.name == task.element)
@@ -209,7 +209,7 @@ def _of(response: FrameResponse) -> ResponseClaim:
 
 
 def _capped(analysis: Analysis) -> tuple[dict[str, Ns], dict[str, Ns]]:
-    """The waits in queues that the busiest time of a bus bounds, and those times by bus."""
+    """The waits in queues that the busiest time of a bus bounds, and these times by bus."""
     waits: dict[str, Ns] = {}
     busiest: dict[str, Ns] = {}
     for bus in analysis.system.buses:
@@ -224,7 +224,7 @@ def _capped(analysis: Analysis) -> tuple[dict[str, Ns], dict[str, Ns]]:
 
 
 def _turns(analysis: Analysis, handed: set[str]) -> dict[str, ResponseClaim]:
-    """When the reception turns to each of these messages."""
+    """The claimed bounds on the time until the reception turns to each of these messages."""
     found: dict[str, ResponseClaim] = {}
     system = analysis.system
     for processor in system.processors:
@@ -238,6 +238,6 @@ def _turns(analysis: Analysis, handed: set[str]) -> dict[str, ResponseClaim]:
 
 
 def _of_chain(latency: Latency) -> ChainClaim:
-    """The latencies of a chain; what has no bound has no limit either."""
+    """The latencies of a chain; a latency without a bound has no limit either."""
     waits = tuple(Ns(hop.wait or 0) for hop in latency.hops if hop.step.hop is HopKind.QUEUED)
     return ChainClaim(Ns(latency.reaction or 0), Ns(latency.age or 0), waits)

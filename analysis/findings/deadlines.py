@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Failed deadlines and overloaded buses as diagnostics, in the words of a compiler."""
+"""Diagnostics for missed deadlines, overloaded buses, late chains and short queues."""
 
 from __future__ import annotations
 
@@ -20,13 +20,14 @@ from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import Carried, Chain, Gap
 from ravenchart.gen.origins import Origin
 
+from .bit_rates import explained
 from .causes import Causes, is_full
 
 MISSED = "RV-0901"
 """A task or message may complete after its deadline."""
 
 NO_BOUND = "RV-0902"
-"""No bound of a task's or message's response is known."""
+"""The response of a task or message has no known bound."""
 
 BUS_OVERLOAD = "RV-0903"
 """The messages of a bus need more than all of its time."""
@@ -35,7 +36,7 @@ NO_WAY, CHAIN_LATE = "RV-0904", "RV-0905"
 """A chain is broken; it may take longer than its limit."""
 
 QUEUE_SHORT, QUEUE_OPEN = "RV-0906", "RV-0907"
-"""A queue does not hold what may wait in it; nothing bounds what may wait in it."""
+"""A queue is too short for the values that may wait in it; their number has no bound."""
 
 GIVEN_UP = "RV-0909"
 """A time-out of a transfer may pass although no frame is lost."""
@@ -50,6 +51,15 @@ def findings(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnostic,
     Deadlines of tasks and messages in ``but`` are left out. So is an error that only depends on
     another one, which has a note of how many there are.
     """
+
+    def judged(one: Analysis) -> tuple[Diagnostic, ...]:
+        return _judged(one, but)
+
+    return explained(analysis, judged(analysis), judged)
+
+
+def _judged(analysis: Analysis, but: Collection[str]) -> tuple[Diagnostic, ...]:
+    """The findings, without a look for a bus that is too slow."""
     causes = Causes(analysis, [one for one in analysis.failed() if one not in but])
     found: list[tuple[str, Diagnostic]] = []
     for name in causes.failed:
@@ -94,7 +104,7 @@ def no_bound_reason(response: Response | FrameResponse) -> str:
 
 
 def _of_task(response: Response, analysis: Analysis) -> Diagnostic:
-    """What is wrong with one task."""
+    """The error of one task."""
     task = analysis.tasks[response.task.name]
     if response.bound is None:
         return error(
@@ -157,7 +167,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
 
 
 def taken(share: Interference) -> str:
-    """How the time of an interferer adds up."""
+    """The sum that the time of an interferer is made of."""
     cost = share.task.plain_wcet
     if share.time == share.releases * cost:
         return f"{share.releases} x {spoken(cost)} = {spoken(share.time)}"
@@ -165,7 +175,7 @@ def taken(share: Interference) -> str:
 
 
 def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
-    """What is wrong with one message."""
+    """The error of one message."""
     message = analysis.messages[response.frame.name]
     notes = [(message.origin, f"the frame of {message.name} takes {spoken(response.frame.cost)}")]
     if response.frame.jitter:
@@ -198,7 +208,7 @@ def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
 
 
 def _of_bus(bus: Bus, analysis: Analysis) -> Diagnostic:
-    """What is wrong with one bus."""
+    """The error of one bus."""
     frames = sorted(analysis.network.frames[bus.name], key=lambda frame: -frame.utilisation)
     notes = []
     for frame in frames[:LARGEST]:
@@ -220,7 +230,7 @@ def _of_bus(bus: Bus, analysis: Analysis) -> Diagnostic:
 
 
 def _of_receptions(analysis: Analysis, causes: Causes) -> Iterator[Diagnostic]:
-    """Receptions that take frames no faster than they come."""
+    """An error for each reception that takes frames more slowly than they come."""
     for processor in analysis.system.processors:
         received = analysis.system.received(processor.released_by, processor.node)
         taken_here = [one.message for one in received]
@@ -242,7 +252,7 @@ def _of_receptions(analysis: Analysis, causes: Causes) -> Iterator[Diagnostic]:
 
 
 def _of_queues(analysis: Analysis) -> Iterator[Diagnostic]:
-    """Queues that may lose what comes: a warning where no depth is known to hold all of it."""
+    """Queues that may lose values: a warning where no depth is known to hold them all."""
     for one in analysis.short_queues:
         lost = f"but `{one.key}` is {one.given}: the queue can overflow"
         hint = "let it be read more often, or filled less often"
@@ -255,7 +265,7 @@ def _of_queues(analysis: Analysis) -> Iterator[Diagnostic]:
 
 
 def _of_chains(analysis: Analysis, causes: Causes) -> Iterator[Diagnostic]:
-    """Chains without a way, and those that may take too long."""
+    """An error for each chain without a way, and for each that may take too long."""
     for chain in analysis.system.chains:
         gap = chain.gap
         if gap is not None:
@@ -273,7 +283,7 @@ def _of_chains(analysis: Analysis, causes: Causes) -> Iterator[Diagnostic]:
 
 
 def _gap_hint(gap: Gap) -> str:
-    """What closes the gap, as far as the model tells."""
+    """The change that closes the gap, as far as the model determines it."""
     if gap.event is not None:
         name, source, region = gap.event
         return (
@@ -297,7 +307,7 @@ def _few(places: Sequence[str]) -> str:
 def _late_chain(
     chain: Chain, found: Latency, what: str, value: int | None, limit: int
 ) -> Diagnostic:
-    """A limit that is not kept, with the slowest hops."""
+    """The error of a limit that is not met, with the slowest hops."""
     hops = [(hop.step.name, (hop.wait or 0) + (hop.response or 0)) for hop in found.hops]
     hops.sort(key=lambda hop: -hop[1])
     takes = "has no bound" if value is None else f"may take {spoken(value)}"
@@ -326,13 +336,13 @@ def _chain_hint(chain: Chain, found: Latency, what: str, value: int | None) -> s
 
 
 def _ages(hop: HopLatency) -> bool:
-    """It is as seldom as what is sporadic, and its last value is used meanwhile."""
+    """Whether its next value is as late as a sporadic one, and the last one is used meanwhile."""
     taken = hop.step.hop in (HopKind.QUEUED, HopKind.WOKEN)
     return hop.renewal is None and not hop.step.keeps and not taken
 
 
 def _unbounded(found: Latency, what: str) -> Iterator[str]:
-    """Which hops have no bound, and why."""
+    """The reasons of the hops that have no bound."""
     begun = found.hops[0].step.name
     seldom = False
     for before, hop in zip((None, *found.hops), found.hops, strict=False):

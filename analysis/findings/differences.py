@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What changed between two versions of a system, and for the better or the worse.
+"""Differences between two versions of a system, each for the better or the worse.
 
-Both are the objects that `analyse --json` prints, so that a version that was kept as such an
-answer, a model and a plain file can all be compared. Times are whole ns.
+Both versions are objects that `analyse --json` prints. So a stored answer, a model and a plain
+file can all be compared. Times are whole ns.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Figures = Mapping[str, Any]
 
 
 class Wording(Enum):
-    """What a change comes to."""
+    """The word for a change."""
 
     WORSE = "worse"
     BETTER = "better"
@@ -33,7 +33,7 @@ class Wording(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One figure of an element that is not what it was, in words."""
+    """One figure of an element that has changed, in words."""
 
     element: str
     figure: str
@@ -44,7 +44,7 @@ class Difference:
 
     @property
     def line(self) -> str:
-        """The whole of it in one line."""
+        """The difference in one line."""
         if self.word in (Wording.ADDED, Wording.REMOVED):
             return f"{self.element}: {self.word.value}"
         by = f" ({self.change})" if self.change else ""
@@ -53,7 +53,7 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Differences:
-    """All that changed since the version called ``earlier``."""
+    """All differences from the version called ``earlier``."""
 
     earlier: str
     verdict: str
@@ -72,7 +72,7 @@ class Differences:
 
 @dataclass(frozen=True, slots=True)
 class _Figure:
-    """A figure to compare: ``larger`` says what more of it is; None of no bound is the most."""
+    """A figure to compare: ``larger`` is the word for an increase; None is the largest value."""
 
     name: str
     key: str
@@ -116,7 +116,7 @@ _ELEMENTS: tuple[tuple[str, str, Sequence[_Figure]], ...] = (
         ),
     ),
 )
-"""The lists of the object, what an entry of them is called, and its figures."""
+"""The lists of the object, the name of their entries, and the figures of an entry."""
 
 _LOAD = _Figure("load", "load", Wording.WORSE, percent)
 _SCALING = _Figure(
@@ -128,7 +128,7 @@ _SCALING = _Figure(
 
 
 def differences(earlier: str, before: Figures, now: Figures) -> Differences:
-    """What of ``now`` is not as it was ``before``; KeyError or the like for other objects."""
+    """The differences of ``now`` from ``before``; KeyError or the like for other objects."""
     rows: list[Difference] = []
     for list_name, kind, figures in _ELEMENTS:
         rows += _of_list(kind, _by_name(before, list_name, kind), _by_name(now, list_name, kind),
@@ -163,7 +163,7 @@ def _of_list(
     now: Mapping[str, Figures],
     figures: Sequence[_Figure],
 ) -> Iterator[Difference]:
-    """Of each element what changed; those that are gone or new."""
+    """The differences of each element, and the elements that are removed or added."""
     for name, old in before.items():
         element = f"{kind} {name}".strip() or "the core"
         if name not in now:
@@ -192,7 +192,7 @@ def _of_element(
 
 
 def _more(figure: _Figure, old: Any, new: Any) -> bool:
-    """The new value is larger; one without a bound is larger than any time, but no factor."""
+    """Whether the new value is larger; a missing bound is larger than any time, but no factor."""
     if old is None or new is None:
         return (new is None) == (figure.larger is not Wording.BETTER)
     return bool(new > old)
@@ -203,7 +203,7 @@ def _opposite(word: Wording) -> Wording:
 
 
 def _change(old: object, new: object) -> str:
-    """The difference in per cent of what it was; nothing where there is no number."""
+    """The difference in per cent of the old value; "" where there is no number."""
     if isinstance(old, int | Fraction) and isinstance(new, int | Fraction) and old:
         return f"{float((new - old) / Fraction(old)) * 100:+.1f} %"
     return ""
@@ -214,7 +214,7 @@ def _met(met: bool) -> str:
 
 
 def _verdict(rows: Sequence[Difference], before: bool, now: bool) -> str:
-    """What all of it comes to, in one sentence."""
+    """The outcome of all differences, in one sentence."""
     if not rows and before == now:
         return "nothing changed."
     counts = [(word, sum(row.word is word for row in rows)) for word in Wording]

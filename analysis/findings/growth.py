@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""How far one execution time may grow, all others as they are, before something is not kept."""
+"""The growth of one execution time, all others unchanged, until a deadline or limit is missed."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def largest_wcet(analysis: Analysis, rows: Collection[str]) -> Ns | None:
     """The longest WCET, in ns, that these rows may have together; None where it is too long now.
 
     ``rows`` (``owner.name``) have one WCET: those of one activity, in all instances of its
-    component. A WCET is never longer than the deadline. Rounded down to whole us from what it is
-    now. KeyError where no table has such a row.
+    component. A WCET is never longer than the deadline. Its growth is rounded down to whole us.
+    KeyError where no table has such a row.
     """
     slots = _slots(analysis, rows)
     wcet, longest = slots[0][1].timing.wcet, min(slot.timing.deadline for _, slot in slots)

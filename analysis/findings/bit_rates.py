@@ -1,0 +1,77 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A bus that is too slow: one error at its bit rate, in place of all that follow from it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.model.buses import Bus
+
+TOO_SLOW = "RV-0910"
+"""Several limits are exceeded, and a higher bit rate of one bus meets all of them."""
+
+STANDARD = (10_000, 20_000, 50_000, 100_000, 125_000, 250_000, 500_000, 800_000, 1_000_000)
+"""The bit rates of CiA 301 and 100 kbit/s, in bit/s."""
+
+SEVERAL = 3
+"""With fewer errors each of them is reported: then the bit rate need not be the cause."""
+
+SHOWN = 3
+"""Errors that the notes repeat."""
+
+
+def explained(
+    analysis: Analysis,
+    found: tuple[Diagnostic, ...],
+    judged: Callable[[Analysis], Sequence[Diagnostic]],
+) -> tuple[Diagnostic, ...]:
+    """The findings; one error in place of all errors, where the bit rate of one bus explains them.
+
+    ``judged`` gives the findings of a changed system. A bus that is overloaded has its own error.
+    """
+    late = [one for one in found if one.is_error]
+    if len(late) < SEVERAL or analysis.overloaded:
+        return found
+    for bus in analysis.system.buses:
+        for rate in _higher(bus):
+            if not any(one.is_error for one in judged(_with_rate(analysis, bus, rate))):
+                rest = (one for one in found if not one.is_error)
+                return (_too_slow(bus, rate, late), *rest)
+    return found
+
+
+def _higher(bus: Bus) -> Iterator[int]:
+    """The standard rates above that of the bus, and not above that of the data of its FD frames."""
+    most = STANDARD[-1] if bus.data_rate is None else min(STANDARD[-1], bus.data_rate)
+    return (rate for rate in STANDARD if bus.bit_rate < rate <= most)
+
+
+def _with_rate(analysis: Analysis, bus: Bus, rate: int) -> Analysis:
+    """The same system with another bit rate of that bus."""
+    system = analysis.system
+    buses = tuple(replace(one, bit_rate=rate) if one == bus else one for one in system.buses)
+    return analyse(replace(system, buses=buses))
+
+
+def _too_slow(bus: Bus, rate: int, late: Sequence[Diagnostic]) -> Diagnostic:
+    """The error of a bus at which so much is late."""
+    notes = [(one.origin, one.message) for one in late[:SHOWN]]
+    if more := len(late) - SHOWN:
+        notes.append((bus.origin, f"{more} more errors follow from it: `ravenchart analyse`"))
+    return error(
+        TOO_SLOW,
+        bus.origin,
+        f"{bus.name} is too slow: at {_spoken(bus.bit_rate)} {len(late)} limits are exceeded",
+        notes=notes,
+        hint=f"`bit_rate: {_spoken(rate)}` is the lowest standard rate that meets all of them",
+    )
+
+
+def _spoken(rate: int) -> str:
+    """A bit rate as a model has it."""
+    return f"{rate / 1000:g} kbit/s"

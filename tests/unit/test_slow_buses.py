@@ -1,0 +1,68 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A bus that is too slow is one error, which names the bit rate that is enough."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from ravenchart.analysis.findings.deadlines import findings
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.gen.diagnostics import Diagnostic
+from ravenchart.gen.files.load import read_file
+from ravenchart.gen.pipeline import load
+from ravenchart.paths import ROOT
+
+ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
+TEXT = ROBOT.read_text(encoding="utf-8")
+RATE = "500 kbit/s"
+
+
+def late(text: str) -> tuple[Diagnostic, ...]:
+    """The errors of time of the robot with that main file."""
+
+    def read(path: Path, limit: int) -> bytes:
+        return text.encode() if path == ROBOT else read_file(path, limit)
+
+    system = load(ROBOT, read).system
+    assert system is not None
+    return tuple(one for one in findings(analyse(system)) if one.is_error)
+
+
+@pytest.mark.parametrize(("rate", "count"), [("125", 6), ("200", 5), ("250", 6)])
+def test_the_bit_rate_of_the_hint_is_the_lowest_standard_one_that_is_enough(
+    rate: str, count: int
+) -> None:
+    (one,) = late(TEXT.replace(RATE, f"{rate} kbit/s"))
+    assert one.code == "RV-0910"
+    assert one.message == f"robot_bus is too slow: at {rate} kbit/s {count} limits are exceeded"
+    assert TEXT.splitlines()[one.origin.line - 1].strip().startswith("robot_bus:")
+    assert one.notes[-1][1] == f"{count - 3} more errors follow from it: `ravenchart analyse`"
+    assert one.hint is not None
+    hinted = re.match(r"`bit_rate: (.*)` is the lowest", one.hint)
+    assert hinted is not None and hinted[1] == RATE
+    assert late(TEXT.replace(RATE, hinted[1])) == ()
+    assert len(late(TEXT.replace(RATE, "250 kbit/s"))) == 1  # the standard rate below it
+
+
+def test_errors_that_no_bit_rate_mends_are_all_reported() -> None:
+    shorter = "to: joint_z.feedback, period: 5 ms, "
+    text = TEXT.replace(RATE, "125 kbit/s").replace(shorter, f"{shorter}deadline: 50 us, ")
+    assert len(late(text)) == 6
+
+
+def test_two_errors_are_both_reported() -> None:
+    text = TEXT
+    for port in ("joint_y.feedback", "joint_z.feedback"):
+        at = f"to: {port}, period: 5 ms, "
+        assert text.count(at) == 1
+        text = text.replace(at, f"{at}deadline: 800 us, ")
+    assert [one.code for one in late(text)] == ["RV-0901", "RV-0901"]
+
+
+def test_an_overloaded_bus_has_its_own_error() -> None:
+    assert [one.code for one in late(TEXT.replace(RATE, "50 kbit/s"))] == ["RV-0903"]
