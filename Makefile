@@ -17,7 +17,7 @@ ELSEWHERE  := tests/system/test_other_machines.py tests/system/test_codecs.py
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
 .PHONY: help setup setup-tests demo test test-all test-long coverage hw-test board-test check prove generate bench bench-proof
-.PHONY: mutate mutate-runtime docs pictures site
+.PHONY: mutate mutate-runtime docs pages pictures site
 .PHONY: lock clean
 
 help:
@@ -35,7 +35,8 @@ help:
 	@echo 'make bench-proof  does the proof of a chart grow linearly?'
 	@echo 'make mutate    break generated code in small ways: who notices?'
 	@echo 'make mutate-runtime  the same of runtime and HAL; ARGS="--unit queues --all"'
-	@echo 'make docs      model reference, JSON Schemas, manual page and error list; pictures of the examples'
+	@echo 'make docs      the pages that are written from the sources (make pages), and the site (make site)'
+	@echo 'make pages     model reference, JSON Schemas, manual page and error list; pictures of the examples'
 	@echo 'make pictures  the pictures of local pages in the documentation, taken in Chromium'
 	@echo 'make site      the documentation as a site, which needs no network: build/site/docs/index.html'
 
@@ -95,7 +96,9 @@ mutate: setup
 mutate-runtime: setup
 	@$(PYTHON) -P -m tests.mutation.hand_written $(ARGS)
 
-docs: setup
+docs: pages site
+
+pages: setup
 	@$(PYTHON) -P -m ravenchart.gen.files.reference
 	@$(PYTHON) -P -m ravenchart.reference
 	@$(PYTHON) -P -m tests.support.faults

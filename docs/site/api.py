@@ -20,6 +20,9 @@ HOME = ROOT / "build" / "api"
 
 ADA = {
     "spark_runtime/src": "The run-time support, which every generated program uses.",
+    "spark_runtime/native": "Looks at a running controller on Linux.",
+    "spark_runtime/light": "The one unit of a port to a board that has a body for each board.",
+    "spark_runtime/zynqmp/gateway": "The second serial line of the first board, for python-can.",
     "spark_runtime/devices": "For programs whose devices can fail at their start.",
     "spark_runtime/simulated": "In place of tasks and clock where a program runs in virtual time.",
     "hw_can/hal": "Frames, codecs, protection, and what a CAN driver offers.",
@@ -109,7 +112,7 @@ def _ada_name(spec: Path) -> str:
 def _first_sentence(source: str) -> str:
     """The first sentence of the comment at the head of a specification."""
     words = []
-    for line in source.splitlines():
+    for line in source.partition("\n\n")[2].splitlines():  # behind the licence
         if not line.startswith("--") or line == "--":
             break
         words.append(line.removeprefix("--").strip())

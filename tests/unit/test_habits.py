@@ -11,6 +11,7 @@ import re
 import tomllib
 from pathlib import Path
 
+import jsonschema
 import pytest
 import yaml
 
@@ -129,3 +130,17 @@ def test_files_of_others_are_as_published_under_a_licence_that_is_here() -> None
     assert set(OTHERS.values()) <= set(foreign.paths)
     content = (ROOT / "ravenchart/workbench/assets/preact.js").read_bytes()
     assert hashlib.sha256(content).hexdigest() == PREACT
+
+
+def test_an_editor_that_opens_the_checkout_finds_the_schemas() -> None:
+    settings = json.loads((ROOT / ".vscode" / "settings.json").read_text(encoding="utf-8"))
+    for schema, patterns in settings["yaml.schemas"].items():
+        known = jsonschema.Draft202012Validator(json.loads((ROOT / schema).read_text()))
+        for pattern in patterns:
+            files = sorted(ROOT.glob(pattern))
+            assert files, pattern
+            for file in files[:10]:
+                data = yaml.load(file.read_text(encoding="utf-8"), yaml.BaseLoader)
+                assert data is not None
+                wrong = [one.validator for one in known.iter_errors(data)]
+                assert "additionalProperties" not in wrong, file

@@ -299,6 +299,17 @@ def test_the_project_of_a_consumer_is_that_which_is_built() -> None:
     assert built.endswith(listing_of("docs/crates.md", PROJECT))
 
 
+WHOLE = [one for one in LISTINGS if one.language == "yaml" and one.text.startswith("system:")]
+"""Whole models in one file."""
+
+
+@pytest.mark.parametrize("listing", WHOLE, ids=lambda one: Path(one.page).stem)
+def test_a_whole_model_is_accepted(listing: Listing, tmp_path: Path) -> None:
+    assert len(WHOLE) == 5
+    (tmp_path / "model.yaml").write_text(listing.text, encoding="utf-8")
+    assert main(["check", str(tmp_path / "model.yaml")]) == 0
+
+
 def test_the_plain_file_of_its_page_is_analysed() -> None:
     page, first = "docs/plain-files.md", "task,core,priority,period_ms,deadline_ms,wcet_us"
     system = load_plain(listing_of(page, first), page)
