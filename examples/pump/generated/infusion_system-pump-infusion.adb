@@ -440,46 +440,57 @@ is
          when Turned =>
             Exit_Turning;
             Enter_Motor_Good;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Heard =>
             Active.Sensor :=
               Moved (Active.Sensor, Chart.Listening, Chart.Nowhere);
             Enter_Sensor_Good;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Loaded =>
             Active.Top := Moved (Active.Top, Chart.Loading, Chart.Giving);
             Enter_Maintaining;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Change =>
             Active.Top :=
               Moved (Active.Top, Chart.Maintaining, Chart.Giving);
             Self.Data.Portion := Item.Value_Portion;
             Active.Top := Moved (Active.Top, Chart.Giving, Chart.Giving);
             Enter_Maintaining;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
             | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
             | Defer_New_Portion_In_Alarm =>
             null;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Filled_Up =>
             Exit_Filling;
             Active.Top := Moved (Active.Top, Chart.Running, Chart.Giving);
             Enter_Loading;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Beat =>
             Self.Data.Given :=
               Infusion_System.Unit_Ul'Min
                 (Self.Data.Given + Self.Data.Speed, Self.Data.Volume);
+            pragma Assert (Active = Chart.Innermost (Self));
          when Enough =>
             Active.Top :=
               Moved (Active.Top, Active_At_First.Top, Chart.Running,
                  Before.Top in Infusion_States.Giving);
             Enter_All_Given;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Finished =>
             Leave_Running;
             Exit_Running;
             Enter_Trickling;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Hush =>
             Active.Top := Moved (Active.Top, Chart.Sounding, Chart.Alarm);
             Enter_Silent;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Remind =>
             Active.Top := Moved (Active.Top, Chart.Silent, Chart.Alarm);
             Enter_Sounding;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Restore_Where_It_Was =>
             Active.Top :=
               Moved (Active.Top, Chart.Where_It_Was, Chart.Infusing);
@@ -510,10 +521,12 @@ is
                  Moved (Active.Top, Chart.Infusing, Chart.Running);
                Enter_Filling;
             end if;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Default_Of_Where_It_Was =>
             Active.Top :=
               Moved (Active.Top, Chart.Where_It_Was, Chart.Running);
             Enter_Filling;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Ready =>
             Leave_Motor;
             Active.Sensor :=
@@ -521,6 +534,7 @@ is
                  Before.Top = Infusion_States.Self_Test);
             Exit_Self_Test;
             Enter_Programming;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Again =>
             Leave_Motor;
             Active.Sensor :=
@@ -532,10 +546,13 @@ is
             Active.Sensor :=
               Moved (Active.Sensor, Chart.Nowhere, Chart.Listening,
                  Active.Top = Chart.Self_Test);
+            pragma Assert (Active = Chart.Innermost (Self));
          when Order_Portion =>
             Self.Data.Portion := Item.Value_Portion;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Order_Volume =>
             Self.Data.Volume := Item.Value_Volume;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Start =>
             Active.Top :=
               Moved (Active.Top, Chart.Programming, Chart.Nowhere,
@@ -549,15 +566,18 @@ is
             Enter_Infusing;
             Active.Top := Moved (Active.Top, Chart.Infusing, Chart.Running);
             Enter_Filling;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Stop =>
             Leave_Infusing;
             Exit_Infusing;
             Enter_Programming;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Lost | Trouble =>
             Leave_Infusing;
             Exit_Infusing;
             Enter_Alarm;
             Enter_Sounding;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Resume =>
             Active.Top :=
               Moved (Active.Top, Active_At_First.Top, Chart.Alarm,
@@ -565,23 +585,27 @@ is
             Exit_Alarm;
             Active.Top :=
               Moved (Active.Top, Chart.Nowhere, Chart.May_Go_On);
+            pragma Assert (Active = Chart.Innermost (Self));
          when Give_Up =>
             Active.Top :=
               Moved (Active.Top, Active_At_First.Top, Chart.Alarm,
                  Before.Top in Infusion_States.Alarm);
             Exit_Alarm;
             Enter_Programming;
+            pragma Assert (Active = Chart.Innermost (Self));
          when Go_On =>
             Active.Top :=
               Moved (Active.Top, Chart.May_Go_On, Chart.Nowhere);
             Enter_Infusing;
             Active.Top :=
               Moved (Active.Top, Chart.Infusing, Chart.Where_It_Was);
+            pragma Assert (Active = Chart.Innermost (Self));
          when Not_Yet =>
             Active.Top :=
               Moved (Active.Top, Chart.May_Go_On, Chart.Nowhere);
             Enter_Alarm;
             Enter_Sounding;
+            pragma Assert (Active = Chart.Innermost (Self));
       end case;
       pragma Assert (Active = Chart.Innermost (Self));
    end Fire;

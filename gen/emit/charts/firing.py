@@ -3,10 +3,10 @@
 
 """Exits, effects and entries of one region, with the ghost that proves their order.
 
-A state may be exited only when it is active and nothing inside it is; entered
-only when its parent is active and nothing in its own region is; an effect runs
-when everything in the region that holds the transition has been left, and nothing
-else. The order follows from the ghost.
+A state may be exited only when it is active and nothing inside it is. It may be entered only when
+its parent is active and nothing in its own region is. An effect runs when everything in the
+region that holds the transition has been left, and nothing else. The order follows from the
+ghost.
 """
 
 from __future__ import annotations
@@ -64,14 +64,17 @@ from .safety import Safety, used
 from .shape import START, RegionShape
 
 MANY = 100
-"""More transitions than so many, counted once for each lane, are fired by procedures of a few
-each (`BATCH`)."""
+"""Charts with more transitions, counted once for each region, take them by procedures of `BATCH`
+transitions each."""
 BATCH = 12
-"""So many transitions each of them fires: what the prover must see at a time stays small."""
+"""The transitions of such a procedure: the prover has few to see at a time."""
+ALONE = 20
+"""In charts with orthogonal regions and more transitions than this, each transition ends in an
+assertion of its own: the prover of the younger age gives up on all of them at once."""
 
 _BEFORE, _CHOSEN = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
 _WAS = "Was"
-"""The region before a firing, for the procedures that fire a few transitions each."""
+"""The region before a transition, for the procedures that take a few transitions each."""
 _BEGUN = "Is_Begun"
 _STILL = "Is_Still"
 _GHOST = (Aspect("Ghost"),)
@@ -81,7 +84,7 @@ _Row = tuple[str, tuple[Stmt, ...]]
 
 
 def _between(claim: Stmt, effect: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
-    """An effect where a claim holds: said on both sides of it, it has no other place."""
+    """An effect between the claim and the claim again, which fixes its place in the order."""
     return (claim, *effect, claim) if effect else ()
 
 
@@ -122,7 +125,7 @@ class Moves:
     # --- Fire
 
     def fire(self) -> Subprogram:
-        """What is declared, then exits, effects and entries of one transition."""
+        """Fire: the declared changes, then exits, effects and entries of one transition."""
         start = as_one_move(self._steps(self.shape.start)) or (NULL,)
         each = [(f.literal, self._row(f)) for f in self.shape.firings] or [("None", (NULL,))]
         rows: list[tuple[Choice | str, tuple[Stmt, ...]]] = [*each]
@@ -138,6 +141,8 @@ class Moves:
             batches = [*kept, was, self._begun(constants), self._still()]
             batches += [d for batch in by_batch for d in _procedure(batch, claims)]
             rows = [_call(batch) for batch in by_batch]
+        elif len(each) > ALONE and not self.shape.single:
+            rows = [(choice, (*made, self._agreed())) for choice, made in each]
         return Subprogram(
             "Fire",
             self.fire_params(),
@@ -153,9 +158,13 @@ class Moves:
             body=(
                 *declared,
                 case_of(ref("Chosen"), [(START, start), *rows]),
-                Pragma("Assert", (self.nodes.agreed(),)),
+                self._agreed(),
             ),
         )
+
+    def _agreed(self) -> Pragma:
+        """An assertion that the active vertices are those of the configuration."""
+        return Pragma("Assert", (self.nodes.agreed(),))
 
     def _declared(self) -> tuple[Stmt, ...]:
         """The configuration that the transition leads to, and what outlasts it."""
@@ -172,7 +181,7 @@ class Moves:
         return call("Target", ref("Chosen"), *own)
 
     def _constants(self, named_in: object) -> list[Object]:
-        """What statements need to know of the region before the firing."""
+        """Constants of the region before the transition, as far as the statements name them."""
         named = {name.first for name in names_in(named_in)}
         parts = ((BEFORE, self.shape.place_type, self.shape.place), ("Past", "Memory", "Past"))
         return [
@@ -182,7 +191,7 @@ class Moves:
         ]
 
     def claims(self) -> list[Decl]:
-        """What Fire asks for, and what it does, each in one word."""
+        """The precondition and the postcondition of Fire, each as a function of one name."""
         lasting: list[Decl] = []
         if self._lasts is not None:
             told = "Are time-outs, memory and kept events after it as declared?"
@@ -205,7 +214,7 @@ class Moves:
         )
 
     def _claims_inside(self) -> tuple[Aspect, ...]:
-        """Both of a procedure that fires a few transitions, and changes nothing declared."""
+        """Both of a procedure that takes a few transitions, and changes nothing declared."""
         kept = call(_STILL, old("Self"))
         return (
             Aspect("Pre", call(_BEGUN, ref("Chosen"))),
@@ -213,7 +222,7 @@ class Moves:
         )
 
     def _begun(self, constants: Sequence[Object]) -> Subprogram:
-        """What holds when such a procedure begins; nothing has acted yet."""
+        """The precondition of such a procedure: no exit, effect or entry has run yet."""
         shape = self.shape
         goal = self._goal({p.name: ref(_WAS, p.name) for p in shape.target_params()})
         ready = called_with(self._ready("Chosen"), Self=ref(_WAS))
@@ -226,7 +235,7 @@ class Moves:
         return Subprogram(_BEGUN, (_CHOSEN,), "Boolean", _GHOST, expression=both(*facts))
 
     def _still(self) -> Subprogram:
-        """What such a procedure leaves as it was."""
+        """The components of the region that such a procedure leaves as they were."""
         shape = self.shape
         parts = ["Started", shape.place]
         parts += ["Past"] if shape.memories else []
@@ -236,7 +245,7 @@ class Moves:
         return Subprogram(_STILL, (_BEFORE,), "Boolean", _GHOST, expression=same)
 
     def ready(self, chosen: str) -> Expr:
-        """That a transition may be fired."""
+        """That a transition may be taken."""
         return called_with(self._ready(chosen))
 
     def _ready(self, chosen: str) -> Subprogram:
@@ -288,7 +297,7 @@ class Moves:
         return (*params, Param("Chosen", "in", "Firing"))
 
     def _fills_outbox(self) -> bool:
-        """Does every firing send on every port that any firing sends on, and raise nothing?"""
+        """Does every transition send on every port that any of them sends on, and raise nothing?"""
         region = self.region
         rows = [self._flows(self.shape.start)]
         for firing in self.shape.firings:
@@ -309,7 +318,7 @@ class Moves:
                 found.append(self.region.state(step.vertex).entry)
         return found
 
-    # --- the statements of a firing
+    # --- the statements of a transition
 
     def _row(self, firing: Firing) -> tuple[Stmt, ...]:
         effect = self._effects(firing.effects)
@@ -367,7 +376,7 @@ class Moves:
         return (*found, *(s for v in reversed(outer) for s in self.moving.exit(v)))
 
     def _splits(self, vertex: str, firing: Firing) -> bool:
-        """Is it an orthogonal state around the source? Then all its lanes are left."""
+        """Is it an orthogonal state around the source? Then all its regions are left."""
         return vertex != firing.sources[0] and self.region.state(vertex).is_orthogonal
 
     def _steps(self, steps: tuple[EntryStep, ...]) -> tuple[Stmt, ...]:
