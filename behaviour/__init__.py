@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a model does, step by step, before there is code.
+"""The behaviour of a model without its code: an interpreter, rules and test cases.
 
-An interpreter of `System`, written from docs/semantics.md and from nothing that
-the Ada emitter uses: it walks the chart as modelled, so that its agreement with
-a generated program says something about both.
+The interpreter executes `System` by the rules of docs/semantics.md, on the chart as modelled.
+It shares only the model with the Ada emitter. So a comparison of the interpreter with a
+generated program checks both.
 """

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""How much work the rules of behaviour may take, and what says that it was not enough.
+"""The work that the rules of behaviour may take, and their result.
 
-Apart from the rules, which import a solver: a result that is kept needs none.
+This module is apart from the rules, which import a solver. A result that is kept needs none.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.model.safety import SafeRegion
 
 EFFORT = 10_000
-"""What the check of a model may take, in situations looked at and questions asked of the solver:
-about ten seconds of a common machine."""
+"""The work of the check of a model: situations looked at, and questions asked of the solver.
+
+About ten seconds of a common machine."""
 
 TO_THE_END = 30 * EFFORT
 """The same where the check shall come to its end: for evidence, and before a proof."""
@@ -29,7 +30,7 @@ ON_MODEL = "RV-1111"
 
 @dataclass(frozen=True, slots=True)
 class Behaviour:
-    """What the rules of behaviour find in a model."""
+    """The result of the rules of behaviour for a model."""
 
     found: tuple[Diagnostic, ...]
     safe: tuple[SafeRegion, ...] = ()

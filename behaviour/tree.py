@@ -38,7 +38,7 @@ TOP: RegionKey = (None, "")
 
 @dataclass(frozen=True, slots=True)
 class Occurrence:
-    """What a step is made for: ``kind`` and the state, transition or event."""
+    """The reason for a step: ``kind``, and the state, transition or event."""
 
     kind: str
     """``start``, ``completion``, ``time``, ``event``, ``conditions`` or ``done``."""
@@ -73,7 +73,7 @@ class ChartTree:
 
     @cached_property
     def slots(self) -> dict[str, RegionKey]:
-        """Where each vertex stands."""
+        """The region that holds each vertex."""
         vertices: tuple[State | Pseudostate, ...] = (*self.region.states, *self.region.pseudostates)
         return {v.name: (v.parent, v.region if v.parent is not None else "") for v in vertices}
 
@@ -105,12 +105,12 @@ class ChartTree:
 
     @cached_property
     def lanes(self) -> tuple[Lane, ...]:
-        """The lanes, inner before outer."""
+        """The top-level region and the orthogonal regions, inner before outer."""
         return self.region.lanes()
 
     @cached_property
     def lane_of(self) -> dict[str, Lane]:
-        """The lane that each state stands in."""
+        """The top-level or orthogonal region that each state stands in."""
         return {name: self.region.lane(name) for name in self.states}
 
     @cached_property
@@ -130,7 +130,7 @@ class ChartTree:
         return lane.owner not in active and self.determines(active, lane.owner)
 
     def lane_at(self, slot: RegionKey) -> Lane:
-        """The lane that the states of a region stand in."""
+        """The top-level or orthogonal region that the states of a region stand in."""
         owner, name = slot
         if owner is None:
             return self.lanes[-1]
@@ -146,7 +146,7 @@ class ChartTree:
         return tuple((state, region.name) for region in self.states[state].regions)
 
     def fills_lane(self, state: str) -> bool:
-        """Whether a state is a leaf of its lane: it has no region, or several."""
+        """Whether a state is innermost in its orthogonal region: it has no region, or several."""
         return len(self.states[state].regions) != 1
 
     @cached_property
@@ -156,12 +156,12 @@ class ChartTree:
 
     @cached_property
     def outgoing(self) -> dict[str, tuple[Transition, ...]]:
-        """What leaves each vertex, in model order, ``else`` last."""
+        """The transitions that leave each vertex, in model order, ``else`` last."""
         return {name: self.region.outgoing(name) for name in self.slots}
 
     @cached_property
     def incoming(self) -> dict[str, tuple[Transition, ...]]:
-        """What leads directly to each vertex."""
+        """The transitions whose target is the vertex, for each vertex."""
         return {
             name: tuple(
                 t
@@ -200,7 +200,7 @@ class ChartTree:
 
     @cached_property
     def default(self) -> tuple[str, ...]:
-        """What a region publishes before its first execution: the states entered by default."""
+        """The states entered by default: a region publishes them before its first execution."""
         found: set[str] = set()
         waiting: list[RegionKey] = [TOP]
         while waiting:
@@ -239,7 +239,7 @@ class ChartTree:
         return tuple(self.slots[name] for name in self.chains[vertex])
 
     def common(self, first: str, *others: str) -> RegionKey:
-        """The innermost region that all stand in: what an external transition leaves is in it."""
+        """The innermost region that holds all: an external transition leaves states inside it."""
         around = [self.places(vertex) for vertex in others]
         return next(one for one in self.places(first) if all(one in other for other in around))
 

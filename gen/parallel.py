@@ -16,16 +16,16 @@ T = TypeVar("T")
 U = TypeVar("U")
 
 _shared: list[Callable[[int], object]] = []
-"""What a forked process has of its parent: the model is not sent."""
+"""The function that a forked process has from its parent: the model is not sent."""
 
 
 def made_by_all(
     make: Callable[[int], T], count: int, meanwhile: Callable[[], U], *, worthwhile: bool = True
 ) -> tuple[list[T], U]:
-    """``[make(0), ... make(count - 1)]``, and what this process makes ``meanwhile``.
+    """``[make(0), ... make(count - 1)]``, and the result of ``meanwhile`` in this process.
 
-    What ``make`` gives is sent between processes. Without `fork` one process makes all,
-    and it does so where it is not ``worthwhile``.
+    The results of ``make`` are sent between processes. Without `fork`, or where that is not
+    ``worthwhile``, one process makes all.
     """
     if not worthwhile:
         return [make(number) for number in range(count)], meanwhile()

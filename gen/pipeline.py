@@ -3,8 +3,8 @@
 
 """A model from its files to a valid `System`: load, resolve, rules, derive.
 
-Each stage is a folder of `gen`. What only the emitted program shows, names that clash in
-it, is looked for where a program is wanted (`emit.clashes`).
+Each stage is a folder of `gen`. Names that clash only in the emitted program are looked for where
+a program is wanted (`emit.clashes`).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from ravenchart.gen.rules.system import violations
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """A model: the system when there is no error, what was found, and the lines read."""
+    """A model: the system when there is no error, the diagnostics, and the lines read."""
 
     system: System | None
     diagnostics: tuple[Diagnostic, ...]

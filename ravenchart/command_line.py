@@ -102,7 +102,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _executed(options: argparse.Namespace) -> int:
-    """Execute the command; the exit status, and its failure told and put into its answer."""
+    """Execute the command; the exit status. A failure is printed and put into the answer."""
     try:
         status: int = options.execute(options)
     except Failure as failure:
@@ -110,7 +110,7 @@ def _executed(options: argparse.Namespace) -> int:
         options.answer.fail(failure.shown(), failure.found)
         return failure.status
     except BrokenPipeError:
-        raise  # nobody reads the output: `start` tells that from other broken pipes
+        raise  # the reader of the output is gone: `start` distinguishes other broken pipes
     except OSError as problem:
         text = f"ravenchart: error: {said_of(problem)}"
         print(text, file=sys.stderr)

@@ -12,7 +12,7 @@ from ravenchart.gen.diagnostics import CODES
 from .grammar import ENDINGS, ArgumentKind, CommandWords, Grammar, Word
 
 VALUES = {"CODE": tuple(CODES)}
-"""What can stand for a word of the help, where that is a list."""
+"""The values that a placeholder of the help stands for, where they are a list."""
 
 
 def _values(word: Word) -> tuple[str, ...]:

@@ -21,7 +21,7 @@ class Described:
 
 @dataclass(slots=True)
 class Result(Described):
-    """What a command did or found."""
+    """The result of a command."""
 
 
 def untitled(node: Any) -> Any:

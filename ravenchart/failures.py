@@ -17,7 +17,7 @@ UNUSABLE = 2
 NOT_JUDGED = 3
 """The run passed, and its timing could not be judged (``run --strict``)."""
 INTERNAL = 70
-"""An exception that nobody caught: a fault of Ravenchart (EX_SOFTWARE of sysexits.h)."""
+"""An exception that was not caught: a fault of Ravenchart (EX_SOFTWARE of sysexits.h)."""
 INTERNAL_TEXT = "internal error: a fault of Ravenchart, not of the model"
 
 
@@ -34,12 +34,12 @@ class Failure(Exception):  # noqa: N818
         self.found = tuple(found)
 
     def shown(self) -> str:
-        """What is printed."""
+        """The printed text."""
         return str(self).rstrip()
 
 
 class Refused(Failure):
-    """What was given has errors; the text is the rendered diagnostics."""
+    """The input has errors; the text is the rendered diagnostics."""
 
 
 class ToolFailed(Failure):
@@ -57,7 +57,7 @@ class Unusable(Failure):
 
 
 def said_of(problem: OSError) -> str:
-    """What the system says of a file, with its name and without a number."""
+    """The operating system's message, with the name of the file and without a number."""
     reason = problem.strerror or str(problem)
     reason = f"{reason[:1].lower()}{reason[1:]}"
     return reason if problem.filename is None else f"{problem.filename}: {reason}"

@@ -16,7 +16,7 @@ from pathlib import Path
 
 
 class ArgumentKind(Enum):
-    """What an option or argument takes."""
+    """The kind of value that an option or argument takes."""
 
     NOTHING = "nothing"
     TEXT = "text"
@@ -31,7 +31,7 @@ FILES = {
     "DIR": ArgumentKind.FOLDER,
     "FOLDER": ArgumentKind.FOLDER,
 }
-"""What is a file or a folder, by the word that stands for it in the help."""
+"""The kinds of files and folders, by their placeholders in the help."""
 AS_LISTED = ": %(choices)s"
 """Ends the help of an option whose choices are too many for its usage: argparse lists them."""
 ENDINGS = ("yaml", "yml", "csv", "json")
@@ -73,7 +73,7 @@ class CommandWords:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What it is called by."""
+        """Its name and its aliases."""
         return (self.name, *self.aliases)
 
 

@@ -32,7 +32,7 @@ FILES: Mapping[str, str] = {
     "outside_spark.toml": "Beside the model: what may be outside SPARK, with the reasons.",
     "~/.cache/ravenchart/": "Results of earlier checks and proofs. It may be deleted.",
 }
-"""What commands read and write."""
+"""The files and folders that commands read and write."""
 
 SEE_ALSO = ("gprbuild(1)", "gnatprove(1)", "dot(1)")
 
@@ -85,7 +85,7 @@ def _command(command: CommandWords) -> Iterator[str]:
 
 
 def _synopsis(command: CommandWords) -> str:
-    """The usage, with what is typed as it stands in bold."""
+    """The usage, with the literal words in bold."""
     program, name, *rest = command.usage.split(" ")
     parts = [rf"\fB{program} {name}\fR"]
     for part in rest:

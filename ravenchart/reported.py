@@ -20,10 +20,10 @@ SEVERITIES: Mapping[str, Severity] = {"warning": "warning", "note": "note", "inf
 
 @dataclass(slots=True)
 class Note(Described):
-    """Another place that a diagnostic speaks of."""
+    """Another location that a diagnostic is about."""
 
     message: str
-    """What is to be seen there."""
+    """The relation of this location to the diagnostic."""
     file: str | None = None
     """The file, as it was given."""
     line: int | None = None
@@ -39,7 +39,7 @@ class Found(Described):
     severity: Severity
     """`error`, `warning` or `note`."""
     message: str
-    """What is wrong."""
+    """The problem."""
     code: str | None = None
     """The code, for `ravenchart explain`; null where the message has none."""
     file: str | None = None
@@ -49,13 +49,13 @@ class Found(Described):
     column: int | None = None
     """The column, from 1."""
     hint: str | None = None
-    """What to do."""
+    """How to correct it."""
     notes: list[Note] = field(default_factory=list)
-    """Other places."""
+    """Other locations."""
 
 
 def found_of(one: Diagnostic) -> Found:
-    """What a diagnostic of a model says."""
+    """A diagnostic of a model in that form."""
     notes = [Note(text, *_place(origin)) for origin, text in one.notes]
     severity = SEVERITIES.get(one.severity.value, "error")
     return Found(severity, one.message, one.code, *_place(one.origin), one.hint, notes)

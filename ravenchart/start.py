@@ -31,7 +31,7 @@ SOON = 0.002
 """Seconds until a request to stop that got lost is made again."""
 
 PRESENT = (datetime,)
-"""What a library in Rust imports while it is imported, and panics where a signal comes then."""
+"""Modules that a library in Rust imports at its own import; it panics if a signal comes then."""
 
 NO_PLUGINS = ("PYDANTIC_DISABLE_PLUGINS", "__all__")
 """Pydantic searches all installed packages else. A program that imports us decides itself."""
@@ -129,7 +129,7 @@ def _stop_again(number: int, frame: FrameType | None) -> None:
 
 
 def _reader_is_gone() -> bool:
-    """Whether standard output or error is a pipe that nobody reads."""
+    """Whether standard output or error is a pipe without a reader."""
     polled = select.poll()
     for number in (1, 2):
         polled.register(number, 0)

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What is printed for people: tables in at most 80 columns, and progress while they wait.
+"""Output for people: tables in at most 80 columns, and progress while they wait.
 
 Colour is for terminals alone. https://no-color.org holds: a `NO_COLOR` that is not empty means
-no colour, and no other style. So does `TERM=dumb`. Progress goes to standard error, and never gets
-into standard output: to a terminal at once, elsewhere as a line whenever time passes in silence.
+no colour, and no other style. So does `TERM=dumb`. Progress goes to standard error, never to
+standard output. A terminal shows it at once; elsewhere a line follows each time of silence.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ SILENCE = 1.8
 """After so long without a word there is a line of progress, in s."""
 
 SHORTEST = 0.3
-"""What takes less, in s, has no line of its own."""
+"""A stage that takes less, in s, has no line of its own."""
 
 _said = [time.monotonic()]
 """When there was a line of progress at last; at first the start of the process."""

@@ -1,20 +1,20 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Which activities share a task: strategies, each result checked by the analysis of tasks.
+"""Allocation of activities to tasks: strategies, each result checked by the analysis of tasks.
 
 A task runs a table of activities (rows): its period is the shortest of theirs, and the
-others' are multiples of it. Few tasks cost few switches and stacks; many let urgent
+others' are multiples of it. Few tasks need few switches and stacks; many tasks let urgent
 activities run before others. Cores are given: no activity changes its core.
 
-  by period     one task for each period of a core, as in the original pattern
-  by locality   activities of one owner share a task as long as their rates fit together
-  search        from both, and from one task for each activity, the best move of one
-                activity into another task or one of its own, until none is better
+    by period     one task for each period of a core, as in the original pattern
+    by locality   activities of one owner share a task as long as their rates fit together
+    search        from both, and from one task for each activity, the best move of one
+                  activity into another task or one of its own, until none is better
 
-Tasks get deadline-monotonic priorities by their most urgent activity, whose deadline
-counts for itself: it comes first in the table. Slower activities of a table get the
-phases at which least is executed.
+Tasks get deadline-monotonic priorities by their most urgent activity. This activity comes
+first in the table, so its own deadline counts for it alone. Slower activities of a table
+get the phases with the least execution time.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ WIDEST = 16
 """A table's longest period is at most so many of its shortest, where locality decides."""
 
 TRIALS = 20_000
-"""Tables that one search may analyse; then the best one so far is the answer."""
+"""Tables that one search may analyse; then the search returns the best so far."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class Movable:
 
 
 class Strategy(Enum):
-    """How activities are put together."""
+    """The strategy by which activities are put together."""
 
     BY_PERIOD = "by period"
     BY_LOCALITY = "by rate and locality"
@@ -70,9 +70,9 @@ Table = tuple[Movable, ...]
 
 @dataclass(frozen=True, slots=True)
 class Allocation:
-    """Tables with the tasks that execute them and what the analysis says of these.
+    """Tables with the tasks that execute them, and the responses of these tasks.
 
-    Task n executes table n and is called like its first activity.
+    Task n executes table n and has the name of its first activity.
     """
 
     tables: tuple[Table, ...]
@@ -180,7 +180,7 @@ def checked(
 ) -> Allocation:
     """The analysis of tables, each in order of deadlines; ValueError for one that is impossible.
 
-    Of a table that takes less time than a section of its activities, all of it is inside.
+    A section that is longer than its whole table counts with the length of the table.
     """
     if whole:
         tables = [tuple(_hurried(table)) for table in tables]
@@ -210,7 +210,7 @@ def _hurried(table: Table) -> Iterator[Movable]:
 
 
 def _task(table: Table, priority: int, *, phased: bool) -> Task:
-    """The task that executes a table; where it is ``phased`` its phases level what a job costs."""
+    """The task that executes a table; ``phased``: its phases level the times of its jobs."""
     period = min(activity.period for activity in table)
     for activity in table:
         if activity.period % period:
@@ -237,11 +237,11 @@ def _task(table: Table, priority: int, *, phased: bool) -> Task:
 
 
 Rank = tuple[bool, Fraction, Fraction]
-"""How good tables are: the larger, the better."""
+"""The quality of tables: the larger, the better."""
 
 
 def _rank(tables: Sequence[Table], strategy: Strategy, found: Allocation) -> Rank:
-    """Deadlines first; then what the strategy wants, then the other."""
+    """Deadlines first; then the aim of the strategy, then the other aim."""
     slack = found.slack
     few = Fraction(-len(tables))
     if slack is None:
@@ -300,7 +300,7 @@ def neighbours(tables: list[Table]) -> Iterator[list[Table]]:
 
 
 def _fit(table: Table) -> bool:
-    """On one core; periods are multiples of the shortest, and their pattern repeats soon enough."""
+    """Whether one core has all, periods are multiples of the shortest, and none is too long."""
     shortest = min(activity.period for activity in table)
     return all(
         activity.core == table[0].core

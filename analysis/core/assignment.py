@@ -6,8 +6,8 @@
 Deadline monotonic order (Leung and Whitehead 1982), here by deadline less jitter, is
 optimal for plain tasks with deadlines up to the period. With longer deadlines,
 sections, or on a bus it is only a good guess. Audsley's assignment (1991, 2001) finds
-an order whenever there is one that this analysis accepts: whether a task is accepted
-depends on which tasks are more urgent, not on their order among each other. That
+an order whenever there is one that this analysis accepts. The reason: the acceptance of
+a task depends on the set of more urgent tasks, not on their order among each other. This
 holds for ceiling blocking too, which depends on the same two sets.
 """
 
@@ -56,7 +56,7 @@ def audsley_tasks(
 ) -> Order:
     """An order of the tasks of one core in which all deadlines are met, if there is one.
 
-    Their priorities are not looked at. ValueError where they are on several cores.
+    Their priorities do not count. ValueError where they are on several cores.
     """
     if len({task.core for task in tasks}) > 1:
         raise ValueError("tasks of several cores have no common order")
@@ -77,7 +77,7 @@ def audsley_tasks(
 
 
 Candidates = Callable[[Sequence[Item], Sequence[Item]], Iterable[Item]]
-"""Who may go directly above those placed, in the order to try: of those left, those placed."""
+"""The items that may go directly above those placed, in the order to try: (left, placed)."""
 
 
 def longest_deadline_first(left: Sequence[Item], _: Sequence[Item]) -> Iterable[Item]:
@@ -90,8 +90,8 @@ def audsley_frames(
 ) -> Order:
     """An order of the frames of one bus in which all deadlines are met, if there is one.
 
-    Their ranks are not looked at. Optimal on CAN too: of the less urgent frames only the
-    longest counts, which does not depend on their order (Davis et al. 2007).
+    Their ranks do not count. The assignment is optimal on CAN too: of the less urgent frames only
+    the longest counts, which does not depend on their order (Davis et al. 2007).
     ``candidates`` may hold back frames whose place is bound. ValueError for a
     first-in first-out queue that is not ``reloaded``: there the order within it counts.
     """

@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""How long less urgent tasks can hold a task up, under immediate ceilings.
+"""Blocking of a task by less urgent tasks, under immediate ceilings.
 
 Inside a protected object a task runs at the object's ceiling (Ada RM D.3,
-Ceiling_Locking). A section can hold a task up when its user is less urgent and
-the ceiling reaches the task, whether or not the task ever uses the object; it is
-suffered once in a busy period, and only one section can have begun before it
+Ceiling_Locking). A section can block a task when its user is less urgent and
+the ceiling reaches the task, whether or not the task ever uses the object. Blocking
+occurs once in a busy period, because only one section can have begun before it
 (Sha, Rajkumar, Lehoczky 1990; Baker 1991). A user of equal priority interferes.
-A ceiling among the interrupt priorities holds up the interrupts as well, when
+A ceiling among the interrupt priorities blocks the interrupts as well, when
 they are given as tasks of such a priority.
 """
 
@@ -68,10 +68,10 @@ def ceilings(
 def blockers(
     tasks: Sequence[Task], sections: Sequence[Section], given: Mapping[str, int] | None = None
 ) -> dict[str, Section]:
-    """For each task that can be held up, by name, the longest section that does it.
+    """The longest section that can block each task, by the name of the task.
 
     Of several sections of that length it is the first given. A user that is no task
-    holds up the cores whose tasks use its resource, or all where none does.
+    blocks the cores whose tasks use its resource, or all cores where no task does.
     ValueError as `ceilings`, and where a section is longer than its user's whole job.
     """
     users = {task.name: task for task in tasks}
@@ -96,12 +96,12 @@ def blockers(
 
 
 def held_up(task: Task, section: Section | None) -> int:
-    """How long a task is held up: by its longest section below, and by what is given besides."""
+    """The blocking time of a task: its longest section below, and the given ``held``."""
     return task.held + (0 if section is None else section.length)
 
 
 HeldSection = tuple[int, int, Section]
-"""Indices of the levels that a section can hold up, the last one not included."""
+"""Indices of the levels that a section can block, the last one not included."""
 
 
 def _spans(
@@ -110,7 +110,7 @@ def _spans(
     sections: Sequence[Section],
     reach: Mapping[str, int],
 ) -> list[HeldSection]:
-    """Above its user, and up to the ceiling of its resource."""
+    """The levels that each section can block: above its user, up to its resource's ceiling."""
     spans = []
     for section in sections:
         if section.resource in reach:

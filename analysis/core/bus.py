@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Frames of one CAN bus, and what the bus itself does to them."""
+"""Frames of one CAN bus, and the delays by the bus itself."""
 
 from __future__ import annotations
 
@@ -15,31 +15,33 @@ ERROR_BITS = 31
 
 Two error flags that follow each other (6 + 6, and up to 6 of a flag that began
 before), the delimiter (8), three bits to the next frame and rounding up. Others
-take 23 or 29: a report names the figure that it used.
+take 23 or 29. A report names the figure that it used.
 """
 
 
 INTERMISSION = 3
-"""Bits between two frames: they count as part of the first, and its receivers do not wait."""
+"""Bits between two frames: they count as part of the first one, after its reception."""
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A message as the bus sees it; all times in ticks.
+    """A message as the bus sees it.
 
-    ``rank``      its place in arbitration, lower wins (`frames.rank`); of two that have the same
-                  either may go first, each time anew
-    ``cost``      longest transmission with the three bits to the next frame, above 0
-    ``period``    distance of its queuing events (least distance when ``sporadic``), above 0
-    ``deadline``  from the event that makes the sender queue it, above 0
-    ``jitter``    longest time from that event to the queuing: the response of the sender
-    ``queue``     the first-in first-out queue it is sent from; "" where the sender
-                  offers its most urgent frame
-    ``best``      least transmission time, these three bits included, for the jitter of what
-                  the frame releases
-    ``reloaded``  the controller gets the next frame of the queue when it has sent one, so
-                  that anything may go in between; otherwise it holds the whole queue
-    ``sporadic``  the period is a least distance only: nothing says when the next event comes
+    All times are in ticks.
+
+        ``rank``      its place in arbitration, lower wins (`frames.rank`); of two equal ranks
+                      either may go first, each time anew
+        ``cost``      C: longest transmission with the three bits to the next frame, above 0
+        ``period``    T: distance of its queuing events (least when ``sporadic``), above 0
+        ``deadline``  D: from the event that makes the sender queue it, above 0
+        ``jitter``    J: longest time from that event to the queuing: the sender's response
+        ``queue``     the first-in first-out queue it is sent from; "" where the sender
+                      offers its most urgent frame
+        ``best``      least transmission time, these three bits included, for the jitter of
+                      the items that the frame releases
+        ``reloaded``  the controller gets the next frame of the queue when it has sent one, so
+                      any frame may go in between; otherwise it holds the whole queue
+        ``sporadic``  the period is a least distance only: the next event may come at any time
     """
 
     name: str
@@ -70,7 +72,7 @@ class Frame:
 class Errors:
     """At most ``burst`` errors at once, and one more every ``period`` ticks.
 
-    Within t they are burst - 1 + ceil(t / period), and each costs ``bits`` bits and
+    Within t there are burst - 1 + ceil(t / period) errors. Each takes ``bits`` bits and
     the longest frame of the same or higher rank, which is sent again.
     """
 
@@ -85,10 +87,12 @@ class Errors:
 
 @dataclass(frozen=True, slots=True)
 class Bus:
-    """What delays frames apart from each other; times in ticks.
+    """The properties of a bus that delay frames.
 
-    ``bit_time``  one nominal bit, rounded up, above 0
-    ``unknown``   longest frame that nobody declared and that is less urgent than all
+    Times are in ticks.
+
+        ``bit_time``  one nominal bit, rounded up, above 0
+        ``unknown``   longest frame that is not declared and that is less urgent than all
     """
 
     bit_time: int

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The jobs of one task's busy period, one after another, against given rivals."""
+"""The jobs of one task's busy period, one after another, under given interference."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ WHOLE = -1
 """In place of a row's number: the completion of the job."""
 
 Goal = tuple[int, int, int]
-"""What a job has executed when something is complete: that cost, its frame, the row."""
+"""A completion in a job: the time executed until then, the job in the table's cycle, the row."""
 
 
 @dataclass(frozen=True, slots=True)
 class Contender:
-    """One task with what its releases cost, overheads included, and its goals by cost."""
+    """One task with the demand of its releases, overheads included, and its goals by time."""
 
     task: Task
     jitter: int
@@ -35,7 +35,7 @@ class Contender:
 
     @classmethod
     def of(cls, task: Task, platform: Platform, serial: int) -> Contender:
-        """``task`` on that platform; ``serial`` tells it from all others."""
+        """``task`` on that platform; ``serial`` is its unique number."""
         jitter, demand = jitter_of(task, platform), demand_of(task, platform)
         goals = [(cost, frame, WHOLE) for frame, cost in enumerate(demand.costs)]
         if task.rows:
@@ -47,12 +47,12 @@ class Contender:
 
     @property
     def least(self) -> int:
-        """The least cost at which anything of a job is complete."""
+        """The least execution time after which a row or the job is complete."""
         return self.goals[0][0]
 
 
 def _row_goals(task: Task, before: int) -> list[Goal]:
-    """The completion of each row in each frame; all work apart from rows comes first."""
+    """The completion of each row in each job of the cycle; work apart from rows comes first."""
     number = {row.name: n for n, row in enumerate(task.rows)}
     goals = []
     for frame, rows in enumerate(task.frames):
@@ -83,10 +83,10 @@ class Worst:
 def response(
     own: Contender, level: Level, blocking: Section | None, window: Window, effort: Effort
 ) -> Response:
-    """The response of ``own`` where ``window`` holds its rivals, no longer than its first job.
+    """The response of ``own``; ``window`` holds the interference, at most that of its first job.
 
-    Every job of the busy period is looked at, up to the one after which the releases
-    of all tasks repeat: as the load is at most 1, later ones are no worse.
+    Every job of the busy period is analysed, up to the one after which the releases
+    of all tasks repeat. Later ones are no worse, as the load is at most 1.
     """
     task = own.task
     worst = {number: Worst() for number in range(WHOLE, len(task.rows))}
@@ -119,7 +119,7 @@ def response(
 
 
 def _goals_of(own: Contender, job: int, blocked: int) -> list[Goal]:
-    """The goals of one job with all that is executed before them, by cost."""
+    """The goals of one job with the execution time of the jobs before it, by time."""
     if len(own.goals) == 1:
         cost, frame, number = own.goals[0]
         return [(blocked + job * cost + cost, frame, number)]

@@ -11,21 +11,20 @@ refuted, revisited and revised (Real-Time Systems 35, 2007). For instance q (fro
 
 over all instances of the busy period  t = B + E(t) + sum ceil((J_k + t) / T_k) C_k,
 own frames included. tau is a bit: a frame queued until then still takes part in
-arbitration. B is the longest less urgent frame, or the longest that somebody
-unknown may send. E is the time lost to errors. R counts from the event that makes
+arbitration. B is the longest less urgent frame, or the longest undeclared one. E is
+the time lost to errors. R counts from the event that makes
 the sender queue the frame, and includes the queuing jitter J.
 
-Assumed of the nodes: each offers its most urgent frame whenever the bus is free,
-and can still replace it by a more urgent one (no buffer that cannot be aborted, no
-copying delay), unless its frames share a first-in first-out queue. Those follow the
-idea of Davis, Kollmann, Pollex, Slomka (ECRTS 2011), here with every instance of
-the busy period: a queued frame is analysed at the least urgent identifier of its
-queue, with all frames of the queue before it; to others it has, as more jitter, the
-time until it is sent. Safe, not exact. Of a queue that is handed to the controller frame by
-frame, any less urgent frame may be sent before each: then all frames of the bus count,
-as often as they come, for whatever the order, a bus that is not idle sends them all.
+The analysis assumes that each node offers its most urgent frame whenever the bus is free. The
+node can still replace it by a more urgent one: buffers can be aborted, and copying takes no time.
+Frames of a first-in first-out queue are the exception. They follow Davis, Kollmann, Pollex,
+Slomka (ECRTS 2011), here with every instance of the busy period. A queued frame is analysed at
+the least urgent identifier of its queue, with all frames of the queue before it. Towards other
+frames the time until it is sent is additional jitter. The bound is safe, not exact. A controller
+may get the frames of a queue one by one. Then any less urgent frame may be sent before each. So
+all frames of the bus count, as often as they come: a busy bus sends them all in any order.
 
-Frames of one rank are more urgent than each other: either may go first, each time anew.
+Frames of one rank delay each other: either may go first, each time anew.
 Identifiers of a bus differ. Published systems have ranks that do not.
 """
 
@@ -46,7 +45,7 @@ FRAME_EFFORT = 200_000
 """Changes of release numbers that one frame's analysis may take; then it has no bound."""
 
 WHOLE_EFFORT = 5_000_000
-"""The same for one call: what comes after has no bound either."""
+"""The same for one call: later frames have no bound either."""
 
 ROUNDS = 100
 """Rounds in which the delays of first-in first-out queues must settle."""
@@ -62,7 +61,7 @@ def analyse(frames: Sequence[Frame], bus: Bus) -> tuple[FrameResponse, ...]:
 
 @lru_cache(maxsize=64)
 def _analysed(frames: tuple[Frame, ...], bus: Bus) -> tuple[FrameResponse, ...]:
-    """As `analyse`; kept, for the rounds of a network, and a model that is changed, ask again."""
+    """As `analyse`; cached, because the rounds of a network and changed models ask again."""
     distinct("messages", [frame.name for frame in frames])
     effort = Effort(WHOLE_EFFORT)
     order = tuple(sorted(frames, key=lambda frame: frame.rank))
@@ -80,8 +79,8 @@ def response_under(
 ) -> FrameResponse:
     """The response when ``rivals`` are more urgent than ``frame`` and ``others`` are less.
 
-    Ranks are not looked at. ``delays`` is needed for frames with first-in first-out
-    queues, all ``reloaded`` (`delays_in_any_order`); of such a frame all others are rivals.
+    Ranks do not count. ``delays`` is needed for frames with first-in first-out queues, all
+    ``reloaded`` (`delays_in_any_order`); all other frames interfere with such a frame.
     """
     level = FrameLevel((*rivals, frame, *others), len(rivals) + 1, bus, delays or {})
     return _alone(frame, level, Effort(FRAME_EFFORT))
@@ -105,16 +104,16 @@ def load(frames: Sequence[Frame]) -> Fraction:
 
 
 Delays = Mapping[str, int | None]
-"""How long frames of queues may wait, by name; None where there is no bound."""
+"""The longest wait of frames in queues, by name; None where there is no bound."""
 
 
 def _queue_delays(order: tuple[Frame, ...], bus: Bus, effort: Effort) -> Delays:
     """How long each frame of a first-in first-out queue waits for its transmission.
 
-    The delays of different queues depend on each other: from zero up, until none grows.
-    None is longer than the busiest time of the whole bus: a bus that is never idle
-    while a frame waits has sent it by then, whatever the order. On a bus that may never
-    be idle again, as it is full, no queue has a bound: it is not empty for good.
+    The delays of different queues depend on each other: they grow from zero until none grows.
+    No delay is longer than the longest busy time of the whole bus: by its end the bus has sent
+    each waiting frame, whatever the order. On a full bus, which may never be idle again,
+    no queue has a bound: no time is known at which it is empty.
     """
     queued = [frame for frame in order if frame.queue]
     busiest = _busiest(order, bus, effort) if queued else None
@@ -192,14 +191,14 @@ def _of_bus(
 
 
 def _source(frame: Frame, delays: Mapping[str, int], later: int = 0) -> Source:
-    """What a frame takes of the bus, as late as its jitter, its queue and ``later`` let it be."""
+    """The demand of a frame on the bus, late by its jitter, its queue delay and ``later``."""
     return fixed_cost(frame.period, frame.jitter + delays.get(frame.name, 0) + later, frame.cost)
 
 
 def _obstacle(
     level: FrameLevel, used: Load, frame: Frame, waiting: Window, busy: Window, effort: Effort
 ) -> Reason | None:
-    """Why neither this frame nor those below it can have a bound; lengthens the windows."""
+    """The reason why this frame and those below have no bound; lengthens the windows."""
     if _overloaded(level, used):
         return Reason.OVERLOAD
     if waiting.settle(0, effort) and busy.settle(frame.cost, effort):

@@ -20,7 +20,7 @@ ERRORS = 1 << 40
 
 @dataclass(frozen=True, slots=True)
 class FrameInterference:
-    """What one other message takes of the time before transmission."""
+    """The interference of one other message before the transmission."""
 
     frame: Frame
     instances: int
@@ -29,9 +29,9 @@ class FrameInterference:
 
 @dataclass(frozen=True, slots=True)
 class FrameLevel:
-    """What is sent before a frame: the first ``reach`` of ``order``, most urgent first.
+    """The frames sent before a frame: the first ``reach`` of ``order``, most urgent first.
 
-    ``delays`` holds, by name, how long frames of first-in first-out queues may
+    ``delays`` has, by name, the longest time that frames of first-in first-out queues
     wait to take part in arbitration.
     """
 
@@ -49,7 +49,7 @@ class FrameLevel:
 
     @property
     def error_cost(self) -> int:
-        """What one error costs at this level; 0 where none are assumed."""
+        """The time lost to one error at this level; 0 where none are assumed."""
         if self.bus.errors is None:
             return 0
         longest = max(frame.cost for frame in self.order[: self.reach])
@@ -57,7 +57,7 @@ class FrameLevel:
 
     @property
     def blocker(self) -> tuple[str, int]:
-        """The longest less urgent frame and its time; no name where nobody declared it."""
+        """The longest less urgent frame and its time; no name for an undeclared frame."""
         longest = ("", self.bus.unknown)
         for frame in self.order[self.reach :]:
             if frame.cost > longest[1]:
@@ -108,12 +108,12 @@ class FrameResponse:
 
     @property
     def blocker(self) -> str:
-        """The less urgent frame that holds this one up; "" for none, or one not declared."""
+        """The less urgent frame that blocks this one; "" for none, or one not declared."""
         return self.level.blocker[0]
 
     @property
     def blocked(self) -> int:
-        """The longest less urgent frame, suffered once."""
+        """The blocking by the longest less urgent frame, which counts once."""
         return self.level.blocker[1]
 
     @property
@@ -147,7 +147,7 @@ class FrameResponse:
 
     @property
     def interference(self) -> tuple[FrameInterference, ...]:
-        """What each other message of the level takes of the window, most first."""
+        """The interference of each other message of the level in the window, longest first."""
         if self.bound is None:
             return ()
         found = []
@@ -161,10 +161,10 @@ class FrameResponse:
 def frame_response(
     frame: Frame, level: FrameLevel, waiting: Window, busy: Window, effort: Effort
 ) -> FrameResponse:
-    """The response of ``frame``; both windows hold its rivals, are no longer than its own.
+    """The response of ``frame``; both windows hold its interference, and are no longer than its.
 
-    In ``waiting`` a rival counts that is queued until arbitration is over, a bit later;
-    ``busy`` is the busy period, in which it counts until its end.
+    In ``waiting`` a frame interferes if it is queued until arbitration is over, a bit later.
+    ``busy`` is the busy period, in which a frame interferes until its end.
     """
     fixed = level.blocker[1]
     errors = level.bus.errors

@@ -4,34 +4,34 @@
 """End-to-end latencies of cause-effect chains, hop by hop.
 
 A chain is cut where data waits in a variable or a queue for a task that runs at its
-own times. Between cuts everything is released by what precedes it, so a segment has
+own times. Between cuts each step is released by the one before. So a segment has
 the response of its last step, from the arrival of its first, and one period T.
 
-  reaction  from an input that was just missed until the first output that knows it:
-            sum over segments of  wait + R, where the wait for a sampling task is at
-            most T: data written just after it was read is read in the next job
-            (Davare et al., DAC 2007). Where steps follow only some of the jobs before
-            them, T is the period of the last of them
-  age       from the arrival of the job that sampled an input until an output made of
-            it: R of the last segment, and R + T for each one before it that is sampled:
-            what is read was written by the last job completed before (Durr, von der
-            Bruggen, Chen, Chen, TECS 2019). An output stays until the next one replaces
-            it: `held` is the age then, and equals the reaction when all is sampled.
+    reaction  from an input that was just missed until the first output that knows it:
+              sum over segments of  wait + R, where the wait for a sampling task is at
+              most T: data written just after it was read is read in the next job
+              (Davare et al., DAC 2007). Where steps follow only some of the jobs before
+              them, T is the period of the last of them
+    age       from the arrival of the job that sampled an input until an output made of
+              it: R of the last segment, and R + T for each one before it that is sampled:
+              the value read was written by the last job completed before (Durr, von der
+              Bruggen, Chen, Chen, TECS 2019). An output stays until the next one replaces
+              it: `held` is the age then, and equals the reaction when all is sampled.
 
-What is sporadic bounds how soon its next job comes, and not how late. So nothing bounds
-the wait until it samples, nor until the n-th job that a step follows, nor the age of
-what it made (Feiertag et al., CRTS 2008; Durr et al. need a greatest distance too). What
-it releases, and what samples or takes its values, has a reaction all the same.
+The period of a sporadic item bounds how soon its next job comes, not how late. So three times have
+no bound: the wait until it samples, the wait until the n-th job that a step follows, and the
+age of its output (Feiertag et al., CRTS 2008). Durr et al. need a greatest distance too. Steps
+that it releases, and steps that sample or take its values, have a reaction all the same.
 
 A queue may release the task that takes its items, no sooner than its period T after the
-release before. Where items come no closer than T but for the lateness of their writer, none
-waits longer than the first of them that finds the task delayed: until the separation is over
-that this delay has put off, which is less than R after it came. So it waits at most R, and
-the n-th of those that one job of the writer puts in n - 1 periods more.
+release before. Let items come no closer than T, apart from the lateness of their writer. Then no
+item waits longer than the first one that finds the task delayed. This delay has put off the end
+of the separation to less than R after that item came. So an item waits at most R. The n-th item
+that one job of the writer puts in waits n - 1 periods more.
 
-A queue hands each item over once. Its reader takes so many in a job; an item waits
-for those before it. A job that finds none repeats what it made of the last item, so
-the output is replaced as often as its writer puts one in: that T counts for the age,
+A queue hands each item over once. Its reader takes a fixed number in a job; an item waits
+for those before it. A job that finds none repeats its output of the last item. So the output
+is replaced as often as its writer puts an item in. The writer's T counts for the age,
 whatever comes after, and the reader's own does not. These are bounds for any phasing
 of any clocks.
 """
@@ -46,7 +46,7 @@ from .holistic import Holistic, Network
 
 
 class HopKind(Enum):
-    """How data come to a step."""
+    """How data reach a step."""
 
     RELEASED = "released"
     """The completion of the step before (or the chain's event) releases it."""
@@ -65,16 +65,18 @@ class HopKind(Enum):
 class ChainStep:
     """A task or frame of a chain.
 
-    ``takes``   items in a job, where the hop to it is queued
-    ``puts``    items that a job of the step before puts into that queue; with more than
-                one, one is taken in a job
-    ``waits``   why what it reads may wait inside the step without bound, once a job of
-                it has arrived; "" where it does not wait
-    ``keeps``   why some of its jobs leave the old output in place, or make none, so that
-                nothing bounds the age of what comes after; "" where each makes a new one
-    ``longest`` longest time between two of its outputs, where that is more than its period;
-                0 where it is not
-    ``delay``   how much longer an input may wait for the step, which is not free for each
+    The fields say how items reach the step, and how its outputs follow each other.
+
+        ``takes``    items in a job, where the hop to it is queued
+        ``puts``     items that a job of the step before puts into that queue; with more than
+                     one, one is taken in a job
+        ``waits``    why an input may wait inside the step without bound, once a job of
+                     it has arrived; "" where it does not wait
+        ``keeps``    why some of its jobs leave the old output in place, or make none, so that
+                     the age of the next steps has no bound; "" where each makes a new one
+        ``longest``  longest time between two of its outputs, where that is more than its
+                     period; 0 where it is not
+        ``delay``    how much longer an input may wait for the step, which is not free for each
     """
 
     name: str
@@ -105,14 +107,16 @@ class TimedChain:
 
 @dataclass(frozen=True, slots=True)
 class HopLatency:
-    """What one step adds, in ticks; None where there is no bound.
+    """The times of one step in a chain.
 
-    ``wait``      until the arrival of the job that reads the input, or of one that the
-                  step follows
-    ``response``  from there (or the step before, when released by it) to completion
-    ``renewal``   longest time until the output of a job is replaced by the next one,
-                  where that counts for the age: before a queue or a sampling step
-    ``backlog``   places that a queue before the step must have to lose nothing
+    They are in ticks; None where there is no bound.
+
+        ``wait``      until the arrival of the job that reads the input, or of one that the
+                      step follows
+        ``response``  from there (or the step before, when released by it) to completion
+        ``renewal``   longest time until the output of a job is replaced by the next one,
+                      where that counts for the age: before a queue or a sampling step
+        ``backlog``   places that a queue before the step must have to lose no item
     """
 
     step: ChainStep
@@ -129,7 +133,7 @@ class Latency:
     chain: TimedChain
     hops: tuple[HopLatency, ...]
     renewal: int | None
-    """Longest time for which the last output stays, None where nothing makes a next one."""
+    """Longest time for which the last output stays; None where no next one is certain."""
 
     @property
     def reaction(self) -> int | None:
@@ -140,8 +144,8 @@ class Latency:
     def age(self) -> int | None:
         """From the sampling of an input to the output made of it.
 
-        All responses and renewals, and the waits in queues; not the wait before other
-        steps, for what they read is renewed meanwhile.
+        The sum of all responses and renewals, and of the waits in queues. The wait before
+        other steps does not count, because their input is renewed meanwhile.
         """
         parts = []
         for hop in self.hops:
@@ -157,7 +161,7 @@ class Latency:
 
     @property
     def met(self) -> bool:
-        """Both limits are kept, where they are given; the age is that of the output."""
+        """Whether both limits are met, where they are given; the age is that of the output."""
         pairs = (
             (self.reaction, self.chain.reaction_limit),
             (self.age, self.chain.age_limit),
@@ -168,8 +172,8 @@ class Latency:
 def latency(chain: TimedChain, network: Network, found: Holistic) -> Latency:
     """The latencies of ``chain`` from the responses ``found`` for ``network``.
 
-    ValueError for a step that the network does not have, for one that is said to be
-    released by the step before it and is not, and for a queue before the first step.
+    ValueError for a step that the network does not have, and for a queue before the first
+    step. ValueError also where the step before does not release a step of `HopKind.RELEASED`.
     """
     _check(chain, network)
     hops = []
@@ -209,7 +213,7 @@ def latency(chain: TimedChain, network: Network, found: Holistic) -> Latency:
 
 
 def _check(chain: TimedChain, network: Network) -> None:
-    """Refuse what the network does not have."""
+    """Refuse a chain that does not fit the network."""
     items = network.items()
     if not chain.steps or chain.steps[0].hop in (HopKind.QUEUED, HopKind.WOKEN):
         raise ValueError(f"steps of chain {chain.name} must begin with a step without a queue")
@@ -234,11 +238,11 @@ def _cycle(name: str, network: Network) -> int | None:
 def _queue(
     writer: str, step: ChainStep, network: Network, found: Holistic
 ) -> tuple[int | None, int | None]:
-    """How long an item waits for the arrival of the job that takes it, and how many do.
+    """The wait of an item for the arrival of the job that takes it, and how many items wait.
 
-    The items of job k (from 1) of a burst come no earlier than (k - 1) T - J of the
-    writer, and item n has its turn in job ceil(n / takes) of the reader from then on. The
-    wait is longest for the last item that jitter can make come at once, or for the next
+    The items of job k (from 1) of a burst come no earlier than (k - 1) T - J of the writer.
+    Item n has its turn in job ceil(n / takes) of the reader from then on. The wait is
+    longest for the last item that jitter can make come at once, or for the next one
     that needs one more job of the reader.
     """
     items = network.items()
@@ -260,9 +264,9 @@ def _queue(
 def _woken(
     writer: str, step: ChainStep, network: Network, found: Holistic
 ) -> tuple[int | None, int | None]:
-    """How long an item waits for the release that takes it, and how many do.
+    """The wait of an item for the release that takes it, and how many items wait.
 
-    It is the first row of its task, or the task itself: what delays that when it is released
+    The step is the first row of its task, or the task itself. Its delay after the release
     is at most its response.
     """
     items = network.items()

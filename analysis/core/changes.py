@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What would meet all deadlines: single changes, and as little of each as suffices.
+"""Single changes that would meet all deadlines, each as small as suffices.
 
-Every candidate is judged by the analysis itself (`holistic`, or a stricter ``met``), so
-what is said to suffice does. Shorter execution times and longer periods only help, so the
-least of them is found by halving. Orders of priorities and identifiers are tried: by
-deadline (`assignment`), and from the lowest place up as Audsley (1991) does. With jitter
-inherited from others the latter may miss an order that there is, never accept a wrong one.
+Every candidate is judged by the analysis itself (`holistic`, or a stricter ``met``). So
+each change that is reported to suffice does. Shorter execution times and longer periods
+only help, so the smallest change is found by halving. Orders of priorities and identifiers are
+tried by deadline (`assignment`), and from the lowest place up as Audsley (1991) does. With
+inherited jitter the latter may miss an order that exists, but never accepts a wrong one.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ STEPS = 1_000
 """Execution times are shortened, and periods lengthened, by whole multiples of 1 / this."""
 
 LONGEST = 10
-"""Times its period is the most that a period is lengthened to."""
+"""A period is lengthened to at most so many times its length."""
 
 ORDERED = 30
-"""Of so many tasks or frames at most an order is looked for from the lowest place up."""
+"""With more tasks or frames, no order is searched for from the lowest place up."""
 
 
 class ChangeKind(Enum):
-    """What is changed."""
+    """The kind of a change."""
 
     WCET = "wcet"
     PERIOD = "period"
@@ -46,9 +46,9 @@ class ChangeKind(Enum):
 class Change:
     """One change; ``enough`` when it meets all deadlines alone.
 
-    ``factor`` is the largest of the execution time, or the smallest of the period, that
-    does; None where none does and for orders. ``order`` names tasks of a core or frames of
-    a bus, most urgent first.
+    ``factor`` is the largest one of the execution time, or the smallest one of the period,
+    that suffices; None where none does and for orders. ``order`` names tasks of a core or
+    frames of a bus, most urgent first.
     """
 
     kind: ChangeKind
@@ -59,7 +59,7 @@ class Change:
 
     @property
     def amount(self) -> Fraction:
-        """Share of the time that is changed; 0 for orders, which cost no time."""
+        """Share of the time that is changed; 0 for orders, which need no time."""
         return Fraction(0) if self.factor is None else abs(self.factor - 1)
 
 
@@ -67,18 +67,18 @@ Part = tuple[str, str]
 """A task and one of its rows, or "" for its own time."""
 
 Met = Callable[[Network], bool]
-"""Whether all that is asked of a network holds."""
+"""Whether a network meets all its requirements."""
 
 
 def ranked(changes: Sequence[Change]) -> tuple[Change, ...]:
-    """What suffices first: orders, then the smallest share of a time."""
+    """Sufficient changes first: orders, then the smallest share of a time."""
     return tuple(sorted(changes, key=lambda one: (not one.enough, one.amount)))
 
 
 def shorter(
     network: Network, groups: Mapping[str, Collection[Part]], holds: Met
 ) -> Iterator[Change]:
-    """For each group of parts: how far their execution times must shrink together."""
+    """For each group of parts, the factor by which their execution times must shrink together."""
     for name, members in groups.items():
 
         def suffices(count: int, members: Collection[Part] = members) -> bool:
@@ -121,10 +121,10 @@ def shrunk(network: Network, chosen: Collection[Part], factor: Fraction) -> Netw
 
 
 def slower(network: Network, roots: Sequence[str], holds: Met) -> Iterator[Change]:
-    """For each item that an event releases: how much longer its period must be.
+    """For each item that an event releases, the factor by which its period must grow.
 
-    What follows it has its period lengthened with it; deadlines stay. Its releases then come
-    at other times between those of others, so no offset of it counts.
+    The periods of the items that follow it grow with it; deadlines stay. Its releases then
+    come at other times between those of others, so its offset does not count.
     """
     least, most = STEPS + 1, LONGEST * STEPS
     for root in roots:
@@ -138,7 +138,7 @@ def slower(network: Network, roots: Sequence[str], holds: Met) -> Iterator[Chang
 
 
 def stretched(network: Network, root: str, factor: Fraction) -> Network:
-    """The network with the period of ``root`` multiplied, rounded down, and so what follows it."""
+    """The network with the period of ``root``, and of its followers, multiplied, rounded down."""
     period = network.items()[root].period
     longer = period * factor.numerator // factor.denominator
 
@@ -160,9 +160,9 @@ def stretched(network: Network, root: str, factor: Fraction) -> Network:
 
 
 def reordered(network: Network, movable: Collection[str], holds: Met) -> Iterator[Change]:
-    """For each core and each bus: whether another order of the movable tasks or frames does.
+    """For each core and each bus, whether another order of the movable tasks or frames suffices.
 
-    The order that is found first is told; an empty one where none is.
+    The change has the first order found, or an empty one.
     """
     wide = _spread(network)
     places: list[tuple[str, Sequence[Task | Frame]]] = [
@@ -244,10 +244,10 @@ def _in_order(network: Network, items: Sequence[Task | Frame], order: Sequence[s
 
 
 def _spread(network: Network) -> Network:
-    """No two tasks of a core with one priority, nor two frames of a bus with one rank.
+    """The network with different priorities on each core, and different ranks on each bus.
 
-    They were delayed by each other, and now only one is by the other. Ceilings above their
-    users stay above all.
+    Tasks of one priority delayed each other; now only one delays the other. Ceilings above
+    their users stay above all.
     """
     count = max(len(network.tasks), *map(len, network.frames.values()), 0) + 1
     seen: dict[tuple[str, int], int] = {}

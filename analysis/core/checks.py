@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Parameters that no analysis can give a meaning to are refused by name."""
+"""Checks that refuse meaningless parameters by name."""
 
 from __future__ import annotations
 

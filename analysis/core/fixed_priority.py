@@ -9,13 +9,13 @@ For job q (from 0) of a busy period of the task's level, ending in frame f:
     R       = max over q and f of  J + w(q, f) - q T
 
 The others are the tasks of the core with higher or equal priority; own is the
-cost of the job and of the q before it. Joseph and Pandya 1986; Audsley et al.
+execution time of the job and of the q before it. Joseph and Pandya 1986; Audsley et al.
 1993; Lehoczky 1990 for deadlines beyond the period; Tindell, Burns, Wellings 1994
-for jitter. With one cost per task, no sections and no equal priorities the bound
+for jitter. With one C per task, no sections and no equal priorities the bound
 is attained by some phasing. It is safe, and may not be attained, for equal
-priorities (each counts in full) and for tasks with several frames (each is at its
+priorities (each counts in full) and for multiframe tasks (each is at its
 worst in every window). R counts from the arrival and includes the task's own jitter.
-It holds for all offsets; where they are known, `offsets` finds what they make shorter.
+It holds for all offsets. Where they are known, `offsets` finds the shorter responses.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ TASK_EFFORT = 200_000
 """Changes of release numbers that one task's analysis may take; then it has no bound."""
 
 WHOLE_EFFORT = 5_000_000
-"""The same for one call: what comes after has no bound either."""
+"""The same for one call: later tasks have no bound either."""
 
 OFFSETS_EFFORT = 500_000
-"""Steps of windows from chosen instants in one call: what comes after holds for all offsets."""
+"""Steps of windows from chosen instants in one call: later bounds hold for all offsets."""
 
 NO_OVERHEAD = Platform()
 
@@ -58,8 +58,8 @@ def analyse_tasks(
 ) -> tuple[Response, ...]:
     """The worst-case response of every task, in the order given.
 
-    Tasks of different cores do not meet. ``platforms`` gives the overheads of a
-    core by its name, ``ceilings`` those of resources that are not just the highest
+    Tasks of different cores do not meet. ``platforms`` has the overheads of a
+    core by its name, ``ceilings`` the ceilings that are not just the highest
     priority of the users. ValueError for a name given twice, and as `blockers`.
     """
     effort, steps = Effort(WHOLE_EFFORT), Effort(OFFSETS_EFFORT)
@@ -102,7 +102,7 @@ def _cores(tasks: Sequence[Task]) -> dict[str, tuple[Task, ...]]:
 def _quickly(order: tuple[Task, ...], held: Mapping[str, Section], platform: Platform) -> list[int]:
     """The bounds of plain tasks whose first job ends the busy period, 0 for others.
 
-    Nothing where the library is of no use: for few tasks, or overheads that are no task's.
+    An empty list where the library does not help: for few tasks, or overheads above all tasks.
     """
     if len(order) < WORTH_IT or platform.release or platform.tick_cost:
         return []

@@ -3,8 +3,8 @@
 
 """Lengths and arbitration of CAN and CAN FD frames.
 
-Classic frames: Davis, Burns, Bril, Lukkien, Real-Time Systems 35, 2007, equation 1:
-one stuff bit for four bits after the first, over all bits from the start of frame
+Classic frames follow Davis, Burns, Bril, Lukkien, Real-Time Systems 35, 2007, equation 1.
+It counts one stuff bit for four bits after the first, from the start of frame
 to the end of the CRC, and three bits to the next frame. A receiver has the frame
 up to three bits earlier, never later.
 """
@@ -60,9 +60,9 @@ def fd_bits(
 
     ``length`` is one of `FD_SIZES`. With ``switched`` the data rate holds from the
     bit after the switch to the CRC. Derived from the layout in ISO 11898-1 (2015);
-    the tests hold it against the bits that `hw_can/simulator` writes. The bit of the
-    switch and the CRC delimiter, in the middle of which the rate changes, count as
-    nominal bits, and so do as many stuff bits as can fall before the switch.
+    the tests compare it with the bits that `hw_can/simulator` writes. The rate changes in
+    the middle of the switch bit and of the CRC delimiter. Both count as nominal bits, and
+    so do as many stuff bits as can fall before the switch.
     Tolerated longer delimiters and acknowledgements are not counted.
     """
     if length not in FD_SIZES:

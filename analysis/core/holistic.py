@@ -4,12 +4,12 @@
 """Tasks and buses that release each other: jitter inherited until nothing changes.
 
 Tindell and Clark, Holistic schedulability analysis for distributed hard real-time
-systems (1994). What is released by the completion of something else arrives with it,
-at the latest, and has as jitter the difference to its best case. Jitter begins at
-zero and only grows; responses grow with it, so the first state that repeats itself
-is the least, and a system without one is not bounded by the values it went through.
-Steps of a chain count as independent of each other, safe, unless the network is
-``together``: then `transactions` finds what their distances make shorter.
+systems (1994). An item that another one releases arrives with its completion, at the
+latest. Its jitter is the difference to its best case. Jitter begins at zero and only
+grows, and responses grow with it. So the first state that repeats itself is the least.
+A system without such a state is not bounded by the values it went through. Steps of a
+chain count as independent of each other, which is safe. In a network that is
+``together``, `transactions` finds the responses that their distances make shorter.
 
 A best case is the sum of the best cases (`best`) along the chain, 0 unless given.
 """
@@ -30,10 +30,10 @@ from .tasks import Task
 from .transactions import ends
 
 ROUNDS = 200
-"""Rounds of the iteration; where it has not settled then, what is released has no bound."""
+"""Rounds of the iteration; if it has not settled by then, released items have no bound."""
 
 STRAINED = 5
-"""Of these, rounds in which an analysis may reach the end of the work allowed."""
+"""Rounds in which an analysis may reach the end of the work allowed."""
 
 LATEST = 1_000
 """Periods of jitter above which there is no bound."""
@@ -41,15 +41,14 @@ LATEST = 1_000
 
 @dataclass(frozen=True, slots=True)
 class Network:
-    """Tasks, buses, and what releases what.
+    """Tasks, buses, and the releases between them.
 
-    ``frames`` and ``buses`` go by the name of a bus. ``released_by`` says, for each
-    task or frame that is released by the completion of another, by which; its own
-    jitter then comes on top. Its period is that of what releases it, or a multiple where
-    not every job does. Names are distinct over tasks and frames. ``platforms`` goes by
-    the name of a core, ``ceilings`` by resource, as in `fixed_priority.analyse_tasks`. Nothing
-    that another releases has an offset. ``together``: steps of one chain count with the
-    distances that they have.
+    ``frames`` and ``buses`` go by the name of a bus. ``released_by`` has the releaser of each
+    task or frame that the completion of another one releases; its own jitter then comes on
+    top. Its period is that of its releaser, or a multiple where not every job releases it.
+    Names are distinct over tasks and frames. ``platforms`` goes by the name of a core,
+    ``ceilings`` by resource, as in `fixed_priority.analyse_tasks`. A released item has no
+    offset. ``together``: steps of one chain count with the distances that they have.
     """
 
     tasks: tuple[Task, ...]
@@ -62,7 +61,7 @@ class Network:
     together: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse names given twice, unknown names, circles and other periods."""
+        """Refuse names given twice, unknown names, cycles and other periods."""
         items = self.items()
         for name, by in self.released_by.items():
             for one in (name, by):
@@ -91,7 +90,7 @@ class Network:
         return {item.name: item for item in items}
 
     def least(self) -> dict[str, int]:
-        """The least time from the release of each item until what it releases can arrive.
+        """The least time from the release of each item until the items that it releases arrive.
 
         A frame is received before the bits between frames, which its times contain.
         """
@@ -102,7 +101,7 @@ class Network:
         return least
 
     def releasers(self, name: str) -> tuple[str, ...]:
-        """What releases it, what releases that, and so on; stops where a circle closes."""
+        """The items that release it, directly and through others; stops where a cycle closes."""
         found: list[str] = []
         while (by := self.released_by.get(name)) is not None and by not in found:
             found.append(by)
@@ -116,8 +115,8 @@ class Holistic:
 
     ``inherited`` is the jitter that an item has from its releasers, and ``best`` the
     least time from the event of its chain to its arrival. The bound of a response
-    counts from there: ``best + bound`` is the time from the event of the chain. ``ends`` are
-    such times that are shorter, as the steps of a chain do not all meet.
+    counts from there: ``best + bound`` is the time from the event of the chain. ``ends`` has
+    shorter such times, where the steps of a chain do not all meet.
     """
 
     responses: Mapping[str, Response | FrameResponse]
@@ -143,7 +142,7 @@ class Holistic:
         return item.deadline
 
     def meets(self, name: str) -> bool:
-        """It has a bound from its chain's event, and that is at most its deadline."""
+        """Whether it has a bound from its chain's event, which is at most its deadline."""
         needed = self.from_event(name)
         return needed is not None and needed <= self.deadline(name)
 
@@ -182,9 +181,9 @@ def analyse(network: Network) -> Holistic:
 
 
 def analyses(network: Network) -> Iterator[Holistic]:
-    """The responses for any offsets and then, where these could make them shorter, by them.
+    """The responses for any offsets, then those with offsets, where these may be shorter.
 
-    For searches, which are done with the first if it meets what they look for.
+    A search stops after the first result if that meets its condition.
     """
     blind = tuple(task.at_any_time() for task in network.tasks)
     known = blind != network.tasks
@@ -202,7 +201,7 @@ def met(network: Network) -> bool:
 def _responses(
     network: Network, late: Mapping[str, int | None]
 ) -> dict[str, Response | FrameResponse]:
-    """All responses with that jitter inherited; None is a jitter without bound."""
+    """All responses with the inherited jitter ``late``; None is a jitter without bound."""
     found: dict[str, Response | FrameResponse] = {}
     tasks = tuple(replace(t, jitter=t.jitter + (late[t.name] or 0)) for t in network.tasks)
     lost = {

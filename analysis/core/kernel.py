@@ -3,13 +3,13 @@
 
 """Busy periods of many plain tasks at once, by the compiled and proved part of the analysis.
 
-For plain tasks (one cost, no jitter) the busy period at the level of a task is the least W
+For plain tasks (one C, no jitter) the busy period at the level of a task is the least W
 with
 
     W = B + sum over the tasks as urgent or more of  ceil(W / T_j) C_j
 
-`analysis/kernel/busy_periods.ads` says what is proved of it. Where the library has not been
-built the integers of `window` do the same, more slowly.
+`analysis/kernel/busy_periods.ads` has the contract that is proved. Where the library has not
+been built, the integers of `window` give the same result, more slowly.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from ravenchart.paths import work
 LIBRARY = work() / "obj" / "kernel" / "libbusy_periods.so"
 
 LIMIT = 1 << 47
-"""Times from here on are left to integers."""
+"""Times from here on are left to Python's integers."""
 
 MOST_TASKS = 1 << 13
 """The tasks that the library has room for."""
@@ -39,7 +39,7 @@ def busy_periods(
     """The busy period at the level of each task, 0 where it is longer than the task's period.
 
     Tasks come most urgent first; ``last[j]`` is the number of the last one as urgent as
-    task j, and ``blocked[j]`` what task j suffers once. Nothing where the library is not
+    task j, and ``blocked[j]`` is B of task j. An empty list where the library is not
     built, or has no room for the tasks or their times.
     """
     find, count = library(), len(periods)

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Exact demand of releases whose costs repeat in a cycle.
+"""Exact demand of releases whose execution times repeat in a cycle.
 
-Mok and Chen, A multiframe model for real-time tasks (IEEE TSE 23, 1997); here for
-any cycle of costs: the most that k releases in a row can cost is the largest sum
-over all frames they may begin with (Baruah, Chen, Gorinsky, Mok 1999).
+Mok and Chen, A multiframe model for real-time tasks (IEEE TSE 23, 1997), here for any
+cycle of times. The demand of k releases in a row is the largest sum over all jobs of
+the cycle that they may begin with (Baruah, Chen, Gorinsky, Mok 1999).
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from itertools import accumulate
 
 
 class Demand:
-    """What consecutive releases cost, ``costs[k mod n]`` for release k, in ticks."""
+    """The demand of consecutive releases: C is ``costs[k mod n]`` for release k, in ticks."""
 
     __slots__ = ("_most", "_sums", "costs", "total")
 
     def __init__(self, costs: tuple[int, ...]) -> None:
-        """``costs`` holds at least one cost, none negative."""
+        """``costs`` has at least one execution time, none negative."""
         n = len(costs)
         self.costs = costs
         self.total = sum(costs)
@@ -30,19 +30,19 @@ class Demand:
             self._most = tuple(max(sums[s + k] - sums[s] for s in range(n)) for k in range(n))
 
     def most(self, count: int) -> int:
-        """The most that ``count`` releases in a row can cost."""
+        """The most that ``count`` releases in a row can execute."""
         cycles, rest = divmod(count, len(self.costs))
         return cycles * self.total + self._most[rest]
 
     def first(self, count: int) -> int:
-        """The frame with which those ``count`` releases begin; the first of several."""
+        """The job of the cycle with which those releases begin; the first of several."""
         n = len(self.costs)
         rest = count % n
         sums = self._sums
         return next(s for s in range(n) if sums[s + rest] - sums[s] == self._most[rest])
 
     def before(self, count: int, frame: int) -> int:
-        """The cost of the ``count`` releases that precede one of ``frame``."""
+        """The execution time of the ``count`` releases before job ``frame`` of the cycle."""
         n = len(self.costs)
         if n == 1:
             return count * self.total
@@ -51,5 +51,5 @@ class Demand:
 
     @property
     def steady(self) -> tuple[int, ...] | None:
-        """None when every release costs the same, else the table behind `most`."""
+        """None when every release has the same C, else the table behind `most`."""
         return None if len(self.costs) == 1 else self._most

@@ -3,11 +3,11 @@
 
 """Responses of tasks that one clock releases, each at its own offset from an epoch.
 
-Release k of a task with the offset O is due at O + k T, so which releases meet is known.
-A busy period in which a job suffers most begins where a job of its level, as late as its
-jitter lets it be, is released: had it begun between two such instants, it could begin later
-with the same jobs in it. So these instants, over one cycle of all the offsets and tables,
-are tried. From the instant t on, for job q of the busy period, which arrives at a(q),
+Release k of a task with the offset O is due at O + k T, so it is known which releases meet.
+The worst busy period of a job begins where a job of its level is released as late as its
+jitter allows. A busy period that begins between two such instants could begin later with the
+same jobs in it. So these instants are tried, over one cycle of all the offsets and tables.
+From the instant t on, for job q of the busy period, which arrives at a(q),
 
     w(q) = B + own(q) + sum over tasks with offsets of  cost of jobs in [t - J_j, t + w(q))
              + sum over the others of  most_j(ceil((J_j + w(q)) / T_j))
@@ -17,9 +17,9 @@ Tindell, Adding time-offsets to schedulability analysis (YCS 221, 1994); Palenci
 Gonzalez Harbour, RTSS 1998, whose exact form this is where the tasks of a core are one
 transaction. Of several epochs (transactions) the one counts that makes a response shortest;
 tasks of the others may be released at any time between. Jobs of a table count with the rows
-of their own release. Where no sections, equal priorities, tables of unknown phase or further
-epochs are, the bound is attained. It is never above that for all offsets, to which it falls
-back where the work allowed does not suffice.
+of their own release. The bound is attained without sections, equal priorities, tables of
+unknown phase and further epochs. It is never above the bound for all offsets. That bound is
+the result where the work allowed does not suffice.
 """
 
 from __future__ import annotations
@@ -47,11 +47,11 @@ from .tasks import Task
 from .window import Effort, Source, cost_of, fixed_cost, source
 
 INSTANTS = 10_000
-"""Instants that are tried for one task at most: offsets that make for more are left out."""
+"""Instants that are tried for one task at most; offsets that lead to more are left out."""
 
 
 class _Arrivals:
-    """The arrivals of several streams over their common cycle, and what they cost up to each."""
+    """The arrivals of several streams over their common cycle, and their demand up to each."""
 
     def __init__(self, streams: Sequence[Stream], cycle: int) -> None:
         self.streams = streams
@@ -61,31 +61,31 @@ class _Arrivals:
         self.sums = list(accumulate((cost for _, cost in arrivals), initial=0))
 
     def before(self, end: int) -> int:
-        """What arrives before ``end``, counted from a common instant."""
+        """The demand that arrives before ``end``, counted from a common instant."""
         cycles, rest = divmod(end, self.cycle)
         return cycles * self.sums[-1] + self.sums[bisect_left(self.times, rest)]
 
     def late(self, start: int) -> int:
-        """What arrives before ``start`` and may be released no earlier."""
+        """The demand that arrives before ``start`` and may be released from ``start`` on."""
         return sum(s.cost(start - s.jitter, start) for s in self.streams if s.jitter)
 
     def instants(self) -> Iterator[int]:
-        """When they release jobs as late as can be."""
+        """The instants at which the streams release jobs as late as possible."""
         for stream in self.streams:
             for time, _ in stream.arrivals(self.cycle):
                 yield (time + stream.jitter) % self.cycle
 
 
 def _released(task: Task, platform: Platform) -> Stream:
-    """The work of making the jobs of such a task ready."""
+    """The stream of the work that makes the jobs of a task ready."""
     return replace(stream_of(task, platform), demand=Demand((release_time(task, platform),)))
 
 
 def aligned(response: Response, epoch: str = "") -> tuple[Task, ...]:
     """The tasks of its level whose offsets from an epoch are used: at least two, or none.
 
-    Short cycles come first, so that it depends on the set of tasks alone: which are
-    more urgent must not matter to those that look for an order.
+    Short cycles come first, so that the choice depends on the set of tasks alone. A search
+    for an order needs a choice that does not depend on priorities.
     """
     known = _of(epoch, response.level.order[: response.level.reach])
     known.sort(key=lambda task: (task.period * task.frame_count, task.period, task.name))
@@ -105,7 +105,7 @@ def closer(
 ) -> Iterator[Response]:
     """The responses of tasks of one core with their offsets used; ``found`` holds for all.
 
-    One stays as it is where offsets make it no shorter, and where the effort does not do.
+    A response stays as it is where offsets make it no shorter, or the effort does not suffice.
     """
     known = {t.epoch: _of(t.epoch, order) for t in order if t.offset is not None}
     apart = {epoch for epoch, some in known.items() if len(some) > 1}
@@ -130,13 +130,13 @@ def _of(epoch: str, tasks: Iterable[Task]) -> list[Task]:
 
 
 def _together(tasks: Sequence[Task], platform: Platform) -> bool:
-    """All begin at once, as late, with all rows: the first job then suffers what it can."""
+    """Whether all begin at once, equally late, with all rows: the first job is then the worst."""
     begins = {(task.offset, jitter_of(task, platform)) for task in tasks}
     return len(begins) < 2 and not any(row.phase for task in tasks for row in task.rows)
 
 
 class OffsetSearch:
-    """The instants of one task, tried from those on that can lead to the longest response."""
+    """The instants of one task, tried in the order of the responses that they can lead to."""
 
     def __init__(self, plain: Response, tasks: Sequence[Task], effort: Effort) -> None:
         self.plain, self.effort = plain, effort
@@ -158,7 +158,7 @@ class OffsetSearch:
         self.pattern = math.inf
 
     def _others(self, platform: Platform) -> Iterator[Source]:
-        """What has no offset here: other tasks, ticks, and the releases of less urgent tasks."""
+        """The sources without an offset: other tasks, ticks, and releases of less urgent tasks."""
         for task in self.level.order[: self.level.reach]:
             if task.name not in self.names and task.name != self.plain.task.name:
                 yield source(task.period, jitter_of(task, platform), demand_of(task, platform))
@@ -192,17 +192,17 @@ class OffsetSearch:
         )  # fmt: skip
 
     def followed(self, reach: int) -> list[tuple[int, int]]:
-        """The instants of a cycle that the task arrives after in less than ``reach``, in order.
+        """The instants of a cycle less than ``reach`` before an arrival of the task, in order.
 
-        Each is with the time from it to that arrival, which is less than 0 where it was before.
+        Each has the time from it to that arrival, below 0 where the arrival was before.
         """
         return sorted((start, lead) for lead, start in self._instants() if lead < reach)
 
     def window(self, start: int) -> int | None:
-        """From ``start`` until the task's first job is done that arrives then, less its jitter.
+        """The time from ``start`` until the first job is done that arrives then, less its jitter.
 
-        It counts from ``start`` on, even where all is done before it arrives. None without
-        an offset of the task, or without effort.
+        It counts from ``start`` on, even where all work is done before the job arrives. None
+        without an offset of the task, or without effort.
         """
         if self.stream is None:
             return None
@@ -213,13 +213,13 @@ class OffsetSearch:
         return found if self.effort.left > 0 else None
 
     def _attained(self, less: int) -> bool:
-        """Nothing longer can be found where the bounds for all offsets are so much less."""
+        """Whether each response found is at least its bound for all offsets minus ``less``."""
         return all(worst.bound >= self.limits[n] - less for n, worst in self.worst.items())
 
     def _instants(self) -> list[tuple[int, int]]:
         """The instants, each after the time from it to the first arrival of the task's own job.
 
-        The nearer that is, the longer a response can come of it.
+        The nearer this arrival, the longer the response can be.
         """
         late, stream = self.own.jitter, self.stream
         starts = set(self.rivals.instants())
@@ -259,9 +259,9 @@ class OffsetSearch:
                 return
 
     def _goals(self, job: int, first: int) -> Iterator[Goal]:
-        """What a job has executed where something of it is complete, those before it included.
+        """The completions in a job, each with the time executed until then since the first job.
 
-        Of a task whose offset is used the frame is known; all others begin with any.
+        If the task's offset is used, its job of the cycle is known; else it may be any.
         """
         demand = self.own.demand
         known = None if self.stream is None else (first + job) % len(demand.costs)
@@ -270,9 +270,9 @@ class OffsetSearch:
                 yield demand.before(job, frame) + cost, frame, number
 
     def _settled(self, fixed: int, start: int, counted: int, length: int) -> int:
-        """The least window from ``length`` on that holds ``fixed`` and all that comes with it.
+        """The least window from ``length`` on that holds ``fixed`` and the demand in it.
 
-        No more than what was reached where the effort does not do.
+        The length reached so far, where the effort does not suffice.
         """
         rivals, others = self.rivals, self.others
         while True:

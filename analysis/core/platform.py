@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the run-time system of one core costs, apart from the tasks themselves."""
+"""Overheads of the run-time system of one core, apart from the tasks themselves."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .checks import natural
 class Platform:
     """Overheads of one core, all in ticks; zero where there is none.
 
-    Each job pays for two context switches (to it and back), whoever it runs
-    before, and for two more each further time that it suspends itself. ``release``
-    is the work of the timer or interrupt that makes one job ready, each time: it runs
+    Each job has two context switches (to it and back), whatever it interrupts,
+    and two more each further time that it suspends itself. ``release``
+    is the work of the timer or interrupt that makes one job ready, each time. It runs
     above all tasks, for releases of less urgent tasks too.
-    A periodic tick costs ``tick_cost`` every ``tick_period`` above all tasks, and
-    a task that is released by it (`Task.timed`) may be late by one period of it.
+    A periodic tick takes ``tick_cost`` every ``tick_period`` above all tasks. A task
+    that the tick releases (`Task.timed`) may be late by one period of it.
     Burns, Tindell and Wellings, Effective analysis for engineering real-time
     fixed priority schedulers (IEEE TSE 21, 1995), whose tick scheduling this
     simplifies to the safe side.

@@ -27,7 +27,7 @@ class Reason(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Interference:
-    """What one other task executes in the window: so many releases, the first in ``frame``."""
+    """The interference of one other task; its first release has job ``frame`` of its cycle."""
 
     task: Task
     releases: int
@@ -37,7 +37,7 @@ class Interference:
 
 @dataclass(frozen=True, slots=True)
 class Overheads:
-    """Time in the window that no task executes: switches of all its jobs, ticks, releases."""
+    """Time in the window outside all tasks: switches of all its jobs, ticks, releases."""
 
     switches: int
     switch_time: int
@@ -48,13 +48,13 @@ class Overheads:
 
     @property
     def time(self) -> int:
-        """All of it."""
+        """All overheads together."""
         return self.switch_time + self.tick_time + self.release_time
 
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """What runs before a task: the first ``reach`` of its core's tasks, most urgent first."""
+    """The tasks of a level: the first ``reach`` of its core's tasks, most urgent first."""
 
     order: tuple[Task, ...]
     reach: int
@@ -75,10 +75,10 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class Alignment:
-    """Where in the pattern of known offsets a response is at its longest.
+    """The place in the pattern of known offsets at which a response is longest.
 
-    The busy period begins at ``start`` (ticks from the epoch of all offsets, or so many
-    cycles later), and the worst job arrives ``lead`` later, or before, by its jitter. ``tasks``
+    The busy period begins at ``start`` (ticks from the epoch of all offsets, or some cycles
+    later). The worst job arrives ``lead`` later, or before, by its jitter. ``tasks``
     are those whose offsets were used.
     """
 
@@ -91,7 +91,7 @@ class Alignment:
 class RowResponse:
     """The longest time from the arrival of a job to the completion of one of its rows.
 
-    It is attained by job ``job`` of a busy period, in frame ``frame``.
+    It is attained by job ``job`` of a busy period, which is job ``frame`` of the cycle.
     """
 
     row: TableRow
@@ -106,15 +106,15 @@ class Response:
     """The worst-case response of one task; all times in ticks.
 
     ``bound`` counts from the arrival, or is None with the ``reason``. It is attained
-    by job ``worst_job`` (from 0) of a busy period, in frame ``frame`` of the task's
-    table. ``jobs`` were looked at: all of the busy period, or those after which the
-    releases of all tasks repeat. The bound is made of
+    by job ``worst_job`` (from 0) of a busy period, which is job ``frame`` of the cycle of
+    the task's table. ``jobs`` were analysed: all of the busy period, or those after which
+    the releases of all tasks repeat. The bound is made of
 
         window - lead = bound
         blocked + own + interference + overheads = window
 
     with ``lead`` from the beginning of the busy period to the arrival of the worst job:
-    worst_job * period - jitter, unless offsets make it shorter. These have then an
+    worst_job * period - jitter, unless offsets make it shorter. In this case there is an
     ``alignment``; without one the bound holds for all offsets.
     """
 
@@ -159,18 +159,18 @@ class Response:
 
     @property
     def blocked(self) -> int:
-        """The longest section of a less urgent task, and what is given besides: suffered once."""
+        """B: the longest section of a less urgent task, and the given ``held``; counts once."""
         return held_up(self.task, self.blocking)
 
     @property
     def own(self) -> int:
-        """What the worst job and those before it in the busy period execute."""
+        """The execution time of the worst job and of those before it in the busy period."""
         demand = demand_of(self.task, Platform())
         return demand.before(self.worst_job, self.frame) + demand.costs[self.frame]
 
     @property
     def interference(self) -> tuple[Interference, ...]:
-        """What each other task of the level that runs executes in the window, most first."""
+        """The interference of each other task of the level in the window, longest first."""
         if self.bound is None:
             return ()
         found = [self._taken_by(other) for other in self._others()]
@@ -209,7 +209,7 @@ class Response:
         return releases_in(self.window, task.period, jitter_of(task, platform))
 
     def released(self, task: Task) -> list[tuple[int, int]]:
-        """When jobs of ``task`` are released in the window, at the soonest, with their frames."""
+        """The earliest releases of ``task`` in the window, each with its job of the cycle."""
         platform = self.level.platform
         count, jitter = self._releases(task), jitter_of(task, platform)
         demand = demand_of(task, platform)
@@ -222,16 +222,16 @@ class Response:
         return [(max(0, since + n * task.period), (first + n) % frames) for n in range(count)]
 
     def uses_offset_of(self, task: Task) -> bool:
-        """The jobs of ``task`` count as its offset places them."""
+        """Whether the jobs of ``task`` count as its offset places them."""
         return self.alignment is not None and task.name in self.alignment.tasks
 
     def _span(self, task: Task) -> tuple[int, int]:
-        """When jobs of the window arrive, of a task whose offset is used."""
+        """The span in which jobs of the window arrive, of a task whose offset is used."""
         start = self.alignment.start if self.alignment else 0
         return start - jitter_of(task, self.level.platform), start + self.window
 
     def _taken_by(self, other: Task) -> Interference:
-        """Execution of ``other``, in its known frames or those where it costs most."""
+        """The interference of ``other``, with its known jobs of the cycle or the longest ones."""
         count, platform = self._releases(other), self.level.platform
         demand = demand_of(other, platform)
         switches = count * switch_time(other, platform)
@@ -254,12 +254,12 @@ def switch_time(task: Task, platform: Platform) -> int:
 
 
 def release_time(task: Task, platform: Platform) -> int:
-    """What makes one job ready, each time that it suspends itself, above all tasks."""
+    """The time above all tasks to make one job ready, each time that it suspends itself."""
     return task.suspensions * platform.release
 
 
 def demand_of(task: Task, platform: Platform) -> Demand:
-    """What the releases of ``task`` cost, each with its context switches."""
+    """The demand of the releases of ``task``, each with its context switches."""
     extra = task.wcet + switch_time(task, platform)
     if not task.rows:
         return Demand((extra,))

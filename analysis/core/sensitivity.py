@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""How much room is left: factors of all execution times, and slack of single tasks.
+"""The sensitivity of a system: factors of all execution times, and slack of single tasks.
 
 Whether all deadlines are met is monotone in each execution time, so the last value
-that meets them is found by halving. Nothing is rounded to the unsafe side: a scaled
-time is rounded up, a factor is one that was tried.
+that meets them is found by halving. Rounding is safe: a scaled time is rounded up,
+and each factor is one that was tried.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ FACTOR_STEPS = 10_000
 """Factors are whole multiples of 1 / this."""
 
 FACTOR_LIMIT = 1_000
-"""No larger factor is looked for."""
+"""No larger factor is searched for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ def scaling(
     ceilings: Mapping[str, int] | None = None,
     steps: int = FACTOR_STEPS,
 ) -> Scaling | None:
-    """How far all execution times can be scaled together, in steps of 1 / ``steps``.
+    """The largest factor of all execution times together, in steps of 1 / ``steps``.
 
     Overheads and jitter stay as they are. None when no factor above 0 meets all deadlines.
     """
@@ -76,7 +76,7 @@ class NetworkScaling:
 def network_scaling(
     network: Network, names: Collection[str] | None = None, steps: int = FACTOR_STEPS
 ) -> NetworkScaling | None:
-    """How far the times of all tasks and frames, or of those named, can be scaled together.
+    """The largest factor of the times of all tasks and frames, or of those named, together.
 
     Frames scale as tasks do, as if they were longer. A deadline counts from the event
     of its item's chain. None when no factor above 0 meets all deadlines.
@@ -120,7 +120,7 @@ def scaled_network(network: Network, factor: Fraction, names: Collection[str] | 
 
 
 def _lateness(found: holistic.Holistic, name: str) -> tuple[bool, int]:
-    """Sorts by time past the deadline; without a bound is later than all."""
+    """A key by the time past the deadline; an item without a bound is later than all."""
     needed = found.from_event(name)
     return needed is None, (needed or 0) - found.deadline(name)
 
@@ -132,9 +132,9 @@ def growth(
     platforms: Mapping[str, Platform] | None = None,
     ceilings: Mapping[str, int] | None = None,
 ) -> int | None:
-    """How many ticks every job of the task ``name`` may take longer, all deadlines still met.
+    """The most ticks that every job of the task ``name`` may grow with all deadlines met.
 
-    0 where they are met as they are and no tick more would do; None where they are
+    0 where the deadlines are met and one tick more would miss one. None where they are
     not met. KeyError where there is no such task.
     """
     chosen = {task.name: task for task in tasks}[name]
@@ -165,9 +165,9 @@ def tightest(responses: Sequence[Response]) -> tuple[Response, ...]:
 
 
 def greatest(holds: Callable[[int], bool], low: int, high: int) -> int | None:
-    """The greatest number in ``low .. high`` up to which ``holds``; None when not even low.
+    """The greatest number in ``low .. high`` up to which ``holds``; None where ``low`` fails.
 
-    It doubles the step first, so that a small answer is found by small trials.
+    The search doubles the step first, so that it finds a small answer by small trials.
     """
     if not holds(low):
         return None

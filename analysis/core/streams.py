@@ -13,7 +13,7 @@ from .multiframe import Demand
 
 @dataclass(frozen=True, slots=True)
 class Stream:
-    """Jobs that arrive at ``offset`` + k ``period``, of the costs of a cycle, ticks each."""
+    """Jobs that arrive at ``offset`` + k ``period``, with the demand of a cycle; in ticks."""
 
     offset: int
     period: int
@@ -26,7 +26,7 @@ class Stream:
         return self.period * len(self.demand.costs)
 
     def number(self, time: int) -> int:
-        """The first job that arrives no earlier than that."""
+        """The number of the first job that arrives no earlier than ``time``."""
         return -((self.offset - time) // self.period)
 
     def count(self, begin: int, end: int) -> int:
@@ -34,12 +34,12 @@ class Stream:
         return self.number(end) - self.number(begin)
 
     def cost(self, begin: int, end: int) -> int:
-        """What those jobs cost."""
+        """The execution time of those jobs."""
         count = self.count(begin, end)
         return self.demand.before(count, self.number(end) % len(self.demand.costs))
 
     def arrivals(self, until: int) -> Iterator[tuple[int, int]]:
-        """Time and cost of its jobs, wrapped into ``0 .. until - 1``, of whole cycles."""
+        """Time and C of its jobs, wrapped into ``0 .. until - 1``, of whole cycles."""
         costs = self.demand.costs
         for k in range(until // self.period):
             yield (self.offset + k * self.period) % until, costs[k % len(costs)]

@@ -38,25 +38,26 @@ class TableRow:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """A periodic or sporadic task; all times in ticks.
+    """A periodic or sporadic task.
 
-    ``period``     distance of its arrivals (least distance when ``sporadic``), above 0
-    ``deadline``   from the arrival, above 0; it may exceed the period
-    ``wcet``       worst-case execution time of every job, apart from the rows
-    ``priority``   a larger number is more urgent
-    ``jitter``     longest time from the arrival to the release, any size
-    ``rows``       what job k executes besides, in this order
-    ``timed``      released by the tick of its core: late by up to one tick period
-    ``sporadic``   nothing makes it arrive; the analysis of responses is the same
-    ``best``       least execution time of a job, for the jitter of what it releases
-    ``held``       longest time that work of no task of the system, or a locking protocol of
-                   another kind, holds up all its jobs between two idle instants, besides the
-                   sections (the blocking term B of Audsley et al. 1993)
-    ``suspensions`` times that a job waits for something: each costs two context switches
-                   and the work of making it ready
+    All times are in ticks.
 
-    ``offset``     arrival of job 0, of frame 0, after an epoch; None where nobody knows
-    ``epoch``      which one: nothing is known of the distance of two epochs of a core
+        ``period``     T: distance of its arrivals (least when ``sporadic``), above 0
+        ``deadline``   D: from the arrival, above 0; it may exceed the period
+        ``wcet``       C: worst-case execution time of every job, apart from the rows
+        ``priority``   a larger number is more urgent
+        ``jitter``     J: longest time from the arrival to the release, any size
+        ``rows``       the rows that a job executes in addition, in this order
+        ``timed``      released by the tick of its core: late by up to one tick period
+        ``sporadic``   no job is certain to arrive; the analysis of responses is the same
+        ``best``       least execution time of a job, for the jitter of the released items
+        ``held``       longest blocking of all its jobs between two idle instants, apart from
+                       the sections: by work outside the system's tasks, or by another
+                       locking protocol (the blocking term B of Audsley et al. 1993)
+        ``suspensions``  times that a job waits: each needs two context switches and
+                         the work of making it ready
+        ``offset``     arrival of job 0 of the cycle, after an epoch; None where unknown
+        ``epoch``      the epoch of the offset; the distance of two epochs of a core is unknown
     """
 
     name: str
@@ -113,7 +114,7 @@ class Task:
         )
 
     def at_any_time(self) -> Task:
-        """The same task where nobody knows its offset."""
+        """The same task with an unknown offset."""
         return replace(self, offset=None, epoch="")
 
     @property
@@ -126,5 +127,5 @@ class Task:
 
 
 def with_full_jobs(task: Task) -> Task:
-    """The same task with every row in every job, at any time: as one reckons by hand."""
+    """The same task with every row in every job, at any time, as in a calculation by hand."""
     return replace(task.at_any_time(), wcet=task.plain_wcet, rows=())

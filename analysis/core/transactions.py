@@ -3,28 +3,28 @@
 
 """Responses where steps of one chain meet on a core or bus: they are not all released at once.
 
-What one event releases, directly or by the completion of other steps, is a transaction. Its
+A transaction is the set of steps that one event releases, directly or by other steps. Its
 step j arrives at the soonest phi_j after the event and at the latest J_j later (dynamic
-offsets). A busy period is longest that begins where a step c of the transaction, as late as
-can be, is released. From there on step j arrives first after
+offsets). The longest busy period begins where a step c of the transaction is released as
+late as possible. From there on step j arrives first after
 
     phi_jc = T - (phi_c + J_c - phi_j) mod T                                    in (0, T]
 
-and a window w holds so much of the transaction, the jobs delayed until its beginning included:
+and a window w holds this demand of the transaction, the jobs delayed until its beginning included:
 
     W_c(w) = sum over j of  (floor((J_j + phi_jc) / T) + max(0, ceil((w - phi_jc) / T))) C_j
 
 Palencia and Gonzalez Harbour, Schedulability analysis for tasks with static and dynamic offsets
-(RTSS 1998): each step of the own transaction is tried as c, and of every other one the c counts
-that takes most of the window. With job p of the own step b, from 1 - floor((J_b + phi_bc) / T) on,
+(RTSS 1998). Each step of the own transaction is tried as c. Of every other one the c counts that
+has the largest demand. With job p of the own step b, from 1 - floor((J_b + phi_bc) / T) on,
 
     w(p) = B + (jobs of b up to p) C_b + sum of all W(w)
     R    = max over c and p of  w(p) - phi_bc - (p - 1) T + phi_b
 
 R counts from the event. On a bus the job itself is not in w, which then ends with arbitration, a
-bit later, as in `can`. Steps that follow every n-th job only count as transactions of their own,
-and so do those of a sporadic event that may arrive a period after it or later: the next event
-says nothing about when they do. The bound is safe, and may not be attained.
+bit later, as in `can`. Steps that follow every n-th job only count as transactions of their own.
+So do steps of a sporadic event that may arrive a period after it or later: the next event does
+not determine when they do. The bound is safe, and may not be attained.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ if TYPE_CHECKING:
     from .holistic import Network
 
 STEPS_EFFORT = 500_000
-"""Terms of windows in one call: what comes after has the bound without transactions."""
+"""Terms of windows in one call; later items have the bound without transactions."""
 
 
 @dataclass(frozen=True, slots=True)
 class LevelItem:
-    """An item of a transaction as one level sees it: times from the event, cost of a job."""
+    """An item of a transaction as one level sees it: times from the event, C of a job."""
 
     name: str
     offset: int
@@ -63,7 +63,7 @@ class LevelItem:
 
 @dataclass(frozen=True, slots=True)
 class _Arriving:
-    """A step in a busy period: how many jobs wait at its beginning, and when the next arrives."""
+    """A step in a busy period: the jobs waiting at its beginning, and the next arrival."""
 
     step: LevelItem
     waiting: int
@@ -76,14 +76,14 @@ class _Arriving:
         return cls(step, (step.jitter + phase) // step.period, phase)
 
     def demand(self, window: int) -> int:
-        """What its jobs take of a window."""
+        """The demand of its jobs in a window."""
         later = max(0, -((self.phase - window) // self.step.period))
         return (self.waiting + later) * self.step.cost
 
 
 @dataclass(frozen=True, slots=True)
 class _Level:
-    """What can delay one item: its own transaction, other ones, and sources without offsets."""
+    """The interference of one item: its own transaction, others, and sources without offsets."""
 
     own: LevelItem
     mates: tuple[LevelItem, ...]
@@ -91,13 +91,13 @@ class _Level:
     sources: tuple[Source, ...]
     fixed: int
     after: int = 0
-    """Cost of a job that is not delayed any more: of a frame all, of a task nothing."""
+    """The part of C that is not delayed any more: of a frame all, of a task nothing."""
     closing: int = 0
-    """How long after a window's end something may still take part in it."""
+    """The time after a window's end until which an item may still take part in it."""
 
     @property
     def together(self) -> bool:
-        """Steps of one transaction meet here."""
+        """Whether steps of one transaction meet here."""
         return bool(self.mates) or any(len(steps) > 1 for steps in self.others)
 
 
@@ -106,10 +106,10 @@ def ends(
     responses: Mapping[str, Response | FrameResponse],
     best: Mapping[str, int],
 ) -> dict[str, int]:
-    """From the event until the completion, of each item that this makes shorter.
+    """The time from the event to the completion, of each item for which it is shorter here.
 
-    ``responses`` are those of the items with the jitter that they inherit, ``best`` the least
-    time from the event of each until it arrives.
+    ``responses`` are those of the items with their inherited jitter, ``best`` the least
+    time from the event of each item until it arrives.
     """
     found: dict[str, int] = {}
     events = _events(network, responses, best) if network.released_by else {}
@@ -140,7 +140,7 @@ def _events(
     responses: Mapping[str, Response | FrameResponse],
     best: Mapping[str, int],
 ) -> dict[str, str]:
-    """What begins the transaction of each item that has one with others."""
+    """The item that begins the transaction of each item; none for items that count alone."""
     items, found = network.items(), {}
     for name, item in items.items():
         first = (name, *network.releasers(name))[-1]
@@ -168,7 +168,7 @@ def _shared(network: Network, events: Mapping[str, str]) -> set[str]:
 
 
 def _latest(response: Response | FrameResponse) -> int:
-    """How long after its arrival an item is released or takes part in arbitration, at the most."""
+    """The longest time from its arrival until an item is released or takes part in arbitration."""
     if isinstance(response, Response):
         return response.jitter
     return response.frame.jitter + response.level.delays.get(response.frame.name, 0)
@@ -225,7 +225,7 @@ def _level(
     after: int = 0,
     closing: int = 0,
 ) -> _Level:
-    """The steps sorted by what begins their transactions."""
+    """The level of an item: its steps grouped by the first items of their transactions."""
     groups: dict[str, list[LevelItem]] = {}
     alone = list(sources)
     own: LevelItem | None = None
@@ -249,7 +249,7 @@ def _level(
 
 
 def _longest(level: _Level, known: int, effort: Effort) -> int:
-    """The longest time from the event to the completion; no more than ``known`` is looked for."""
+    """The longest time from the event to the completion; at most ``known`` is searched for."""
     others = [
         [[_Arriving.behind(step, first) for step in steps] for first in steps]
         for steps in level.others
@@ -272,7 +272,7 @@ def _of_jobs(
     others: list[list[list[_Arriving]]],
     effort: Effort,
 ) -> Iterator[int]:
-    """From the event to the completion, for each job of one busy period."""
+    """The time from the event to the completion, for each job of one busy period."""
     step, number = level.own, 1 - own.waiting
     terms = 1 + len(mates) + len(level.sources) + sum(len(c) ** 2 for c in others)
 

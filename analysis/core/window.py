@@ -11,7 +11,7 @@ Each source is kept with the window up to which its number of releases stays as
 it is; the smallest of these is on top of a heap. So a step touches only the
 sources whose number changes, and takes each at once to its new number. A window
 that grows from level to level, and from job to job, is never started again from
-zero (Sjodin and Hansson 1998), and it starts no lower than the demand of a
+zero (Sjodin and Hansson 1998). It starts no lower than the demand of a
 fluid of the same rates (Davis, Zabos, Burns, IEEE TC 57, 2008, equation 17).
 """
 
@@ -25,10 +25,10 @@ from heapq import heappop, heappush, heapreplace
 from .multiframe import Demand
 
 SCALE = 1 << 96
-"""Rates are counted in this part of the resource, rounded down."""
+"""Rates are counted in 1 / this of the resource, rounded down."""
 
 Source = tuple[int, int, int, tuple[int, ...] | None]
-"""Period, jitter, cost of a release or of a cycle, and of a cycle the table of `Demand`."""
+"""T, J, C of a release or of a cycle, and the table of `Demand` for a cycle."""
 
 
 def source(period: int, jitter: int, demand: Demand) -> Source:
@@ -37,7 +37,7 @@ def source(period: int, jitter: int, demand: Demand) -> Source:
 
 
 def fixed_cost(period: int, jitter: int, cost: int) -> Source:
-    """Releases every ``period`` with that jitter, all of the same cost."""
+    """Releases every ``period`` with that jitter, all of the same C."""
     return period, jitter, cost, None
 
 
@@ -47,7 +47,7 @@ def releases_in(length: int, period: int, jitter: int) -> int:
 
 
 def cost_of(item: Source, count: int) -> int:
-    """The most that ``count`` releases of a source cost."""
+    """The most that ``count`` releases of a source execute."""
     _, _, cost, table = item
     if table is None:
         return count * cost
@@ -72,18 +72,18 @@ class Load:
         self._count = 0
 
     def add(self, item: Source) -> None:
-        """Count a source in."""
+        """Add a source."""
         self._low += rate(item)
         self._count += 1
 
     def above_one(self, exact: Callable[[], Fraction], extra: int = 0) -> bool:
-        """Whether the sum, and a rate ``extra`` rounded down, is above 1; it is ``exact()``."""
+        """Whether the sum, with a rate ``extra``, is above 1; ``exact()`` is the exact sum."""
         low = self._low + extra
         return low > SCALE or (low + self._count + 1 > SCALE and exact() > 1)
 
 
 class Effort:
-    """Work that may still be done: one unit for each change of a number of releases."""
+    """The work that may still be done: one unit for each change of a number of releases."""
 
     __slots__ = ("left",)
 
@@ -107,7 +107,7 @@ class Window:
         self._apart = -1
 
     def fork(self) -> Window:
-        """A window that goes its own way from here."""
+        """A copy of the window that grows independently."""
         other = Window.__new__(Window)
         other.length = self.length
         other.demand = self.demand
@@ -118,7 +118,7 @@ class Window:
         return other
 
     def add(self, serial: int, item: Source) -> None:
-        """Take a source in; ``serial``, from 0 up, tells it from all others."""
+        """Add a source; ``serial``, from 0 up, is its unique number."""
         period, jitter, _, _ = item
         count = releases_in(self.length, period, jitter)
         taken = cost_of(item, count)
@@ -127,7 +127,7 @@ class Window:
         self._weigh(item, 1)
 
     def leave_out(self, serial: int, item: Source) -> None:
-        """Count one source no more; at most one of a window's."""
+        """Remove one source; a window allows this once."""
         period, jitter, _, _ = item
         self.demand -= cost_of(item, releases_in(self.length, period, jitter))
         self._apart = serial
@@ -168,7 +168,7 @@ class Window:
         return needed <= length
 
     def _weigh(self, item: Source, sign: int) -> None:
-        """Its long-run rate, and what its jitter lets come early, both rounded down."""
+        """Count its long-run rate, and the demand that its jitter adds, both rounded down."""
         share = rate(item)
         self._rate += sign * share
         self._head_start += sign * share * item[1]

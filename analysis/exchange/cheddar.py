@@ -3,12 +3,12 @@
 
 """Cheddar models (XML, version 3): each core and each bus checked on its own.
 
-What is released by something else has, as jitter, what this analysis found it inherits;
-the blocking is the one found here. A bus is a processor that does not preempt. Cheddar
-reads 32-bit integers, so the unit of time is the largest in which all is exact; where
-there is none that fits, costs and jitter are rounded up, and periods and deadlines down:
-then there are no start times.
-The form follows published writers of it; no Cheddar was at hand to read what is written.
+An item that another one releases has the inherited jitter that this analysis found. The
+blocking is the one found here. A bus is a processor that does not preempt. Cheddar
+reads 32-bit integers, so the unit of time is the largest in which all times are exact.
+Where no such unit fits, C, J and B are rounded up, and T and D down: then start times
+are left out.
+The form follows published writers of it; the output was never read by Cheddar itself.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class _Item:
 
 
 def export(network: Network, chains: Sequence[TimedChain], title: str) -> str:
-    """The model of ``network``; Cheddar has nothing for ``chains``, nor a name for the whole."""
+    """The model of ``network``; Cheddar has neither ``chains`` nor a name for the whole."""
     del title
     no_errors(network, "Cheddar")
     given = network
@@ -142,7 +142,7 @@ def _items(network: Network) -> Iterator[_Item]:
 
 
 def _unit(items: Sequence[_Item]) -> int:
-    """The largest unit in which all is exact, or the smallest in which all fits."""
+    """The largest unit in which all times are exact, or the smallest in which all fit."""
     times = [time for item in items for time in item.times]
     unit = max(math.gcd(*times), -(-max(times) // LARGEST))
     for item in items:

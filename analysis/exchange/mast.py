@@ -3,9 +3,9 @@
 
 """MAST models (1.7), for `mast_analysis holistic`. The unit of time is the nanosecond.
 
-What MAST does not have is put so that its bounds are no smaller: a table of rows becomes
-their sum, a frame counts in time rather than bits, a frame of a first-in first-out queue
-has jitter. Its rule for CAN has no additional bit
+Features that MAST does not have are replaced so that its bounds are no smaller. A table of
+rows becomes their sum. A frame counts in time rather than bits. A frame of a first-in
+first-out queue has jitter. MAST's rule for CAN has no additional bit
 in which a frame still takes part in arbitration, so its bounds can be a frame smaller there.
 """
 
@@ -280,12 +280,12 @@ class _Writer:
         return switch_time(task, platform) - switch_time(replace(task, suspensions=1), platform)
 
     def _release(self, task: Task) -> int:
-        """What makes a job of the task ready costs that much; the task needs an event for it."""
+        """The time to make a job of the task ready; the task needs an event for it."""
         platform = self.network.platforms.get(task.core)
         return release_time(task, platform) if platform else 0
 
     def _transaction(self, tree: ReleaseTree) -> MastObject:
-        """What one event releases, step by step; every step has its deadline from the event."""
+        """The steps that one event releases; every step has its deadline from the event."""
         root = self.item[tree.item.name]
         internal, handlers = [], []
         inputs = {tree.item.name: f"{root}_event"}

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the exports share: names that every tool accepts, dense priorities, trees of releases."""
+"""Shared parts of the exports: names for every tool, dense priorities, trees of releases."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from ravenchart.analysis.core.responses import release_time, switch_time
 from ravenchart.analysis.core.tasks import Task
 
 HOUR = 3600 * 10**9
-"""The period of what comes hardly ever, in ns."""
+"""The period of a job that hardly ever comes, in ns."""
 
 EXACT = 2**53
-"""Tools that reckon in doubles hold integers up to here."""
+"""Tools that calculate in doubles hold integers up to here."""
 
 
 Item = TypeVar("Item", Task, Frame)
 
 
 class Unfit(Exception):  # noqa: N818
-    """The format cannot express the system; the text says what and why."""
+    """The format cannot express the system; the text names the element and the reason."""
 
 
 def names(given: Iterable[str], taken: Iterable[str] = ()) -> dict[str, str]:
@@ -66,7 +66,7 @@ def need_exact_times(network: Network) -> None:
 
 
 def no_errors(network: Network, tool: str) -> None:
-    """Refuse what only this analysis has."""
+    """Refuse errors on a bus, which only this analysis has."""
     for bus in network.frames:
         if network.buses[bus].errors is not None:
             raise Unfit(f"{tool} has no errors on a bus: leave out those of bus {bus}")
@@ -98,10 +98,10 @@ def _of_several_epochs(network: Network) -> set[str]:
 def unqueued(network: Network) -> Network:
     """The same without first-in first-out queues, with bounds that are no smaller.
 
-    A queue of one frame is none. Any other frame of a queue is no longer released by what
-    sends it: it comes with the jitter that it was found to inherit, and with the longest
-    time that it waits in its queue as more of it. To others it is as late as before; for
-    itself it waits for the frames of its queue once more.
+    A queue of one frame is none. Any other frame of a queue is no longer released by its
+    sender. It has its inherited jitter, and the longest wait in its queue as further
+    jitter. To others it is as late as before; for itself it waits for the frames of its
+    queue once more.
     """
     cut = set(in_queues(network))
     if not cut:
@@ -151,8 +151,8 @@ def in_queues(network: Network) -> list[str]:
 def background(network: Network) -> Network:
     """Users of resources that are no tasks as tasks below all, which come once an hour.
 
-    There is one on each core that they can hold up. Nothing waits for them but while they
-    are inside.
+    There is one on each core that they can block. Other tasks wait for them only while they
+    are inside a section.
     """
     cores = {task.name: task.core for task in network.tasks}
     home = {s.resource: cores[s.user] for s in network.sections if s.user in cores}
@@ -174,7 +174,7 @@ def background(network: Network) -> Network:
 
 
 def remarks(network: Network, chains: Iterable[TimedChain]) -> Iterator[str]:
-    """What an export says in other words than the system does: lines for its head."""
+    """Notes on the differences of an export from the system: lines for its head."""
     for task in network.tasks:
         if task.frame_count > 1:
             yield f"Of table {task.name} every row counts in every job."
@@ -189,14 +189,14 @@ def remarks(network: Network, chains: Iterable[TimedChain]) -> Iterator[str]:
 
 
 def seldom(network: Network) -> Iterator[str]:
-    """What is sporadic, for a format that has no word for it: responses are the same."""
+    """Notes on sporadic items, for a format that has no word for them: responses are the same."""
     for name, item in network.items().items():
         if item.sporadic and name not in network.released_by:
             yield f"{name} is sporadic: its period is the least distance."
 
 
 def last_bit(network: Network, tool: str) -> Iterator[str]:
-    """What ``tool`` leaves out on a bus: lines for the head of its export.
+    """A note on the frames that ``tool`` does not count on a bus: lines for its export's head.
 
     A frame that is queued before the arbitration is over still takes part in it (Davis, Burns,
     Bril and Lukkien 2007, equation 7), which neither MAST 1.7 nor pyCPA 1.2 counts.
@@ -249,13 +249,13 @@ def _above_all(network: Network, name: str, core: str, cost: int) -> Task:
 
 @dataclass(frozen=True, slots=True)
 class ReleaseTree:
-    """An item, and what its completion releases."""
+    """An item, and the items that its completion releases."""
 
     item: Task | Frame
     followers: tuple[ReleaseTree, ...]
 
     def walk(self) -> list[ReleaseTree]:
-        """This tree and all in it, each before what it releases."""
+        """This tree and all in it, each before those that it releases."""
         found = [self]
         for one in self.followers:
             found += one.walk()
@@ -265,7 +265,7 @@ class ReleaseTree:
 def trees(network: Network, tool: str) -> list[ReleaseTree]:
     """The items that events release, each with all that follows it.
 
-    `Unfit` where something that follows has jitter of its own.
+    `Unfit` where an item that follows has jitter of its own.
     """
     items = network.items()
     followers: dict[str, list[str]] = {}

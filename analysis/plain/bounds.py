@@ -21,14 +21,14 @@ from .entries import Problem, ReadFile, read_rows
 _COUNT = Column(Form.NUMBER, least=1)
 _COLUMNS = {"wcet": Column(Form.TIME_UP, least=1), "cycles": _COUNT, "clock_hz": _COUNT}
 KINDS: Kinds = {"row": _COLUMNS, "function": _COLUMNS}
-"""What the rows may be."""
+"""The kinds of rows."""
 SECOND = 10**9
 """In ns."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """The bound of a row in ns, and where it stands."""
+    """The bound of a row in ns, and its location in the file."""
 
     row: str
     wcet: Ns
@@ -36,7 +36,7 @@ class Bound:
 
 
 def read_bounds(text: str, file: str, system: System) -> dict[str, Bound] | tuple[Problem, ...]:
-    """The bound of each row of a table that the file lists, or what is wrong with it."""
+    """The bound of each row of a table that the file lists, or the problems of the file."""
     reading = read_rows(text, file)
     known: dict[tuple[str, str], list[Slot]] = {}
     for slot in system.slots:
@@ -75,7 +75,7 @@ def function_of(slot: Slot, system: System) -> str:
 
 
 def _wcet(one: RowValues, reading: ReadFile) -> Ns | None:
-    """The time of a row, rounded up; None, and a problem, where it gives none or two."""
+    """The time of a row, rounded up; None, and a problem, where the row has none or two."""
     has = tuple(name for name in _COLUMNS if one.number(name))
     if has == ("wcet",):
         return Ns(one.number("wcet"))

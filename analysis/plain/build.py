@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""From rows to the records of `analysis.core`; what does not fit together is told by line."""
+"""From rows to the records of `analysis.core`; each contradiction is reported by line."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ Made = TypeVar("Made")
 
 @dataclass(frozen=True, slots=True)
 class PlainSystem:
-    """What a plain file holds; all times in ns."""
+    """The system in a plain file; all times in ns."""
 
     network: Network
     chains: tuple[TimedChain, ...]
 
 
 def load_plain(text: str, file: str) -> PlainSystem | tuple[Problem, ...]:
-    """The system in the text of a file, or what is wrong with it."""
+    """The system in the text of a file, or the problems of the file."""
     reading = read_rows(text, file)
     rows: dict[str, list[RowValues]] = {}
     for entry in reading.entries:
@@ -55,7 +55,7 @@ def load_plain(text: str, file: str) -> PlainSystem | tuple[Problem, ...]:
 
 
 def _check(rows: dict[str, list[RowValues]], reading: ReadFile) -> None:
-    """Names that are given twice, and names that nothing has."""
+    """Report names that are given twice, and names of missing elements."""
     for kinds in (("task", "message"), ("core",), ("bus",), ("object",)):
         seen: dict[str, RowValues] = {}
         for row in (row for kind in kinds for row in rows.get(kind, ())):
@@ -144,13 +144,13 @@ def _system(rows: dict[str, list[RowValues]], reading: ReadFile) -> PlainSystem 
 
 
 def _line_of(text: str, rows: dict[str, list[RowValues]]) -> int:
-    """The line of the first row whose name is the first one that the text speaks of."""
+    """The line of the first row whose name comes first in the text."""
     lines = {row.name: row.entry.line for some in reversed(rows.values()) for row in reversed(some)}
     return next((lines[word] for word in text.replace(",", "").split() if word in lines), 0)
 
 
 def _made(row: RowValues, reading: ReadFile, make: Callable[[RowValues], Made]) -> Made | None:
-    """What is made of a row; None, and a problem, where its numbers do not go together."""
+    """The record of a row; None, and a problem, where its numbers do not fit together."""
     try:
         return make(row)
     except ValueError as fault:
@@ -238,7 +238,7 @@ def _frame(row: RowValues, bus: RowValues, highest: int) -> Frame:
 
 
 def _ranks(rows: dict[str, list[RowValues]], on: dict[str, list[Frame]], reading: ReadFile) -> None:
-    """Two messages of one bus must not have the same identifier, nor one only a priority."""
+    """Report messages of one bus with equal identifiers, or with and without an identifier."""
     known = {row.name: row for row in rows.get("message", ())}
     for bus, some in on.items():
         seen: dict[int, str] = {}

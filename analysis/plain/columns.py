@@ -14,7 +14,7 @@ from fractions import Fraction
 from .entries import Entry, ReadFile
 
 UNITS: Mapping[str, int] = {"ns": 1, "us": 10**3, "ms": 10**6, "s": 10**9}
-"""What the name of a column of times ends in, and what it is in ns."""
+"""The ending of the name of a column of times, and its unit in ns."""
 
 LARGEST = 2**63 - 1
 """No number is larger: in ns these are 292 years."""
@@ -25,7 +25,7 @@ _FLAGS = {"yes": True, "true": True, "1": True, "no": False, "false": False, "0"
 
 
 class Form(Enum):
-    """What a column holds; times say to which side they are rounded to whole ns."""
+    """The contents of a column; times name the side to which they are rounded to whole ns."""
 
     WORD = "word"
     NUMBER = "whole number"
@@ -35,13 +35,13 @@ class Form(Enum):
 
     @property
     def timed(self) -> bool:
-        """Its name ends in a unit."""
+        """Whether its name ends in a unit."""
         return self in (Form.TIME_UP, Form.TIME_DOWN)
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column; what is ``required`` has no default. Numbers and times are at least ``least``.
+    """A column; a ``required`` one has no default. Numbers and times are at least ``least``.
 
     Files of earlier versions have it under the name ``former``.
     """
@@ -146,7 +146,7 @@ class RowValues:
         return self.numbers.get(column, default)
 
     def exact(self, column: str) -> bool:
-        """The time in a column is whole ns: nothing was rounded."""
+        """Whether the time in a column is whole ns, so that it was not rounded."""
         for title, text in self.entry.columns.items():
             name, unit = _split(title, KINDS[self.entry.kind])
             if name == column:
@@ -206,7 +206,7 @@ def _owner(entry: Entry) -> str:
 
 
 def _split(title: str, columns: Mapping[str, Column]) -> tuple[str, int]:
-    """The column that a title names, and what its unit is in ns."""
+    """The column that a title names, and its unit in ns."""
     name, _, unit = title.rpartition("_")
     name = next((n for n, c in columns.items() if c.former and c.former == name), name)
     if unit in UNITS and name in columns and columns[name].form.timed:
@@ -224,7 +224,7 @@ def _unknown(title: str, kind: str, columns: Mapping[str, Column]) -> str:
 
 
 def _converted(text: str, form: Form, unit: int) -> int | str:
-    """The exact number, a time rounded to the safe side; or what is wrong with it."""
+    """The exact number, a time rounded to the safe side; or the text of its error."""
     if form is Form.FLAG:
         flag = _FLAGS.get(text.lower())
         return f"must be yes or no, not {text[:40]}" if flag is None else int(flag)

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Rows of plain files, as text: where each stands, and what its columns hold.
+"""Rows of plain files, as text: the line of each row, and its columns.
 
-A CSV file holds blocks, each a line of column names and the rows under it; an empty line
+A CSV file holds blocks, each a line of column names and the rows under it. An empty line
 ends a block, and `#` begins a comment line. A JSON file holds an object of lists of
-objects. In both the first column of a row is its kind, with the name of what it describes.
+objects. In both the first column of a row is its kind, with the name of the element.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ TOO_LONG = 64 * 2**20
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What is wrong with a file, at a line from 1 on; 0 where it is no line's fault."""
+    """An error in a file, at a line from 1 on; 0 where no single line has the error."""
 
     file: str
     line: int
@@ -46,14 +46,14 @@ class Entry:
 
 @dataclass(slots=True)
 class ReadFile:
-    """The rows of a file and what is wrong with it."""
+    """The rows of a file, and its problems."""
 
     file: str
     entries: list[Entry]
     problems: list[Problem]
 
     def complain(self, line: int, text: str) -> None:
-        """One more problem."""
+        """Report one more problem."""
         self.problems.append(Problem(self.file, line, text))
 
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Execution times that were seen, as plain rows: `task`, `row` or `message`."""
+"""Observed execution times, as plain rows: `task`, `row` or `message`."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ KINDS: Kinds = {
     "row": {"task": NEEDED, "observed": SEEN},
     "message": {"observed": SEEN},
 }
-"""What the rows may be; a row of a table needs its task."""
+"""The kinds of rows; a row of a table needs its task."""
 
 
 def longest_times(network: Network) -> dict[str, int]:
-    """What each task, row (``task.row``) and message may take, in ns.
+    """C of each task, row (``task.row``) and message, in ns.
 
-    Of a task with a table, the longest of its jobs.
+    For a task with a table it is that of its longest job.
     """
     found = {}
     for name, item in network.items().items():
@@ -39,7 +39,7 @@ def longest_times(network: Network) -> dict[str, int]:
 
 
 def observed(text: str, file: str, network: Network) -> dict[str, list[int]] | tuple[Problem, ...]:
-    """The times seen of each that the file lists, in ns, or what is wrong with it."""
+    """The observed times of each item in the file, in ns, or the problems of the file."""
     reading = read_rows(text, file)
     known = longest_times(network)
     found: dict[str, list[int]] = {}

@@ -37,7 +37,7 @@ class PlainResult:
 
     @property
     def met(self) -> bool:
-        """Every deadline and every limit of a chain is kept."""
+        """Whether every deadline and every limit of a chain is met."""
         return self.found.met and all(latency.met for latency in self.latencies)
 
 
@@ -95,7 +95,7 @@ def _of(
 
 
 def _common(name: str, response: Response | FrameResponse, found: Holistic) -> Json:
-    """What tasks and messages have in common; ``response`` counts from the chain's event."""
+    """The shared figures of tasks and messages; ``response`` counts from the chain's event."""
     needed = found.from_event(name)
     deadline = found.deadline(name)
     return {

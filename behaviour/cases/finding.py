@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Cases for all goals: of the system, and of components alone for what no system case shows.
+"""Cases for all goals: of the system, and of components alone for goals that no system case shows.
 
 In the whole system the activities that the user writes do nothing, and a value that one instance
-sends another cannot stay away. What depends on these is shown by a component alone
-(`gen.derive.alone`): there all that comes to it is free.
+sends another cannot stay away. A component alone (`gen.derive.alone`) shows the goals that depend
+on these: all its inputs are free.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from .search import EFFORT, CaseSearch, SearchResult
 
 
 def found_cases(system: System, effort: int = EFFORT) -> SearchResult:
-    """The cases that together show what can be shown with ``effort`` instants, of a valid system.
+    """The cases that meet goals of a valid system, found in at most ``effort`` instants.
 
-    Half of the effort, and at least an instant, is for the system, and that ends once a quarter
-    of this has shown nothing new. The components share the rest alike. A system that calls
+    Half of the effort, and at least one instant, is for the system. This part ends once a quarter
+    of it has shown nothing new. The components share the rest alike. A system that calls
     drivers is not executed.
     """
     whole = as_one(system)
@@ -55,7 +55,7 @@ def found_cases(system: System, effort: int = EFFORT) -> SearchResult:
 
 
 def _units(system: System, open_: list[Goal]) -> Iterator[Instance]:
-    """The instances that may show something that is open."""
+    """The instances that may meet an open goal."""
     components = {goal.element[0] for goal in open_}
     return (one for one in unit_instances(system) if one.component.name in components)
 

@@ -1,17 +1,18 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What test cases of a component's charts shall show, and which executions show it.
+"""The goals of test cases for a component's charts, and the coverage that executions show.
 
-Goals are those of structural coverage (DO-178C, 6.4.4.2) on the chart as modelled: each
-transition is taken, each guard and each condition that triggers is decided both ways, and each
-condition of such a decision decides it by itself (modified condition/decision coverage). For the
-last one two evaluations are compared that differ in that condition and in the outcome. In all
-other conditions they are equal, or one of the two did not come to that condition, as ``and`` and
-``or`` stop early: masking MC/DC of Chilenski, An Investigation of Three Forms of the Modified
-Condition Decision Coverage (MCDC) Criterion, DOT/FAA/AR-01/18, 2001.
-Each event that a state defers is deferred there, too, and each state is left by each transition of
-a state around it: the code that leaves a composite state has a part for each of its leaves.
+The goals are those of structural coverage (DO-178C, 6.4.4.2) on the chart as modelled. Each
+transition is taken. Each guard and each condition that triggers is decided both ways. Each
+condition of such a decision decides it by itself (modified condition/decision coverage, MC/DC).
+
+Two evaluations show MC/DC when they differ in that condition and in the outcome. In each other
+condition they are equal, or one evaluation stopped before it, as ``and`` and ``or`` stop early.
+This is the masking MC/DC of Chilenski, DOT/FAA/AR-01/18, 2001.
+
+Each event that a state defers is deferred there. Each leaf is left by each transition of a state
+around it: the code that leaves a composite state has a part for each of its leaves.
 """
 
 from __future__ import annotations
@@ -42,14 +43,14 @@ GuardValues = tuple[tuple[bool | None, ...], bool]
 
 
 class Decision(Enum):
-    """Which condition of a transition; the value names it in a report."""
+    """A condition of a transition; the value names it in a report."""
 
     GUARD = "guard"
     TRIGGER = "trigger"
 
 
 class GoalKind(Enum):
-    """What a goal is about; the value names it in a report."""
+    """The kind of a goal; the value names it in a report."""
 
     TAKEN = "transitions taken"
     TRUE = "guards and triggers true"
@@ -61,13 +62,13 @@ class GoalKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """One thing to be shown. ``detail``: number of the condition, the event, or the state."""
+    """One goal. ``detail`` is the number of the condition, the event, or the state."""
 
     kind: GoalKind
     element: GoalElement
     origin: Origin
     state: str
-    """That must be active."""
+    """The state that must be active."""
     detail: int | str = ""
     decision: Decision = Decision.GUARD
 
@@ -151,7 +152,7 @@ def _always_takes(tree: ChartTree, state: str, trigger: Trigger) -> bool:
 
 
 def _parts(expression: Expression) -> tuple[Expression, ...]:
-    """What a truth value is joined of; nothing for a condition."""
+    """The operands of a Boolean operation; none for a condition."""
     match expression:
         case Operation(operator="and" | "or" | "not", operands=operands):
             return operands
@@ -161,7 +162,7 @@ def _parts(expression: Expression) -> tuple[Expression, ...]:
 
 
 def _conditions(expression: Expression) -> int:
-    """How many conditions it has."""
+    """The number of conditions of an expression."""
     parts = _parts(expression)
     return sum(map(_conditions, parts)) if parts else 1
 
@@ -169,7 +170,7 @@ def _conditions(expression: Expression) -> int:
 def evaluated(expression: Expression, holds: Callable[[Expression], bool]) -> GuardValues:
     """A guard and its conditions, evaluated as the generated code does: no further than needed.
 
-    ``holds`` tells it of a condition.
+    ``holds`` evaluates one condition.
     """
     parts = _parts(expression)
     if not parts:
@@ -198,7 +199,7 @@ def _unknown(expression: Expression) -> tuple[None, ...]:
 
 @dataclass(slots=True)
 class GoalCoverage:
-    """What executions have shown. ``size`` grows with each thing that is new."""
+    """The coverage of executions. ``size`` grows with each new entry."""
 
     taken: set[GoalElement] = field(default_factory=set)
     evaluations: dict[tuple[GoalElement, Decision], set[GuardValues]] = field(default_factory=dict)
@@ -207,28 +208,28 @@ class GoalCoverage:
     size: int = 0
 
     def take(self, element: GoalElement) -> None:
-        """A transition was taken."""
+        """Note that a transition was taken."""
         self.size += element not in self.taken
         self.taken.add(element)
 
     def decide(self, element: GoalElement, decision: Decision, evaluation: GuardValues) -> None:
-        """A guard or a trigger was evaluated."""
+        """Note how a guard or a trigger was evaluated."""
         known = self.evaluations.setdefault((element, decision), set())
         self.size += evaluation not in known
         known.add(evaluation)
 
     def defer(self, element: GoalElement, event: str) -> None:
-        """A state deferred an event."""
+        """Note that a state deferred an event."""
         self.size += (element, event) not in self.deferred
         self.deferred.add((element, event))
 
     def leave(self, element: GoalElement, state: str) -> None:
-        """A transition left a state inside its source."""
+        """Note that a transition left a state inside its source."""
         self.size += (element, state) not in self.left
         self.left.add((element, state))
 
     def has(self, other: GoalCoverage) -> bool:
-        """Whether all that others have shown is known."""
+        """Whether this coverage includes another one."""
         return (
             other.taken <= self.taken
             and other.deferred <= self.deferred
@@ -240,7 +241,7 @@ class GoalCoverage:
         )
 
     def join(self, other: GoalCoverage) -> None:
-        """What others have shown, too."""
+        """Add another coverage to this one."""
         for element in other.taken:
             self.take(element)
         for (element, decision), known in other.evaluations.items():
@@ -267,7 +268,7 @@ class GoalCoverage:
 
 
 def union(*parts: GoalCoverage) -> GoalCoverage:
-    """What several have shown."""
+    """The joint coverage of several."""
     found = GoalCoverage()
     for one in parts:
         found.join(one)

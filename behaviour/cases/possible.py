@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The goals that no execution can show, as far as the rules of behaviour tell.
+"""The goals that no execution can show, as far as the rules of behaviour determine them.
 
-The rules look at each region against all that may come from elsewhere, under every interleaving,
-and leave nothing out (`behaviour.rules.reach`). Here each step from each situation is made
-once more, with the conditions of its guards asked one by one. So this coverage has all that any
-execution shows, and more. A goal that it does not show is unreachable. Which time-out comes first
-is looked at only where a state and a leaf in it are always entered together. Of each step that
-shows something new the solver tells with which values it is made: such scenes guide the search.
+The rules explore each region against all that may come from elsewhere, under every interleaving,
+and leave nothing out (`behaviour.rules.reach`). This module makes each step from each situation
+once more and asks the conditions of its guards one by one. So its coverage includes that of
+every execution. A goal that it does not show is unreachable. The order of time-outs
+counts only where a state and a leaf in it are always entered together. For each step that
+shows something new, the solver gives the values that make it. Such scenes guide the search.
 """
 
 from __future__ import annotations
@@ -44,23 +44,23 @@ from .stimulation import PartialValue
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """What lets a region make a step: active states, an event, and values from outside."""
+    """The conditions of one step of a region: active states, an event, and values from outside."""
 
     region: str
     active: tuple[str, ...]
     event: str | None
     values: tuple[tuple[str, PartialValue | None], ...]
-    """Of the event and of input ports and data items; those that matter. None: a port at which
-    nothing comes, so that it is not fresh."""
+    """The values that matter, of the event, input ports and data items. None: nothing arrives at
+    the port, so it is not fresh."""
     equal: Mapping[tuple[str, str | None], tuple[str, str | None]]
-    """Which of the values must be that of a data item of the component, each with its field."""
+    """The values that must equal a data item of the component, each with its field."""
     raises: tuple[str, ...]
     """The events that the step raises."""
     shows: GoalCoverage
-    """What it shows."""
+    """The coverage of the step."""
 
     def renamed(self, names: Mapping[str, str]) -> Scene:
-        """The same with other names of ports and data items that values come by."""
+        """The same scene with other names of the ports and data items."""
         return replace(
             self,
             values=tuple((names.get(name, name), value) for name, value in self.values),
@@ -70,7 +70,7 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class Outlook:
-    """Goals that no execution can show, and what others may need."""
+    """Goals that no execution can show, and scenes for the others."""
 
     unreachable: list[Goal] = field(default_factory=list)
     scenes: dict[str, list[Scene]] = field(default_factory=dict)
@@ -88,10 +88,10 @@ class Outlook:
 
 
 def outlook(system: System, goals: Sequence[Goal], effort: int = EFFORT) -> Outlook:
-    """What the rules of behaviour tell of the goals before anything is executed.
+    """The unreachable goals and the scenes that the rules of behaviour find, without execution.
 
-    Each component may take ``effort``; one that takes more, and a region that can only be looked
-    at in parts, may have further goals that are unreachable.
+    Each component may take ``effort``. A component that takes more, and a region that is explored
+    in parts, may have further unreachable goals.
     """
     components = {one.component.name: one.component for one in system.instances}
     found = Outlook()
@@ -108,7 +108,7 @@ def outlook(system: System, goals: Sequence[Goal], effort: int = EFFORT) -> Outl
 
 
 class _WatchedStep(OpenStep):
-    """A step that notes each guard and trigger: its transition, which of them, and the values."""
+    """A step that notes each evaluated guard and trigger: transition, kind and values."""
 
     asking: Transition | None = None
 
@@ -132,7 +132,7 @@ class _WatchedStep(OpenStep):
 
 
 class _PossibleCoverage:
-    """What executions of a component can show at the most."""
+    """The largest coverage that executions of a component can show."""
 
     def __init__(self, component: Component, system: System, effort: int) -> None:
         self.component = component
@@ -158,9 +158,9 @@ class _PossibleCoverage:
         return not self.coverage.shows(goal) or self._is_left_before(goal)
 
     def _is_left_before(self, goal: Goal) -> bool:
-        """Whether a shorter time-out has always taken a leaf away when a longer one is due.
+        """Whether a shorter time-out has always left the leaf when a longer one is due.
 
-        So it is where the leaf is entered only with the state around it, and both times begin.
+        This holds where the leaf is entered only with the state around it: both times begin then.
         """
         if goal.kind is not GoalKind.LEFT:
             return False
@@ -185,7 +185,7 @@ class _PossibleCoverage:
         )
 
     def _look_at(self, thread: Thread) -> None:
-        """All steps from all situations of a region."""
+        """Make all steps from all situations of a region."""
         solver = logic.solver()
         made: dict[tuple[Configuration, Occurrence], list[tuple[Outcome, GoalCoverage]]] = {}
         solver.add(*self.reach.typed, *self.reach.of_others(thread))
@@ -227,7 +227,7 @@ class _PossibleCoverage:
     def _keep(
         self, thread: Thread, outcome: Outcome, shown: GoalCoverage, solver: logic.Term
     ) -> None:
-        """The least values from outside with which an outcome comes about."""
+        """Keep the scene of an outcome, with the least values from outside that make it."""
         occurrence, used = outcome.occurrence, logic.unknowns([outcome.condition])
         event = occurrence.subject if occurrence.kind == "event" else None
         asked = {
@@ -264,7 +264,7 @@ class _PossibleCoverage:
         model: logic.Term,
         solver: logic.Term,
     ) -> dict[tuple[str, str | None], tuple[str, str | None]]:
-        """The values that must be those of the component's own data."""
+        """The values that must equal the component's own data."""
         found = {}
         own = [
             (one, symbol)
@@ -294,7 +294,7 @@ class _PossibleCoverage:
         return kind in (Reading.PORT.value, "port state")
 
     def _least(self, symbols: Iterable[logic.Term], solver: logic.Term) -> logic.Term | None:
-        """The model with the least values; the first that comes would depend on what was asked."""
+        """The model with the least values; the solver's first one depends on earlier questions."""
         least = logic.optimizer()
         least.add(*solver.assertions())
         for symbol in symbols:
@@ -302,7 +302,7 @@ class _PossibleCoverage:
         return least.model() if self.reach.budget.ask(least) == z3.sat else None
 
     def _shown_by(self, thread: Thread, outcome: Outcome) -> GoalCoverage:
-        """What an outcome shows where it comes about."""
+        """The coverage of an outcome."""
         shown, tree = GoalCoverage(), thread.tree
         place = self.component.name, thread.name
         for name, decision, values in outcome.noted:

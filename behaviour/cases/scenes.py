@@ -3,7 +3,7 @@
 
 """Scenes in an execution: values and events with which a region can make a step that is wanted.
 
-`possible` tells of each step that shows something new what it needs from outside. A scene fits
+`possible` finds the scene of each step that shows something new. A scene fits
 where its states are active. Values that must equal the component's own data are taken from there.
 """
 
@@ -23,9 +23,9 @@ from .possible import Scene
 from .stimulation import Choice, PartialValue
 
 COMPARED = 6
-"""Scenes of which the one comes that came least."""
+"""Scenes that are compared; the one played least is played."""
 KNOWN = 4
-"""So much less often it is one that shows nothing new."""
+"""The count of a scene that shows nothing new is multiplied by this number."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,9 +5,9 @@
 
 The interpreter is branched at instants where something new was shown or where the system is in a
 condition not seen before. From a branch it goes on with events and values from outside, or with
-time alone. Where a chart still has something to show from the states that are active, a branch is
-preferred, and so is what triggers it. The effort is counted in instants that were executed, not in
-time: the same model gives the same cases on every machine.
+time alone. The search prefers branches whose active states have open goals, and the events that
+trigger these goals. The effort counts executed instants, not time: the same model gives the same
+cases on every machine.
 """
 
 from __future__ import annotations
@@ -35,27 +35,27 @@ from .stimulation import Choice, choices
 from .watched import watched_machine
 
 EFFORT = 400_000
-"""Instants that are executed at the most, unless another number is given."""
+"""Instants executed at most, unless another number is given."""
 WAITS, LONG_WAITS = (1, 1, 2, 2, 4, 8, 20), (4, 20, 60, 200, 600)
-"""Instants until the next thing comes from outside; the long ones where little or nothing does."""
+"""Instants until the next stimulus; the long ones where few or none come."""
 QUIET, CALM = 0.15, 0.5
-"""How often nothing comes from outside, and how often at the most what keeps ports fresh."""
+"""How often no stimulus comes, and how often at most values that keep ports fresh."""
 FED = 0.7
 """How often a port is kept fresh, and how often with the value that it has."""
 ANY = 0.5
-"""How often a branch is chosen without regard to what is open, from each condition alike."""
+"""How often a branch is chosen without regard to open goals, from each condition alike."""
 COMPARED = 6
-"""Branches of which the one is taken that was tried least."""
+"""Branches that are compared; the one tried least is taken."""
 MORE = 3
-"""Once each thing is shown, the leaves that are left are looked for so many times as long."""
+"""The search for leaves ends at so many times the effort that all other goals took."""
 ALIKE = 6
 """Branches kept of one condition of the system."""
 GUIDED, PLAYED = 0.5, 0.7
-"""Part of the effort in which scenes come, and how often it is a scene then."""
+"""Share of the effort for scenes, and how often a scene comes in it."""
 WAITED = 0.2
-"""Part of the effort in which time alone goes on until a time-out that is to be shown."""
+"""Share of the effort in which only time passes, until a time-out of an open goal is due."""
 MANY = 64
-"""Instants over which their distance is taken."""
+"""Instants over which their mean distance is taken."""
 NOTHING: Mapping[str, str] = {}
 
 Stimulus = Raised | Arrived
@@ -64,7 +64,7 @@ Instant = tuple[Ns, list[Slot]]
 
 @dataclass(slots=True)
 class Branch:
-    """The system before its instant ``at``, and what came so far; ``tries`` went on from here."""
+    """The system before its instant ``at``, and its stimuli so far; ``tries`` went on from here."""
 
     machine: Machine
     at: int
@@ -81,7 +81,7 @@ class Feed:
     next: int = 0
 
     def due(self, now: Ns) -> Iterator[Stimulus]:
-        """The value, where it is time."""
+        """The value, where it is due."""
         if now >= self.next:
             self.next = now + self.apart
             yield replace(self.entry, at=now)
@@ -89,7 +89,7 @@ class Feed:
 
 @dataclass(frozen=True, slots=True)
 class FoundCase:
-    """Stimuli, and the goals that this case is the first of all to show."""
+    """Stimuli, and the goals that this case is the first to show."""
 
     stimuli: Stimuli
     shows: tuple[Goal, ...]
@@ -125,9 +125,9 @@ class CaseSearch:
     ) -> None:
         """Nothing is shown yet; ``needed`` are the goals that are looked for, or all.
 
-        ``ahead`` is what is known of the goals before. The search ends once ``patience`` instants
-        have shown nothing new, where it is given. What is written to a data item comes by the
-        port that ``given`` has for it.
+        ``ahead`` is the outlook on the goals. The search ends once ``patience`` instants
+        have shown nothing new, where it is given. A value for a data item comes by the port
+        that ``given`` names for the item.
         """
         self.system, self.effort = system, effort
         self.patience = effort if patience is None else patience
@@ -184,7 +184,7 @@ class CaseSearch:
     # --- one try
 
     def _best(self) -> Branch:
-        """One that is near to an open goal, each goal as often as others; sometimes any."""
+        """A branch near an open goal, each goal as often as others; sometimes any branch."""
         near = [
             goal for goal in self._wanted_first() if self.near.get((*goal.element[:2], goal.state))
         ]
@@ -198,12 +198,12 @@ class CaseSearch:
         return min(some, key=lambda one: one.tries)
 
     def _wanted_first(self) -> list[Goal]:
-        """The open goals; at first not those that ask for more than each thing once."""
+        """The open goals; in the first half of the effort, leaves to be left only if none else."""
         first = [goal for goal in self.open if goal.kind is not GoalKind.LEFT]
         return first if first and 2 * self.executed < self.effort else self.open
 
     def _keep(self, branch: Branch) -> None:
-        """A branch, unless there are enough that are like it."""
+        """Keep a branch, unless `ALIKE` branches of the same condition are kept."""
         key = tuple(
             (name, *self._condition(run)) for name, run in sorted(branch.machine.instances.items())
         )
@@ -233,7 +233,7 @@ class CaseSearch:
         return [(active[place], goal) for goal, place in places if place in active]
 
     def _go_on(self, branch: Branch) -> None:
-        """Go on from a branch in one of three ways, each of which has its part of the effort."""
+        """Go on from a branch in one of three ways, each with its share of the effort."""
         branch.tries += 1
         branch = Branch(branched(branch.machine), branch.at, branch.entries)
         before = self.executed
@@ -248,7 +248,7 @@ class CaseSearch:
             self._try(branch)
 
     def _try(self, branch: Branch) -> None:
-        """Anything may come, or nothing for long."""
+        """Go on with any stimuli, or with none for long."""
         mood = self.chance.random()
         fed = [] if mood < QUIET else self._fed(branch.machine)
         waits = WAITS if mood > CALM else LONG_WAITS
@@ -259,7 +259,7 @@ class CaseSearch:
                 break
 
     def _play(self, branch: Branch) -> None:
-        """Scenes come, with as much time as each needs, or anything."""
+        """Go on with scenes, each with the time that it needs, or with any stimuli."""
         fed = self._fed(branch.machine)
         for wait in self.chance.choices(WAITS, k=self.chance.randint(1, 4)):
             now = self._instant(branch.at)[0]
@@ -282,7 +282,7 @@ class CaseSearch:
     def _execute(
         self, branch: Branch, wait: int, coming: tuple[Stimulus, ...], fed: Sequence[Feed]
     ) -> bool:
-        """Go on for so many instants, and keep what is new; False where the machine got stuck."""
+        """Go on for ``wait`` instants, and keep new branches; False where the machine got stuck."""
         for _ in range(wait):
             before = self.coverage.size
             now, slots = self._instant(branch.at)
@@ -318,7 +318,7 @@ class CaseSearch:
         return feeds
 
     def _until_due(self, branch: Branch) -> int:
-        """Instants until the longest time-out is due that is to be shown from the active states."""
+        """Instants until the longest time-out of an open goal of the active states is due."""
         longest = 0
         for instance, goal in self._near(branch):
             region, one = _of_goal(branch, instance, goal)
@@ -327,18 +327,18 @@ class CaseSearch:
         return self._instants_in(longest) + 2 * WAITS[-1] if longest else 0
 
     def _instants_in(self, time: int) -> int:
-        """So many instants, and one more, are in a time."""
+        """The number of instants in a time, and one more."""
         return time * MANY // max(1, self._instant(MANY)[0]) + 1
 
     def _kept_fresh(self, coming: Sequence[Stimulus]) -> Iterator[Feed]:
-        """The values that came come again and again, where they grow stale."""
+        """The given values, repeated where they grow stale."""
         for entry in coming:
             age = self.ages.get(entry.place)
             if age is not None:
                 yield Feed(entry, age // 2, entry.at + age // 2)
 
     def _drawn(self, branch: Branch, now: Ns) -> tuple[Stimulus, ...]:
-        """What comes from outside at an instant: nothing, one thing or two."""
+        """The stimuli from outside at an instant: none, one or two."""
         wanted = self._wanted(branch)
         some = self.chance.choices((0, 1, 2), (2, 6, 1))[0]
         pools = (
@@ -347,7 +347,7 @@ class CaseSearch:
         return tuple(self.chance.choice(pool).drawn(now, self.chance) for pool in pools)
 
     def _wanted(self, branch: Branch) -> list[Choice]:
-        """What triggers, from the active states, something that is open."""
+        """The stimuli that trigger an open goal of the active states, or raise its event."""
         names = set()
         for instance, goal in self._near(branch):
             if goal.kind is GoalKind.DEFERRED:
@@ -391,7 +391,7 @@ class CaseSearch:
     # --- the cases
 
     def _chosen(self) -> Iterator[FoundCase]:
-        """Few paths that show together what all have shown, those that show most first."""
+        """Few paths that together show the coverage of all, those that show most first."""
         paths = [(path, self._replayed(path)) for path in self.paths]
         paths.sort(key=lambda one: (-one[1].size, one[0].until))
         total, left = GoalCoverage(), [g for g in self.needed if self.coverage.shows(g)]
@@ -408,7 +408,7 @@ class CaseSearch:
                 yield FoundCase(path, (goal,) if total.shows(goal) else ())
 
     def _replayed(self, path: Stimuli) -> GoalCoverage:
-        """What one path shows by itself."""
+        """The coverage of one path by itself."""
         coverage = GoalCoverage()
         for _ in watched_machine(self.system, coverage).run(path):
             pass
@@ -425,7 +425,7 @@ def _of_goal(branch: Branch, instance: str, goal: Goal) -> tuple[Region, Transit
 def _together(
     goal: Goal, total: GoalCoverage, paths: Sequence[tuple[Stimuli, GoalCoverage]]
 ) -> list[tuple[Stimuli, GoalCoverage]]:
-    """The paths that show a goal only together, and with what is shown already."""
+    """The paths that show a goal only together, added to the coverage ``total``."""
     found: list[tuple[Stimuli, GoalCoverage]] = []
     for one in paths:
         if union(total, *(coverage for _, coverage in found)).shows(goal):
@@ -451,7 +451,7 @@ def _causes(component: Component) -> dict[str, set[str]]:
 
 
 def _cell(value: Value, cuts: Sequence[int]) -> object:
-    """A value, or between which of the numbers that matter it is, and in which quarter."""
+    """A value, or the numbers in ``cuts`` that it lies between, and in which quarter."""
     if isinstance(value, tuple):
         return tuple(_cell(one, cuts) for _, one in value)
     if not isinstance(value, int):

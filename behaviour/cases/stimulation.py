@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a search may do to a system from outside: its events, and values for its input ports."""
+"""The stimuli that a search can give to a system: its events, and values for its input ports."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ PartialValue = Mapping[str | None, Scalar]
 """Some fields of a value, or a scalar without a field."""
 
 REUSED = 0.3
-"""How often a number is one that the component has at that time."""
+"""How often a number equals one that the component has at that time."""
 WANTED = 0.3
-"""How often a value is one that something is known to need, where there is such a value."""
+"""How often a value is one that a decision needs, where one is known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,11 +49,11 @@ class Choice:
     numbers: tuple[int, ...]
     """Those that matter: what the component compares with, and their neighbours."""
     events: tuple[str, ...] = ()
-    """What a port raises when something arrives at it or stays away."""
+    """The events that a port raises on arrival, staleness or overflow."""
     max_age: Ns | None = None
-    """Of a port: a value that is older is stale."""
+    """The age above which a value of the port is stale."""
     wanted: tuple[PartialValue, ...] = ()
-    """What decisions of the component need."""
+    """Values that decisions of the component need."""
 
     def drawn(
         self,
@@ -62,10 +62,10 @@ class Choice:
         known: PartialValue | None = None,
         present: Sequence[int] = (),
     ) -> Raised | Arrived:
-        """It comes with a value drawn at random, more often one that matters.
+        """The stimulus with a value drawn at random, more often one that matters.
 
-        Of a value that is ``known`` the other fields are drawn, and now and then a number is one
-        of those ``present``: a step may need that two are equal.
+        The fields that ``known`` leaves open are drawn. Now and then a number is one
+        of those ``present``: a step may need two equal numbers.
         """
         value = None if self.type is None else self._value(self.type, chance, known, present)
         if self.is_port:
@@ -112,7 +112,7 @@ class Choice:
 def choices(
     system: System, wanted: Mapping[tuple[str, str], Sequence[PartialValue]] | None = None
 ) -> list[Choice]:
-    """Everything that may come from outside, in model order.
+    """The stimuli that may come from outside, in model order.
 
     ``wanted`` has values that decisions need, by component and event or port.
     """
@@ -127,7 +127,7 @@ def choices(
 def _wanted(
     choice: Choice, component: str, wanted: Mapping[tuple[str, str], Sequence[PartialValue]]
 ) -> Iterator[PartialValue]:
-    """What is needed of an event, or of those that an arrival raises."""
+    """The values that decisions need of an event or port, or of the events that a port raises."""
     for name in (choice.name, *choice.events):
         yield from wanted.get((component, name), ())
 

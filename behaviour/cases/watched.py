@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""A system under way of which one sees what its charts show."""
+"""A running system that notes the coverage of its charts."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .goals import Decision, GoalCoverage, evaluated
 
 
 class WatchedRegion(RegionRun):
-    """A region that notes what it shows, for its component."""
+    """A region that notes its coverage, for its component."""
 
     component: str
     coverage: GoalCoverage
@@ -64,7 +64,7 @@ class WatchedRegion(RegionRun):
 
 
 def watched_machine(system: System, coverage: GoalCoverage) -> Machine:
-    """The system before its epoch; what its charts show goes to ``coverage``."""
+    """The system before its epoch; its charts add to ``coverage``."""
     machine = Machine(system, WatchedRegion)
     for instance in machine.instances.values():
         for run in instance.regions.values():

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""A system under way, branched: two that go on from the same situation by themselves."""
+"""Branches of a running system: copies that go on independently from the same situation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .region import RegionRun
 
 
 def branched(machine: Machine) -> Machine:
-    """The same as it is now, to go on by itself."""
+    """A copy of a machine that goes on independently."""
     new = copy.copy(machine)
     new.instances = {name: _instance(one) for name, one in machine.instances.items()}
     new.earliest = dict(machine.earliest)

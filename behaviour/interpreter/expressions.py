@@ -47,7 +47,7 @@ class PortReading:
 
 @dataclass(slots=True)
 class View:
-    """What one execution sees: copied in at its start, ``data`` changed as it sets them."""
+    """The values that one execution reads, copied at its start; its assignments change ``data``."""
 
     data: dict[str, Value]
     parameters: Mapping[str, Scalar]
@@ -55,12 +55,12 @@ class View:
     active: Mapping[str, frozenset[str]]
     """The states that each region last published as active; its own before the step."""
     event: Value | None = None
-    """What the occurrence of this step carries."""
+    """The value of the event that this step is made for."""
 
 
 @dataclass(slots=True)
 class Outbox:
-    """What behaviours ask to go out after the step: by port, and in the order raised."""
+    """The values to send after the step, by port, and the events to raise, in order."""
 
     sent: dict[str, Value] = field(default_factory=dict)
     raised: list[tuple[str, Value | None]] = field(default_factory=list)
@@ -77,12 +77,12 @@ def least_value(kind: Type) -> Value:
 
 
 def holds(condition: Expression | None, view: View) -> bool:
-    """Whether a guard lets through; where there is none it does."""
+    """Whether a guard holds; a missing guard holds."""
     return condition is None or value_in(condition, view) == TRUE
 
 
 def value_in(expression: Expression, view: View) -> Value:
-    """What an expression yields."""
+    """The value of an expression."""
     match expression:
         case Literal(value=value):
             return value
@@ -170,7 +170,7 @@ _ARITHMETIC: Mapping[str, Callable[..., int]] = {
 
 
 def perform(flow: Flow, view: View, out: Outbox) -> None:
-    """Do the actions of a flow, one after another."""
+    """Execute the actions of a flow, one after another."""
     for action in flow:
         match action:
             case Set(data=data, field=None, value=value):

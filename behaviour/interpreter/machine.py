@@ -3,12 +3,12 @@
 
 """A whole system in virtual time.
 
-At each instant everything that is due runs, the processor of the highest
-priority first, each its table in order, and takes no time. A processor that a
-port releases is due when a value waits there and its separation is over; its
-releases are at such instants too. What a processor released by a bus would
-receive comes as stimuli; what leaves on a bus is gone. Activities that the user
-writes do nothing.
+At each instant every processor that is due runs its table in order, the highest
+priority first. An execution takes no time. A processor that a port releases is due
+when a value waits there and its separation is over; its releases are at such
+instants too. A processor that a bus releases does not run: received values come as
+stimuli, and values sent on a bus are discarded. Activities that the user writes do
+nothing.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ from .traces import StepRecord, ValueRecord
 
 
 class Mailbox:
-    """What has arrived at an input port and waits for the handler."""
+    """The values at an input port that wait for the port region."""
 
     def __init__(self, port: Port) -> None:
-        """An empty one; that of a sampled port keeps the last value."""
+        """An empty mailbox; that of a sampled port keeps the last value."""
         sampled = port.kind is PortKind.SAMPLED
         self.depth = 1 if sampled else port.depth
         self.policy = Overflow.DROP_OLDEST if sampled else port.overflow
         self.waiting: deque[Value] = deque()
         self.has_lost = False
-        """Since the handler looked."""
+        """A value was lost since the last run of the port region."""
 
     def put(self, value: Value) -> None:
         """Keep a value, or lose one."""
@@ -52,7 +52,7 @@ class Mailbox:
 
 
 class InstanceRun:
-    """A component instance under way."""
+    """A component instance that runs."""
 
     def __init__(self, instance: Instance, region_run: type[RegionRun] = RegionRun) -> None:
         """Before anything has run; ``region_run`` runs its regions."""
@@ -76,19 +76,19 @@ class InstanceRun:
         return [place.state for place in places if place.region == region.name]
 
     def view(self) -> View:
-        """What an execution that begins now sees."""
+        """The values that an execution reads when it begins now."""
         active = {name: run.published for name, run in self.regions.items()}
         return View(dict(self.data), self.parameters, dict(self.ports), active)
 
     # --- events
 
     def offer(self, event: str, value: Value | None) -> None:
-        """Offer an event to every region that names it; what overflows is told once."""
+        """Offer an event to every region that names it; each loss raises its `on_overflow` once."""
         for full in self._enqueue(event, value):
             self._enqueue(full, None)
 
     def _enqueue(self, event: str, value: Value | None) -> list[str]:
-        """The events that report what was lost."""
+        """Queue an event; the `on_overflow` events of the regions that lost one."""
         told: list[str] = []
         for run in self.regions.values():
             if _names(run.region, event) and not run.offer(event, value):
@@ -98,7 +98,7 @@ class InstanceRun:
     # --- rows
 
     def run_ports(self) -> list[tuple[str, Value]]:
-        """The port region: one arrival of each port at most; the values that it took."""
+        """Run the port region: at most one arrival of each port; the values that it took."""
         taken: list[tuple[str, Value]] = []
         timing = self.component.port_region
         assert timing is not None
@@ -141,7 +141,7 @@ def _names(region: Region, event: str) -> bool:
 
 
 class Machine:
-    """A system under way."""
+    """A system that runs."""
 
     def __init__(self, system: System, region_run: type[RegionRun] = RegionRun) -> None:
         """Before the epoch; ``region_run`` runs the regions."""
@@ -151,12 +151,12 @@ class Machine:
         woken = (one for one in system.processors if one.released_by_port is not None)
         self._woken = sorted(woken, key=lambda one: -one.priority)
         self.earliest = {one.name: 0 for one in self._woken}
-        """When each processor that a port releases may be released again."""
+        """The earliest next release of each processor that a port releases."""
         self.values: list[ValueRecord] = []
-        """What the model records, so far."""
+        """The recorded values so far."""
 
     def run(self, stimuli: Stimuli) -> Iterator[StepRecord]:
-        """Everything up to the last instant: the steps that executed a behaviour."""
+        """Run up to the last instant; the steps that executed a behaviour."""
         coming = deque(stimuli.entries)
         for now, slots in self.instants(stimuli.until):
             due: list[Raised | Arrived] = []
@@ -167,7 +167,7 @@ class Machine:
     def execute(
         self, now: Ns, slots: Iterable[Slot], entries: Iterable[Raised | Arrived] = ()
     ) -> Iterator[StepRecord]:
-        """What happens at one of the instants: what comes from outside, then the rows."""
+        """Execute one instant: first the stimuli from outside, then the rows."""
         for entry in entries:
             self._take(entry)
         for slot in slots:
@@ -178,7 +178,7 @@ class Machine:
         yield from self._release(now, None)
 
     def _release(self, now: Ns, before: Processor | None) -> Iterator[StepRecord]:
-        """Run the processors that waiting values release: those above the one that is next."""
+        """Run the processors that waiting values release and that are above ``before``."""
         for one in self._woken:
             port = one.released_by_port
             due = before is None or (one.priority > before.priority)
@@ -275,13 +275,13 @@ class Machine:
         self._deliver(now, own, out)
 
     def _record(self, now: Ns, instance: str, item: str, value: Value) -> None:
-        """Record what was set, sent or taken, where the model asks for it."""
+        """Record a value that was set, sent or taken, where the model records it."""
         for one in self.system.values_of(instance, item):
             scalar = dict(value)[one.field or ""] if isinstance(value, tuple) else value
             self.values.append(ValueRecord(now, one.element, scalar))
 
     def _deliver(self, now: Ns, own: InstanceRun, out: Outbox) -> None:
-        """Send, ports in model order, then raise, in the order raised."""
+        """Send the values, ports in model order; then raise the events, in the order raised."""
         for port in own.component.outputs():
             if port.name in out.sent:
                 self._record(now, own.instance.name, port.name, out.sent[port.name])

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""A region whose steps say of each transition from an active state why it fired or did not.
+"""A region that notes for each transition from an active state why it was taken or not.
 
-Everything is read where the step itself has read it: after its occurrence was taken, before
-anything fires. So the values are those that the guards had.
+The values are read where the step itself reads them: after its occurrence left the queue, before
+a transition is taken. So they are the values that the guards had.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ from .expressions import View, value_in
 from .region import ExecutedTransition, Happened, Nothing, Occurrence, RegionRun, Step
 
 Reads = tuple[tuple[Name | PortTest | InState, Value], ...]
-"""What an expression reads, with the values that it had."""
+"""The names and tests in an expression, with their values."""
 
 
 class FiringReason(Enum):
-    """Why a transition from an active state fired or did not."""
+    """Why a transition from an active state was taken or not."""
 
     FIRED = auto()
     OTHER_TRIGGER = auto()
     """The step was for another occurrence."""
     NOT_DUE = auto()
-    """Its time-out is to come."""
+    """Its time-out is not due yet."""
     LATER = auto()
     """Its own occurrence waits for a later step."""
     NOT_COMPLETE = auto()
@@ -55,7 +55,7 @@ class FiringReason(Enum):
     TIME_OUT_OVER = auto()
     """Its time-out has had its step."""
     CONDITION_FALSE = auto()
-    """The condition of its `when`."""
+    """The condition of its `when` is false."""
     GUARD_FALSE = auto()
     NO_WAY_ON = auto()
     """The junction or join behind it lets nothing through."""
@@ -79,16 +79,16 @@ class FalseGuard:
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """A transition, and why it fired or did not."""
+    """A transition, and why it was taken or not."""
 
     transition: Transition
     reason: FiringReason
     because: tuple[str, ...] = ()
-    """The transitions that went before it, or the states that defer or have not completed."""
+    """The transitions taken instead, or the states that defer or have not completed."""
     failed: tuple[FalseGuard, ...] = ()
-    """Of it, or of the segments behind it."""
+    """Its guard, or those of the segments behind it."""
     executions: int = 0
-    """To go until it is due."""
+    """The executions until it is due."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +97,7 @@ class ObservedStep:
 
     occurrence: Occurrence | None
     started: bool
-    """It was the first step of the region."""
+    """Whether it was the first step of the region."""
     deferring: tuple[str, ...]
     """The active states that defer its event, where it was deferred."""
     verdicts: tuple[Judgement, ...]
@@ -165,14 +165,14 @@ class ObservedRegion(RegionRun):
         return [state for state in self.tree.states if state in active]
 
     def _judged(self, selected: Sequence[ExecutedTransition]) -> Iterator[Judgement]:
-        """What is to be said before anything fires: FIRED is of all that were selected."""
+        """The verdicts before any transition is taken: FIRED marks all that were selected."""
         active = self._active()
         for transition in self.region.transitions:
             if transition.source in active:
                 yield self._verdict(transition, selected)
 
     def _settled(self, verdict: Judgement, selected: Sequence[ExecutedTransition]) -> Judgement:
-        """Of one that was selected: whether it was taken, and else what was taken before it."""
+        """The final verdict: a selected transition was taken, or others were taken before it."""
         if verdict.reason is not FiringReason.FIRED:
             return verdict
         mine = next(one for one in selected if verdict.transition in one.effects)
@@ -258,7 +258,7 @@ class ObservedRegion(RegionRun):
 
 
 def _reads(expression: Expression) -> Iterator[Name | PortTest | InState]:
-    """What an expression reads, in its order."""
+    """The names and tests in an expression, in its order."""
     match expression:
         case Operation(operands=operands):
             for operand in operands:

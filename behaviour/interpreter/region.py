@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""One top-level region, interpreted: its configuration, and what a step does to it.
+"""One top-level region, interpreted: its configuration, and the steps that change it.
 
-The configuration says of every place what is active in it. A choice, history or
-terminate pseudostate can be, for a moment: a transition into one is completed
+The configuration has the active vertex of every region. A choice, history or terminate
+pseudostate is active only within a step: a transition into one is completed
 like any other, and then the next one leaves from there.
 """
 
@@ -33,7 +33,7 @@ from ravenchart.gen.origins import Origin
 from .expressions import Outbox, View, holds, perform
 
 MOST_SEGMENTS = 1_000
-"""Of one compound transition: more than that goes in a circle."""
+"""Pseudostates passed at most after one transition; more of them form a cycle."""
 
 
 class Stuck(Exception):  # noqa: N818
@@ -72,7 +72,7 @@ class Happened:
 
 @dataclass(frozen=True, slots=True)
 class Nothing:
-    """Nothing waits: conditions are looked at."""
+    """Nothing waits: conditions are evaluated."""
 
 
 Occurrence = Completed | TimeOut | Happened | Nothing
@@ -91,11 +91,11 @@ class NamedGoal:
 
 @dataclass(frozen=True, slots=True)
 class ExecutedTransition:
-    """A compound transition, ready to fire: its guards have been read."""
+    """A compound transition that was selected: its guards have been read."""
 
     source: str
     scope: RegionKey
-    """Everything in this place is left."""
+    """Everything in this region is left."""
     effects: tuple[Transition, ...]
     goals: tuple[NamedGoal, ...]
     internal: bool = False
@@ -116,7 +116,7 @@ class Kept:
 
 @dataclass(slots=True)
 class Step:
-    """The behaviours that one step executed, in order, and what it sends and raises."""
+    """The behaviours that one step executed, in order, and its values and events to deliver."""
 
     behaviours: list[str] = field(default_factory=list)
     out: Outbox = field(default_factory=Outbox)
@@ -125,7 +125,7 @@ class Step:
 
 
 class RegionRun:
-    """A region under way. ``works_in`` names its states that have a do activity."""
+    """A region that runs. ``works_in`` names its states that have a do activity."""
 
     def __init__(
         self, region: Region, overflow: Mapping[str, Overflow], works_in: Iterable[str] = ()
@@ -137,7 +137,7 @@ class RegionRun:
         self.works_in = frozenset(works_in)
         self.active: dict[RegionKey, str] = {}
         self.history: dict[RegionKey, str] = {}
-        """The leaf that was left last in a place."""
+        """The leaf that was left last in a region."""
         self.timers: dict[str, int] = {}
         """Transitions with a running time-out: the execution in which it is due."""
         self.completed: set[str] = set()
@@ -198,7 +198,7 @@ class RegionRun:
         return self._step
 
     def publish(self) -> None:
-        """Let others see what is active."""
+        """Let others see the active states."""
         self.published = self.configuration()
 
     def configuration(self) -> frozenset[str]:
@@ -212,7 +212,7 @@ class RegionRun:
     # --- the next occurrence
 
     def _next(self) -> Occurrence:
-        """What the step is for; it is taken from where it waited."""
+        """The next occurrence, removed from where it waited."""
         for state in self.tree.states:
             if state in self.completed:
                 self.completed.remove(state)
@@ -249,7 +249,7 @@ class RegionRun:
     def _selected(
         self, place: RegionKey, occurrence: Occurrence
     ) -> Iterator[ExecutedTransition | Deferral]:
-        """What the occurrence enables in a place: inside the active state, or else its own."""
+        """The selection in a region: from inside the active state, or else of the state itself."""
         state = self.active.get(place)
         if state not in self.tree.states:
             return
@@ -308,7 +308,7 @@ class RegionRun:
         return all(place in self.tree.places(vertex) for vertex in vertices)
 
     def _path(self, taken: tuple[Transition, ...]) -> tuple[Transition, ...] | None:
-        """The first way from there through junctions and joins whose guards all hold."""
+        """The first way on through junctions and joins whose guards all hold."""
         vertex = taken[-1].target
         kind = self.tree.kinds.get(vertex)
         if kind is PseudoKind.JOIN:
@@ -337,7 +337,7 @@ class RegionRun:
     # --- firing
 
     def _fire_all(self, selected: Sequence[ExecutedTransition]) -> None:
-        """Fire in order, without those that conflict with one that has fired."""
+        """Take transitions in order, without those that conflict with one already taken."""
         fired: list[ExecutedTransition] = []
         for firing in selected:
             leaves = {s for s in self.tree.around(firing.source) if self._is_in(firing.scope, s)}
@@ -358,7 +358,7 @@ class RegionRun:
             self._enter_place(firing.scope, firing.goals)
 
     def _settle(self) -> None:
-        """Go on from choices and histories, the first in model order first, until none is left."""
+        """Go on from choices and histories, in model order, until none is active."""
         for _ in range(MOST_SEGMENTS):
             reached = next(self._passing(TOP), None)
             if reached is None or self.stopped:
@@ -407,7 +407,7 @@ class RegionRun:
         self._enter_place(place, tuple(NamedGoal(goal) for goal in goals))
 
     def _recorded(self, place: RegionKey) -> list[str]:
-        """The leaves that deep history finds in a place; none: enter it by default."""
+        """The leaves that deep history finds in a region; none: enter it by default."""
         last = self.history.get(place)
         if last is None:
             return []
@@ -445,7 +445,7 @@ class RegionRun:
                 del self.history[self.tree.slots[name]]
 
     def _enter_place(self, place: RegionKey, goals: Sequence[NamedGoal]) -> None:
-        """Enter a place on the way to goals in it, or by default when there is none."""
+        """Enter a region on the way to goals in it, or by default when there is none."""
         if not goals:
             goals = (self._initial(place),)
         elif len(goals) == 1 and goals[0].segment is not None:
@@ -457,7 +457,7 @@ class RegionRun:
             self._enter(vertex, [goal for goal in goals if goal.vertex != vertex])
 
     def _initial(self, place: RegionKey) -> NamedGoal:
-        """Take the initial transition of a place."""
+        """Take the initial transition of a region."""
         owner, name = place
         if owner is None:
             initial, shown = self.region.initial, self.region.name

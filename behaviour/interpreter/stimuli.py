@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What comes from outside while a model runs: the file of `--events`.
+"""The stimuli from outside while a model runs: the file of `--events`.
 
     - {at: 50 ms, raise: motor.Start}
     - {at: 60 ms, raise: motor.Go, with: 250}
     - {at: 70 ms, put: motor.order, value: {kind: Move, target: 1000}}
     - {until: 2 s}
 
-Times count from the epoch of the processors and never decrease. What comes at an
-instant comes before what runs then; the last instant is that of `until`.
+Times count from the epoch of the processors and never decrease. At each instant the
+stimuli come before the rows run. The last instant is that of `until`.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class Arrived:
 
 @dataclass(frozen=True, slots=True)
 class Stimuli:
-    """What comes in, in order of time, and the last instant."""
+    """The stimuli in order of time, and the last instant."""
 
     entries: tuple[Raised | Arrived, ...]
     until: Ns
@@ -111,7 +111,7 @@ FORMS = "`{at, raise, with}`, `{at, put, value}` or, at the end, `{until}`"
 def read_stimuli(
     text: str, file: str, system: System
 ) -> tuple[Stimuli | None, tuple[Diagnostic, ...]]:
-    """The stimuli in a file for ``system``; None when something is wrong with them."""
+    """The stimuli in a file for ``system``; None when the file has an error."""
     tree, found = grow_list(text, file)
     reading = _Reading(system, list(found))
     if tree is None:
@@ -151,7 +151,7 @@ class _Reading:
         self.found.append(error(code, origin, message, hint=hint))
 
     def take(self, item: Map) -> Ns | None:
-        """Read one entry; the last instant when it says that."""
+        """Read one entry; the last instant if the entry is `until`."""
         keys = set(item)
         if keys == {"until"}:
             return self.time(item, "until")
@@ -172,7 +172,7 @@ class _Reading:
         return None
 
     def time(self, item: Map, key: str) -> Ns | None:
-        """A time that is not before the one above."""
+        """A time that is not before that of the entry above."""
         origin = item.values_at[key].origin
         given = item[key]
         time = parsed_duration(given) if isinstance(given, str) else None

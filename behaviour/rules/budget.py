@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""How much work the check of a model may take: counted, so that it is the same each time.
+"""The work that the check of a model may take, counted so that it is the same each time.
 
-The solver's own count of its work is not taken: what one question takes there depends on the
+The solver's own count is not used: the work of one question depends there on the
 questions that the process asked before.
 """
 
@@ -15,7 +15,7 @@ import z3
 
 
 class Exhausted(Exception):  # noqa: N818
-    """The check has taken the work that it may take."""
+    """The check has used up its work."""
 
 
 class TooManyQuestions(Exception):  # noqa: N818
@@ -24,7 +24,7 @@ class TooManyQuestions(Exception):  # noqa: N818
 
 @dataclass
 class Budget:
-    """How much work the whole check may take, in situations and questions, and how far it got."""
+    """The work that the whole check may take, and the situations and questions so far."""
 
     effort: int
     situations: int = 0
@@ -36,7 +36,7 @@ class Budget:
         self.situations += 1
 
     def ask(self, solver: z3.Solver) -> z3.CheckSatResult:
-        """What a solver answers; `Exhausted` when no work is left for the question."""
+        """The answer of a solver; `Exhausted` when no work is left for the question."""
         self._check()
         self.questions += 1
         return solver.check()

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Cells: how far the values of data are told apart."""
+"""Cells: the ranges of values that the search distinguishes for each data item."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Cell = tuple[int, int]
 """First and last value; Booleans count 0 and 1."""
 
 MOST_CELLS = 12
-"""A variable with more is not told apart."""
+"""The search does not distinguish the values of a variable with more cells."""
 
 
 def expressions(component: Component) -> Iterator[Expression]:
@@ -61,7 +61,7 @@ def flows(component: Component) -> Iterator[Sequence[object]]:
 
 
 def every(flow: Iterable[object]) -> Iterator[object]:
-    """The actions of a flow, those inside others too."""
+    """The actions of a flow, including those inside others."""
     for action in flow:
         yield action
         if isinstance(action, If):
@@ -71,7 +71,7 @@ def every(flow: Iterable[object]) -> Iterator[object]:
 def partition(
     component: Component, types: dict[Variable, ScalarType], initial: dict[Variable, Term]
 ) -> dict[Variable, tuple[Cell, ...]]:
-    """The cells of each data item that can be told apart."""
+    """The cells of each data item whose values the search distinguishes."""
     deciding = _deciding(component)
     cuts: dict[Variable, set[int]] = {name: set() for name in initial if name in deciding}
     for expression in expressions(component):
@@ -87,7 +87,7 @@ def partition(
 
 
 def _deciding(component: Component) -> set[Variable]:
-    """The variables that decisions depend on, also through what others are set to."""
+    """The variables that decisions depend on, also through the values that others are set to."""
     found = set(_variables(expressions(component)))
     sets = [
         (logic.variable(Reading.DATA, action.data, action.field), action)

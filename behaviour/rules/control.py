@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Rules of one region's control: what is never entered or fired, what gets stuck."""
+"""Rules of one region's control: unused states and transitions, and steps that get stuck."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _active(thread: Thread) -> set[str]:
 
 
 def _fired(thread: Thread) -> set[str]:
-    """The transitions and segments that some step fires."""
+    """The transitions and segments that some step takes."""
     return {name for edge in thread.edges for name in edge.outcome.fired}
 
 
@@ -88,7 +88,7 @@ def states_are_entered(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]
 
 
 def transitions_fire(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
-    """Some data let each transition fire, and no earlier one always comes before it."""
+    """Some data let each transition be taken, and no earlier one always comes before it."""
     tree, fired = thread.tree, _fired(thread)
     lost = {state.name for state in _lost(thread)}
     shut_out = _rivals(reach, thread)
@@ -144,7 +144,7 @@ def _reason(
 
 
 def _beaten(thread: Thread) -> Iterator[Beaten]:
-    """What some step selects and does not fire, each once."""
+    """The transitions that some step selects and does not take, each once."""
     yield from dict.fromkeys(b for edge in thread.edges for b in edge.outcome.beaten)
 
 
@@ -157,7 +157,7 @@ def _waits(thread: Thread, state: str) -> bool:
 
 
 def _rivals(reach: Reachable, thread: Thread) -> dict[tuple[str, str], tuple[Edge, str]]:
-    """The transitions that can both fire, with the nearest step and data that show it."""
+    """The pairs of transitions that are enabled together, with the nearest step and its data."""
     found: dict[tuple[str, str], tuple[Edge, str]] = {}
     for edge in thread.edges:
         for rival in edge.outcome.rivals:
@@ -174,7 +174,7 @@ def _rivals(reach: Reachable, thread: Thread) -> dict[tuple[str, str], tuple[Edg
 def guards_exclude_each_other(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
     """Of transitions with one source and trigger, at most one guard holds; else the first wins.
 
-    A last one without guard is the rest, and is meant.
+    A last transition without guard takes the remaining cases, and is not reported.
     """
     region, fired = thread.tree.region, _fired(thread)
     for (first, second), (edge, data) in _rivals(reach, thread).items():
@@ -233,8 +233,8 @@ def choices_have_a_way_out(reach: Reachable, thread: Thread) -> Iterator[Diagnos
 def events_are_expected(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:
     """A warning for a state that alone among its siblings ignores an event.
 
-    Only where all others, and at least three, handle or defer it: a chart that
-    ignores an event in several states means to.
+    At least three others must exist, and all must handle or defer it. A chart that
+    ignores an event in several states intends it.
     """
     tree = thread.tree
     for slot in dict.fromkeys(tree.slots[name] for name in tree.states):
@@ -291,7 +291,7 @@ def safe_state_is_near(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]
     goals = [node for node in thread.nodes if safe in node.configuration.active]
     graph.add_edges_from((safe, goal) for goal in goals)
     if thread.parts is not None:
-        #  what one region of a state comes to, the others come to with it
+        #  a situation of one region of a state is reached together with the other regions
         for node in thread.nodes:
             for name in tree.orthogonal & {*node.configuration.active}:
                 graph.add_edges_from(((node, ("in", name)), (("in", name), node)))

@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Invariants as contracts of the code: which each move of a region keeps, and with which facts.
+"""Invariants as contracts of the code: those that each move of a region keeps, with facts.
 
 An invariant may hold in every reachable situation, and still a transition may seem to break it
-from a situation that is never reached. Facts exclude those: for a leaf, the cells that a data
-item can be in while the leaf is active. The strongest facts that every move keeps are found
-upwards from the start of the region (the largest inductive set of candidates, as in Flanagan and
-Leino, *Houdini*, 2001); those that no proof needs are dropped again, by unsatisfiable cores.
+from a situation that is never reached. Facts exclude these situations. A fact of a leaf has the
+cells that a data item can be in while the leaf is active. The search grows the facts from the
+start of the region to the strongest ones that every move keeps: the largest inductive set of
+candidates, as in Flanagan and Leino, *Houdini*, 2001. Unsatisfiable cores drop unneeded facts.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from .logic import Term, Variable
 from .moves import ChartMove, Position, TooManyMoves, guard_of, moves_of
 
 MOST_QUESTIONS = 20_000
-"""What the facts of one region may cost: the same on every machine."""
+"""Questions for the facts of one region at most: the same on every machine."""
 
 Held = tuple[str, Variable]
 """A vertex, and a data item of which a fact speaks there."""
@@ -48,7 +48,7 @@ Held = tuple[str, Variable]
 
 @dataclass(frozen=True, slots=True)
 class Contracts:
-    """What the code of a system is proved to keep, and the invariants that it is not."""
+    """The invariants that the code of a system is proved to keep, and findings on the others."""
 
     regions: tuple[SafeRegion, ...] = ()
     found: tuple[Diagnostic, ...] = ()
@@ -57,7 +57,7 @@ class Contracts:
 def contracts(system: System) -> Contracts:
     """The invariants of every component, each with its region or with the reason why it has none.
 
-    Invariants that the model violates must be known to be none of these.
+    The caller must have excluded that the model violates one of these invariants.
     """
     regions: list[SafeRegion] = []
     found: list[Diagnostic] = []
@@ -98,7 +98,7 @@ def _unproved(invariant: Invariant, why: tuple[str, str]) -> Diagnostic:
 
 
 def _is_over(invariant: Invariant, component: Component, region: Region) -> bool:
-    """Whether it asks for states and data of one region, and for constants of the model."""
+    """Whether an invariant asks only for states and data of one region, and for constants."""
     constant = {d.name for d in component.data} - component.from_outside()
     constant -= {name for row in component.runnables() for name in row.writes}
     named = list(logic.names(invariant.condition))
@@ -148,7 +148,7 @@ def _of_region(
 
 
 def _guarded(region: Region) -> Iterator[str]:
-    """The transitions whose guards another lane may make false before they fire."""
+    """The transitions whose guards another region may make false before they are taken."""
     for one in region.transitions:
         if isinstance(one.trigger, Segment) or knows_guards(region, region.lane(one.source)):
             continue
@@ -164,13 +164,13 @@ class _Search:
     region: Region
     invariants: list[Invariant]
     alone: frozenset[str]
-    """Transitions that are taken to fire only when nothing has fired before in their step."""
+    """Transitions that are assumed to be the first ones taken in their step."""
     questions: int = 0
     symbols: dict[Variable, Term] = field(default_factory=dict)
     bad: dict[str, Term] = field(default_factory=dict)
-    """The invariants that are kept so far, each with the condition that must not hold."""
+    """The invariants kept so far, each with the condition that must not hold."""
     made: dict[object, Any] = field(default_factory=dict)
-    """Terms that were made before: each by what it is of, as far as that changes."""
+    """Terms that were made before, each by a key of the objects that it depends on."""
 
     def __post_init__(self) -> None:
         component = self.component
@@ -198,25 +198,25 @@ class _Search:
         return self.symbols[name]
 
     def of_condition(self, name: Variable) -> Term:
-        """The same in a condition, where what nothing writes is a constant."""
+        """The same in a condition, where data without a writer are constants."""
         if name in self.initial and name[1] not in self.region.writes:
             return self.initial[name]
         return self.symbol(name)
 
     def is_marked(self, vertex: str) -> bool:
-        """Whether facts may speak of it: a leaf, or a pseudostate on the way."""
+        """Whether facts may be about a vertex: a leaf, or a pseudostate on the way."""
         return vertex in self.tree.kinds or len(self.tree.states[vertex].regions) != 1
 
     # --- terms
 
     def once(self, key: object, make: Callable[[], Any]) -> Any:
-        """What is made for a key, made at its first use."""
+        """The term of a key, made at its first use."""
         if key not in self.made:
             self.made[key] = make()
         return self.made[key]
 
     def written(self, move: ChartMove) -> list[tuple[Term, Term]]:
-        """What stands for each variable after a move."""
+        """The variables that a move writes, each with its value after the move."""
         return cast("list[tuple[Term, Term]]", self.once(move, lambda: self._written(move)))
 
     def _written(self, move: ChartMove) -> list[tuple[Term, Term]]:
@@ -231,7 +231,7 @@ class _Search:
         return [(self.symbol(n), v) for n, v in pairs.items()]
 
     def violated(self, name: str, place: Position) -> Term:
-        """That a place, as the condition sees it, violates an invariant."""
+        """That a position, as the condition sees it, violates an invariant."""
         states = [
             (self.symbol(one), z3.BoolVal(one[2] in place.active))
             for one in list(self.symbols)
@@ -249,7 +249,7 @@ class _Search:
         return z3.Or([z3.And(value >= low, value <= high) for low, high in spans])
 
     def before(self, move: ChartMove) -> dict[Held | str, Term]:
-        """What is known before a move, by the fact or invariant that says it."""
+        """The terms known before a move, each by its fact or invariant."""
         place = move.before
         if place is None:
             return {}
@@ -257,7 +257,7 @@ class _Search:
         return known | {name: self.refuted(name, place) for name in self.bad}
 
     def after(self, move: ChartMove) -> dict[Held | str, Term]:
-        """What must hold behind a move, by the fact or invariant that says it."""
+        """The terms that must hold after a move, each by its fact or invariant."""
         wanted: dict[Held | str, Term] = {
             held: self.behind(move, (held, len(self.allowed[held])), self.fact(held))
             for held in self.facts_at(move.after)
@@ -267,22 +267,22 @@ class _Search:
         return wanted
 
     def facts_at(self, place: Position) -> Iterator[Held]:
-        """What facts can speak of in a place."""
+        """The pairs of vertex and data item that facts can be about in a position."""
         for vertex in filter(self.is_marked, place.vertices):
             for name in self.cells:
                 yield vertex, name
 
     def fact(self, held: Held) -> Term:
-        """That a data item is in the cells allowed for it so far; those only become more."""
+        """That a data item is in the cells allowed for it so far; their number only grows."""
         name, cells = held[1], self.allowed[held]
         return self.once((held, len(cells)), lambda: self.in_cells(name, self.symbol(name), cells))
 
     def refuted(self, name: str, place: Position) -> Term:
-        """That a place does not violate an invariant."""
+        """That a position does not violate an invariant."""
         return self.once((place, name), lambda: z3.Not(self.violated(name, place)))
 
     def behind(self, move: ChartMove, claim: object, term: Term) -> Term:
-        """That the term of a claim holds behind a move."""
+        """That the term of a claim holds after a move."""
         return self.once(
             (move, claim), lambda: z3.simplify(z3.substitute(term, *self.written(move)))
         )
@@ -307,7 +307,7 @@ class _Search:
     # --- the strongest facts
 
     def run(self) -> None:
-        """Allow what moves lead to until nothing more is allowed."""
+        """Allow the cells that moves lead to until no move leads to another one."""
         first = Position(self.tree.default)
         own = [(self.symbol(n), v) for n, v in self.initial.items()]
         for name in list(self.bad):
@@ -357,7 +357,7 @@ class _Search:
         return True
 
     def weight(self) -> int:
-        """Grows with all that is allowed, and with each invariant given up."""
+        """A number that grows with each allowed cell, and with each invariant given up."""
         return sum(map(len, self.allowed.values())) - len(self.bad)
 
     def cell_of(self, name: Variable, value: Term) -> int:
@@ -368,7 +368,7 @@ class _Search:
     # --- what is selected together
 
     def accompanied(self) -> set[str]:
-        """The transitions taken to be alone that are not: one of a lane before is enabled too."""
+        """The transitions of `alone` beside which one of an earlier region is enabled too."""
         typed = self.typed()
         found: set[str] = set()
         for move, other in self.pairs():
@@ -380,7 +380,7 @@ class _Search:
         return found
 
     def pairs(self) -> Iterator[tuple[ChartMove, ChartMove]]:
-        """Each move that is taken to be alone, with each from the same place of a lane before."""
+        """Each move of `alone`, with each move of an earlier region from the same position."""
         lanes = self.region.lanes()
         at: dict[Position, list[ChartMove]] = {}
         for move in self.moves:
@@ -432,7 +432,7 @@ class _Search:
         return self.core(move, [*typed, move.condition, z3.Not(wanted)], needed)
 
     def core(self, move: ChartMove, terms: list[Term], needed: set[Held]) -> set[Held]:
-        """The facts about the place before a move that exclude some terms."""
+        """The facts about the position before a move that exclude some terms."""
         known = self.before(move)
         terms = terms + [one for key, one in known.items() if isinstance(key, str) or key in needed]
         self.asked(terms, {})
@@ -461,7 +461,7 @@ def _by_id(pairs: list[tuple[Term, Term]]) -> Iterator[tuple[int, Term]]:
 
 
 def _spans(cells: list[ValueRange]) -> list[ValueRange]:
-    """Cells side by side as one."""
+    """Adjacent cells joined into one."""
     found: list[ValueRange] = []
     for first, last in cells:
         if found and found[-1][1] + 1 == first:

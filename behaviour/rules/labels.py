@@ -21,7 +21,7 @@ from .stepping import Configuration
 from .threads import Edge, Thread
 
 LONGEST = 12
-"""Steps of a trace that are shown; of a longer one, the last of them."""
+"""Steps of a trace that are shown; of a longer trace, the last ones."""
 
 
 def active_leaves(tree: ChartTree, configuration: Configuration) -> str:
@@ -33,7 +33,7 @@ def active_leaves(tree: ChartTree, configuration: Configuration) -> str:
 
 
 def step_label(tree: ChartTree, outcome: Outcome) -> str:
-    """What a step is made for: an event, a time, or the transition that nothing triggers."""
+    """The reason for a step: an event, a time, or the transition that nothing triggers."""
     kind, subject = outcome.occurrence.kind, outcome.occurrence.subject
     if kind == "event":
         return subject
@@ -72,13 +72,13 @@ def trace(tree: ChartTree, steps: Sequence[Edge]) -> str:
 
 
 def variables(term: Term, symbols: dict[Variable, Term]) -> list[Variable]:
-    """The variables that a term speaks of, in the order declared."""
+    """The variables in a term, in the order declared."""
     used = logic.unknowns([term])
     return [name for name in symbols if str(name) in used]
 
 
 def valuation(reach: Reachable, model: Term, terms: Iterable[Term]) -> str:
-    """What the variables of some terms are in a model: ``speed = 11, in(Motion.Moving)``."""
+    """The values of the variables of some terms: ``speed = 11, in(Motion.Moving)``."""
     shown_: list[str] = []
     conjunction = z3.And([*terms, z3.BoolVal(True)])
     for name in sorted(variables(conjunction, reach.symbols), key=list(reach.types).index):
@@ -94,7 +94,7 @@ def valuation(reach: Reachable, model: Term, terms: Iterable[Term]) -> str:
 
 
 def way_to(reach: Reachable, thread: Thread, edge: Edge) -> str:
-    """The shortest way to where a step begins, as a note."""
+    """The shortest way to the situation before a step, as a note."""
     way = reach.way(thread, edge.before)
     text = trace(thread.tree, way)
     return f"the way there: {text}" if len(way) > 1 else f"the way begins with {text}"

@@ -3,8 +3,8 @@
 
 """Rule of eventless steps: completions and conditions that go on for ever.
 
-A cycle of such steps is a livelock when one valuation of all that the region
-does not write itself lets it be gone round, and its own data are then as before.
+A cycle of such steps is a livelock when one valuation of the data from outside the
+region enables every step, and the region's own data are the same after the cycle.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from .reach import Reachable
 from .threads import Edge, Situation, Thread
 
 LONGEST_CYCLE = 8
-"""Steps of the cycles that are looked at."""
+"""Steps at most of a cycle that is checked."""
 MOST_CYCLES = 200
-"""Cycles of one group of nodes that are looked at."""
+"""Cycles at most that are checked in one group of nodes."""
 
 
 def eventless_steps_end(reach: Reachable, thread: Thread) -> Iterator[Diagnostic]:

@@ -133,10 +133,10 @@ def said(value: Term, type_: ScalarType) -> str:
 # --- Expressions -----------------------------------------------------------------
 
 Read = Callable[[Variable], Term]
-"""What a variable stands for."""
+"""Returns the term of a variable."""
 
 Ask = Callable[[z3.Solver], z3.CheckSatResult]
-"""How a solver is asked."""
+"""Asks a solver."""
 
 
 def term(expression: Expression, read: Read) -> Term:
@@ -285,17 +285,17 @@ def solver() -> Term:
 
 
 def optimizer() -> Term:
-    """One that looks for the least values, with as much work as a solver may take."""
+    """An optimizer for the least values, with as much work as a solver may take."""
     made = z3.Optimize()
     made.set("rlimit", EFFORT)
     return made
 
 
 class Questions:
-    """What a step reads in expressions, and whether they can hold together: each asked once."""
+    """The terms that a step reads, and whether conditions can hold together; each asked once."""
 
     def __init__(self, read: Read, context: Sequence[Term], ask: Ask = z3.Solver.check) -> None:
-        """Questions about what ``context`` allows; ``ask`` may count them."""
+        """Questions within ``context``; ``ask`` may count them."""
         self._ask = ask
         self.read = read
         self._solver = solver()

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The single moves of a region: what each transition or segment does, guards and data as terms.
+"""The single moves of a region: the effect of each transition or segment, as terms.
 
-A step of the model is a series of moves: a transition in each lane, each with the segments that
-its way passes. The generated code has a contract for each move, so what every move keeps is
-proved of the code. A move knows less than a step: which leaf a history remembers, whether an
-event came, and the guards of a lane that fires after another are unknown here.
+A step of the model is a series of moves: a transition in each orthogonal region, each with the
+segments on its way. The generated code has a contract for each move. So an invariant that every
+move keeps is proved of the code. A move knows less than a step. Unknown are the leaf that a history
+remembers, whether an event came, and the guards of a region that acts after another one.
 """
 
 from __future__ import annotations
@@ -25,27 +25,27 @@ from .logic import Questions, Read, Term, Variable, term
 from .stepping import Configuration, OpenStep, TransitionPath
 
 MOST_PLACES = 300
-"""A region with more configurations is not looked into."""
+"""A region with more configurations is not explored."""
 MOST_MOVES = 6_000
-"""Nor is one with more moves."""
+"""A region with more moves is not explored."""
 
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """Where a region is between two moves: its active states, and pseudostates on the way."""
+    """A region between two moves: its active states, and pseudostates on the way."""
 
     active: tuple[str, ...] = ()
     passing: tuple[str, ...] = ()
 
     @property
     def vertices(self) -> tuple[str, ...]:
-        """All of it."""
+        """The states and the pseudostates."""
         return (*self.active, *self.passing)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ChartMove:
-    """What one transition or segment does, from a place where it can be taken."""
+    """The effect of one transition or segment, from a position where it can be taken."""
 
     before: Position | None
     """None at the start of the region."""
@@ -53,17 +53,17 @@ class ChartMove:
     updates: dict[Variable, Term]
     after: Position
     path: TransitionPath
-    """The transition or segment, with its way; empty at the start and for what a history enters."""
+    """The transition or segment, with its way; empty at the start and at a history."""
 
 
 class TooManyMoves(Exception):  # noqa: N818
-    """The region is too large for its moves to be looked at one by one."""
+    """The region is too large for its moves to be explored one by one."""
 
 
 def moves_of(tree: ChartTree, symbols: Read, alone: Container[str]) -> Iterator[ChartMove]:
-    """Every move from every place that control can come to, data aside.
+    """Every move from every position that control can reach, data aside.
 
-    ``alone`` names the transitions that fire only when nothing has fired before in their step.
+    ``alone`` names the transitions that are assumed to be the first ones taken in their step.
     """
     if any(kind is PseudoKind.TERMINATE for kind in tree.kinds.values()):
         raise TooManyMoves
@@ -92,7 +92,7 @@ class _Mover(OpenStep):
     """A step that stops after one move; a condition only says which branch an action takes."""
 
     remembered: list[str | None] = field(default_factory=list)
-    """What histories answer, one after the other."""
+    """The leaves that histories answer, one after the other."""
     asked: list[RegionKey] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -100,7 +100,7 @@ class _Mover(OpenStep):
         self.recall = self._recalled
 
     def perform(self, flow: Flow) -> None:
-        """Only what a flow does to data: what it sends and raises concerns no move."""
+        """Execute only the assignments of a flow: values sent and events raised concern no move."""
         for action in flow:
             if isinstance(action, Set):
                 super().perform((action,))
@@ -108,7 +108,7 @@ class _Mover(OpenStep):
                 self.merge(action)
 
     def move(self, before: Position | None, condition: Term, path: TransitionPath) -> ChartMove:
-        """What has been done so far."""
+        """The move made so far."""
         place = Position(self.tree.ordered(self.active), tuple(sorted(self.arrivals)))
         return ChartMove(before, condition, self.store, place, path)
 
@@ -172,7 +172,7 @@ def _passed(tree: ChartTree, place: Position, questions: Questions) -> Iterator[
 
 
 def _leaves(tree: ChartTree, slot: RegionKey) -> list[str]:
-    """What a region inside may remember."""
+    """The leaves that a region inside may remember."""
     return [
         name
         for name, state in tree.states.items()
@@ -181,7 +181,7 @@ def _leaves(tree: ChartTree, slot: RegionKey) -> list[str]:
 
 
 def _ways(tree: ChartTree, place: Position, transition: Transition) -> Iterator[TransitionPath]:
-    """A transition with each way through junctions; a join only where all its sources are."""
+    """A transition with each way through junctions; a join only where all sources are active."""
     kind = tree.kinds.get(transition.target)
     if kind is PseudoKind.JUNCTION:
         for out in tree.outgoing[transition.target]:

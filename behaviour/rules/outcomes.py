@@ -22,7 +22,7 @@ Past = Mapping[RegionKey, set[str]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Outcome:
-    """What one step may come to: the condition on what it reads, and what it does."""
+    """One possible outcome of a step: the condition on its inputs, and its effects."""
 
     occurrence: Occurrence
     before: Configuration
@@ -31,7 +31,7 @@ class Outcome:
     updates: tuple[tuple[Variable, Term], ...]
     raised: tuple[tuple[str, tuple[tuple[str | None, Term], ...]], ...]
     fired: tuple[str, ...]
-    """Transitions and segments, in the order fired."""
+    """Transitions and segments, in the order taken."""
     stuck: str | None
     """The pseudostate that no enabled segment leaves."""
     deferred: bool
@@ -40,15 +40,15 @@ class Outcome:
     left: frozenset[str]
     beaten: tuple[Beaten, ...]
     recalled: frozenset[RegionKey] = frozenset()
-    """The regions whose remembered leaf was any that is known of (`Past`)."""
+    """The regions whose remembered leaf may be any of `Past`."""
     remembered: tuple[tuple[RegionKey, str], ...] = ()
-    """What it remembers, where the configuration does not say."""
+    """The leaf that each region remembers, where the configuration does not have it."""
     noted: tuple[Any, ...] = ()
-    """What a watched step has noted."""
+    """The notes of a watched step."""
 
 
 MOST_WAYS = 512
-"""Outcomes of one step at most; a region with more is not looked into further."""
+"""Outcomes of one step at most; a region with more is not explored further."""
 
 
 class TooManyWays(Exception):  # noqa: N818
@@ -66,8 +66,8 @@ def outcomes(
 ) -> tuple[Outcome, ...]:
     """Every outcome of a step that some data allow, in order of the first answer `yes`.
 
-    With a ``past``, a history may remember each of the leaves that this says. With ``contested``,
-    ``before`` is a part of a configuration (`parts`): what these unknowns decide may be either.
+    With a ``past``, a history may remember each leaf of it. With ``contested``, ``before`` is a
+    part of a configuration (`parts`): a condition on these unknowns may be true or false.
     ``make`` begins a step.
     """
     found: list[Outcome] = []
@@ -155,7 +155,7 @@ TRUE = z3.BoolVal(True)
 
 
 def _mentions(condition: Term, contested: Mapping[Variable, Term] | None) -> bool:
-    """Whether a condition asks for what other regions may have set in the same step."""
+    """Whether a condition reads data that other regions may have set in the same step."""
     if not contested:
         return False
     used = unknowns([condition])

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a component is set in: events from outside, parameters, activities as regions."""
+"""The surroundings of a component: events from outside, parameters, activities as regions."""
 
 from __future__ import annotations
 
@@ -69,9 +69,9 @@ def done_of(component: Component, activity: str) -> str:
 
 
 def external_events(component: Component, system: System) -> Iterator[tuple[str, str | None]]:
-    """What may come from outside, each with the row that raises it; None: at any time.
+    """The events that may come from outside, each with the row that raises it; None: at any time.
 
-    An event that nothing raises is among them: that it never comes is said elsewhere.
+    An event that nothing raises is among them: a rule of `gen` reports it.
     """
     instances = {i.name for i in system.instances if i.component.name == component.name}
     for port in component.ports:

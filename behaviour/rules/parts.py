@@ -1,20 +1,20 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Parts of configurations: the regions of an orthogonal state, each looked at by itself.
+"""Parts of configurations: the regions of an orthogonal state, each explored by itself.
 
 A chart with orthogonal states has as many configurations as the product of their regions. Where
-those are too many, a region is looked at in *parts*: a leaf with the states around it, and nothing
+those are too many, a region is explored in *parts*: a leaf with the states around it, and nothing
 of the regions beside it. A step is then made from each part as if the other regions selected
-nothing. What they do in the same step is found from their own parts, with three exceptions.
+nothing. Their own parts show their transitions in the same step, with three exceptions.
 
 A transition from inside an orthogonal state that leaves this state exits the other regions
-too. Its step is made with each of their parts besides (`RegionParts.meetings`). An orthogonal
-state completes when each of its regions is in a final state: it may, as soon as each of them
-was seen to be in one (`RegionParts.completed`). Data that other regions set may change between
+too. Its step is also made with each of their parts (`RegionParts.meetings`). An orthogonal
+state completes when each of its regions is in a final state. Here it may complete once each
+of them was seen in one (`RegionParts.completed`). Data that other regions set may change between
 the selection of a step and its end (`RegionParts.contested`).
 
-So each leaf, transition and event that configurations lead to is found, and perhaps more.
+So the search finds each leaf, transition and event that configurations lead to, and perhaps more.
 """
 
 from __future__ import annotations
@@ -113,18 +113,18 @@ class RegionParts:
             yield replace(part, completed=done, pending=(*part.pending, state))
 
     def is_outer(self, part: Configuration) -> bool:
-        """Whether a part says nothing of regions that are active inside its leaf: what its leaf
-        does while these select nothing is seen from their parts."""
+        """Whether the leaf of a part is orthogonal. The parts of the regions inside it show the
+        steps of the leaf in which these regions select nothing."""
         return self.leaf(part) in self.tree.orthogonal
 
     def says(self, part: Configuration, state: str) -> bool:
-        """Whether a part tells how far the completion of an active state has come."""
+        """Whether a part has the completion of an active state."""
         return self.tree.lane_of[state] == self.tree.lane_of[self.leaf(part)]
 
     # --- regions that meet
 
     def left(self, part: Configuration, outcome: Outcome) -> Iterator[Met]:
-        """The further steps to make where one leaves an orthogonal state from inside."""
+        """The further steps for a step that leaves an orthogonal state from inside."""
         if not outcome.fired:
             return
         around = self.tree.chains[self.tree.source_of(outcome.fired[0])][1:]
@@ -137,7 +137,7 @@ class RegionParts:
                     yield from (m for o in others for m in self._met(self.leaving[key], o))
 
     def meetings(self, part: Configuration) -> Iterator[Met]:
-        """The same for a new part, and all steps that are known to leave such a state."""
+        """The same for a new part, and for all known steps that leave such a state."""
         for leaver in tuple(self.leaving.values()):
             yield from self._met(leaver, part)
 
@@ -165,7 +165,7 @@ class RegionParts:
     # --- data that other regions set
 
     def contested(self, at: Configuration) -> dict[Variable, Term]:
-        """What the regions that are active besides may set, and what stands for it then."""
+        """The data that the other active regions may set, each with the unknown for it."""
         present = frozenset(self.tree.lane_of[name] for name in at.active)
         if present not in self._contested:
             absent = {
@@ -183,7 +183,7 @@ class RegionParts:
         return self._contested[present]
 
     def _writers(self) -> dict[Variable, set[Lane]]:
-        """The lanes whose behaviours set each data item."""
+        """The regions whose behaviours set each data item."""
         found: dict[Variable, set[Lane]] = {}
         for lane, flow in self._flows():
             for action in every(flow):

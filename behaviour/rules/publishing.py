@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What is known of a region whose configurations, or their parts, are known."""
+"""Terms for the active states of a region whose configurations, or their parts, are known."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def is_in(asked: Sequence[Variable], found: Sequence[tuple[str, ...]], read: Rea
 def is_in_parts(
     tree: ChartTree, asked: Sequence[Variable], found: Sequence[tuple[str, ...]], read: Read
 ) -> Term:
-    """The same of a region whose configurations are known in parts: each lane is in one."""
+    """The same for configurations that are known in parts: each orthogonal region is in one."""
     return z3.And([_lane(tree, lane, asked, found, read) for lane in tree.lanes])
 
 
@@ -35,7 +35,7 @@ def _lane(
     found: Sequence[tuple[str, ...]],
     read: Read,
 ) -> Term:
-    """Where a lane and the states around it are, or that nothing in it is active."""
+    """That a region and the states around it are as in one part, or that it is inactive."""
     own = [name for name in asked if tree.lane_of[name.state] == lane]
     if not own:
         return z3.BoolVal(True)
@@ -48,7 +48,7 @@ def _lane(
     }
     ways = [_said([*own, *outer], case, read) for case in sorted(cases)]
     if lane.owner is not None or tree.terminates:
-        #  a region that stops may have left a lane alone
+        #  a terminate may stop the chart while one region has no active state
         without = [name for name in outer if name.state == lane.owner and not tree.terminates]
         ways.append(_said([*own, *without], (False,) * (len(own) + len(without)), read))
     return z3.Or(ways)

@@ -1,18 +1,18 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the regions of a component can come to, under every interleaving.
+"""The situations that the regions of a component can reach, under every interleaving.
 
-Each region is looked at alone, against all that the others may do: the states
-they publish, the data they write, the events they raise. That is repeated until
-nothing new comes up. A region sees at each step any combination of what the
-others have ever published, so what is not found cannot happen, however the
-tasks interrupt one another. Data are told apart by *cells*: the literals of an
-enumeration, and for integers the ranges between the numbers that the model
-compares them with. A region of too many nodes is looked at more coarsely: a
-history may then remember any leaf that it was ever seen to remember, and if that
-is not enough, data are not told apart. Where the configurations alone are too many,
-the regions of an orthogonal state are looked at one by one (`parts`).
+Each region is explored alone, against all that the others may do: the states
+they publish, the data they write, the events they raise. The exploration is repeated
+until nothing new is found. A region sees at each step any combination of what the
+others have ever published. So a situation that is not found cannot occur, however the
+tasks interrupt one another. The values of data are divided into *cells*: the literals of
+an enumeration, and for integers the ranges between the numbers that the model
+compares them with. A region of too many nodes is explored more coarsely. A history may then
+remember any leaf that it was ever seen to remember. If that is not enough, the
+values of data are not distinguished. Where the configurations alone are too many,
+the regions of an orthogonal state are explored one by one (`parts`).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from .stepping import Configuration
 from .threads import MOST_QUESTIONS, Cells, Edge, Situation, Thread
 
 PendingStep = tuple[Situation, Configuration, Occurrence | None]
-"""A node, where its step starts, and what it is made for: None for all that may be."""
+"""A node, the configuration where its step starts, and its occurrence; None: all of them."""
 
 
 class Reachable:
@@ -96,14 +96,14 @@ class Reachable:
                 yield activity.while_in.state
 
     def _user_bodies(self) -> None:
-        """A body of the user's may write anything in its types, and so may a command give."""
+        """Allow every value for data that a body of the user's or a command writes."""
         outside = self.component.from_outside()
         for name, cells in self.cells.items():
             if name[1] in outside:
                 self.values[name] = set(range(len(cells)))
 
     def regions(self) -> set[str]:
-        """The names of the regions, which publish where they are."""
+        """The names of the regions, which publish their active states."""
         return {region.name for region in self.component.regions}
 
     # --- terms
@@ -116,7 +116,7 @@ class Reachable:
 
     @cached_property
     def typed(self) -> list[Term]:
-        """That variables lie in their types, and parameters are those of an instance."""
+        """That variables lie in their types, and that parameters are those of one instance."""
         typed = [
             logic.within(self.symbol(name), type_)
             for name, type_ in self.types.items()
@@ -140,11 +140,11 @@ class Reachable:
         return z3.And(value >= low, value <= high)
 
     def of_node(self, thread: Thread, cells: Cells) -> list[Term]:
-        """What a node says about the data of its thread."""
+        """That the data of a thread are in the cells of a node."""
         return [self.cell_terms[pair] for pair in zip(thread.own, cells, strict=True)]
 
     def of_others(self, thread: Thread) -> list[Term]:
-        """What is known about all that others write and publish."""
+        """The known limits on the data and states that other threads write and publish."""
         found = [
             z3.Or([self.in_cell(name, self.symbol(name), cell) for cell in sorted(cells)])
             for name, cells in self.values.items()
@@ -156,7 +156,7 @@ class Reachable:
         return found
 
     def _seen_of_others(self, thread: Thread) -> object:
-        """Tells apart what is known of others at different times: it only ever grows."""
+        """A key of the knowledge about others, which only grows."""
         values = (len(cells) for name, cells in self.values.items() if name not in thread.own)
         states = (len(found) for name, found in self.published.items() if name != thread.name)
         return (*values, *states)
@@ -172,7 +172,7 @@ class Reachable:
     # --- the search
 
     def _run(self) -> None:
-        """Look at each thread again until none shows the others anything new."""
+        """Explore each thread again until none shows the others anything new."""
         while True:
             before = self._shown()
             for thread in self.threads:
@@ -181,7 +181,7 @@ class Reachable:
                 return
 
     def _look_at(self, thread: Thread) -> None:
-        """Explore a thread as finely as it can be, until its histories have nothing new."""
+        """Explore a thread as finely as possible, until its histories have nothing new."""
         while True:
             recalls = thread.recalls()
             try:
@@ -200,7 +200,7 @@ class Reachable:
         )
 
     def _explore(self, thread: Thread) -> None:
-        """Every node of a thread, nearest first."""
+        """Find every node of a thread, nearest first."""
         solver = logic.solver()
         others = self.of_others(thread)
         solver.add(*self.typed, *others)
@@ -225,7 +225,7 @@ class Reachable:
                             waiting.extend((Situation(p, cells), both, o) for p, both, o in met)
 
     def _arrive(self, thread: Thread, edge: Edge) -> Iterator[PendingStep]:
-        """Note an edge; what is to be looked at when the node that it leads to is new."""
+        """Note an edge; the steps to make when it leads to a new node."""
         after = edge.after
         thread.edges.append(edge)
         self._show(thread, edge)
@@ -244,7 +244,7 @@ class Reachable:
                 yield Situation(part, after.cells), both, occurrence
 
     def _show(self, thread: Thread, edge: Edge) -> None:
-        """What others may see of a step."""
+        """Publish the states, data and events of a step to the other threads."""
         after = edge.after
         if thread.name in self.published:
             self.published[thread.name].add(after.configuration.active)
@@ -257,7 +257,7 @@ class Reachable:
             self.events.add(done_of(self.component, thread.name) if event == DONE else event)
 
     def occurrences(self, thread: Thread, at: Configuration) -> Iterator[Occurrence]:
-        """What a step may be made for in a configuration."""
+        """The occurrences that a step may be made for in a configuration."""
         tree = thread.tree
         if at.stopped:
             return
@@ -299,7 +299,7 @@ class Reachable:
     def _outcomes(
         self, thread: Thread, at: Configuration, occurrence: Occurrence
     ) -> tuple[Outcome, ...]:
-        """The same as coarsely as a thread is looked at."""
+        """The same, as coarsely as a thread is explored."""
         key = (at, occurrence)
         if key not in thread.steps:
             contested = None if thread.parts is None else thread.parts.contested(at)

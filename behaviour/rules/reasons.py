@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Why a transition never fires."""
+"""The reasons why a transition is never taken."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ from .stepping import Beaten, Defeat
 from .threads import Edge, Thread
 
 MOST_GUARDED = 64
-"""Steps at most in which the guard of one transition is looked at."""
+"""Steps at most in which the guard of one transition is evaluated."""
 
 Possible = Callable[[Edge, Term], bool]
-"""Whether some data let a step be made and meet a condition besides."""
+"""Whether some data let a step be made and also meet a condition."""
 
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
-    """What keeps a transition from firing, as ``NAME is never taken: TEXT``."""
+    """The reason why a transition is never taken, as ``NAME is never taken: TEXT``."""
 
     text: str
     change: str
-    """What to do about it, as the beginning of a hint."""
+    """The correction, as the beginning of a hint."""
     removal: str
-    """How the transition is removed instead, as its end: ``remove NAME``."""
+    """The removal instead of the correction, as the end of a hint: ``remove NAME``."""
     notes: tuple[tuple[Origin, str], ...] = ()
     successor: str = ""
-    """What would happen if it were removed, where that is not the end of it."""
+    """The effect of the removal, where another transition may be taken instead."""
     is_guard: bool = False
-    """Whether nothing comes before it: its guard, or what makes it due, is in its way."""
+    """Whether nothing comes before it: its own guard or trigger is the reason."""
 
 
 def in_front(tree: ChartTree, transition: Transition, earlier: Sequence[str]) -> Obstacle:
-    """Transitions of the same source and trigger, one of which always fires."""
+    """The obstacle of earlier transitions: same source and trigger, and one is always taken."""
     found = [t for t in tree.region.transitions if t.name in earlier]
     notes = tuple((t.origin, f"{t.name} is earlier in the model") for t in found)
     text = f"{_and(t.name for t in found)} always comes before it"
@@ -50,7 +50,7 @@ def in_front(tree: ChartTree, transition: Transition, earlier: Sequence[str]) ->
 
 
 def beaten(tree: ChartTree, transition: Transition, found: Sequence[Beaten]) -> Obstacle:
-    """What another region does instead of the transition, which is enabled."""
+    """The obstacle in another region, which defers or acts instead of the enabled transition."""
     name, source = transition.name, transition.source
     states = [b.by for b in found if b.why is Defeat.DEFERRAL]
     if states:
@@ -74,7 +74,7 @@ def beaten(tree: ChartTree, transition: Transition, found: Sequence[Beaten]) -> 
 def taken_inside(
     reach: Reachable, thread: Thread, transition: Transition, possible: Possible
 ) -> Obstacle | None:
-    """What states inside the source always do before the transition is looked at."""
+    """The obstacle in states inside the source, which always defer or take a transition first."""
     tree, source = thread.tree, transition.source
     if source not in tree.states or not tree.states[source].regions:
         return None
@@ -115,7 +115,7 @@ def taken_inside(
 def _inside(
     tree: ChartTree, transition: Transition, firing: Sequence[str], deferring: Sequence[str]
 ) -> Obstacle:
-    """Transitions and deferrals of states inside the source take everything."""
+    """The obstacle of transitions and deferrals of states inside the source."""
     source = transition.source
     said, changes = [], []
     if deferring:

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""When the rows of an instance run: the k-th execution of a row, and what comes before it.
+"""When the rows of an instance run: the k-th execution of a row, and those before it.
 
-Every execution is taken to need no time, so that it happens at its release: by
+Every execution is assumed to take no time, so that it happens at its release: by
 priority where several are released at once, in table order in one processor. A
-real program may run so, which makes a trace that fits in here a feasible one.
+real program may run so. So a trace that fits this schedule is feasible.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def schedules(system: System, component: Component) -> Iterator[tuple[str, Rows]
 
 
 def in_one_table(system: System, component: Component, one: str, other: str) -> bool:
-    """Whether two rows are in one table in every instance, so that neither interrupts the other."""
+    """Whether two rows share a table in every instance, so that neither interrupts the other."""
     for instance in system.instances:
         if instance.component.name != component.name:
             continue

@@ -3,10 +3,10 @@
 
 """Search for a way from the start to a bad situation that some schedule really takes.
 
-The regions and flows that matter are run together, one step at a time, in every
-order; data are terms over what came from outside. A way that ends in a bad
-situation counts when z3 finds a schedule for it (`timing`). What is found has a
-trace; that nothing is found proves nothing.
+The search runs the regions and flows that matter together, one step at a time, in
+every order. Data are terms over values from outside. A way that ends in a bad
+situation counts when z3 finds a schedule for it (`timing`). A violation that is found
+has a trace. A search that finds none proves nothing.
 """
 
 from __future__ import annotations
@@ -36,19 +36,19 @@ from .threads import Thread
 from .timing import TimedWay
 
 MOST_SITUATIONS = 300
-"""Situations that one search looks at."""
+"""Situations that one search explores at most."""
 
 OUTSIDE: Mapping[Variable, Term] = MappingProxyType({})
-"""What an event from outside carries: anything."""
+"""The value of an event from outside: any."""
 NOTHING: Mapping[Variable, Term] = MappingProxyType({})
-"""What all but events carry."""
+"""The value of an occurrence that is no event: none."""
 
 Queued = tuple[str, tuple[tuple[str | None, Term], ...]]
 """An event that waits, with the value that it carries."""
 Kept = tuple[Queued, bool]
 """A deferred event, and whether a state that defers it has been left since."""
 Status = tuple[Configuration, tuple[Queued, ...], tuple[Kept, ...], frozenset[str]]
-"""Of one thread: its control, its queue, what it has deferred, and time-outs that were lost."""
+"""Of one thread: its control, its queue, its deferred events, and time-outs that were lost."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,7 +70,7 @@ class SearchMove:
     condition: Term
     point: Point
     raisers: tuple[str, ...]
-    """Rows one of which must have run just before, as it raised the event."""
+    """Rows of which one must have run just before, because it raised the event."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +104,7 @@ class WaySearch:
         self.counts: dict[tuple[str, str, int], Term] = {}
 
     def violation(self) -> Violation | None:
-        """The first violation that is found."""
+        """The first violation found."""
         if any(t.tree.region.steps_per_execution > 1 for t in self.threads):
             return None
         seen: set[str] = set()
@@ -137,7 +137,7 @@ class WaySearch:
         return None
 
     def start(self) -> Point:
-        """Before anything has run."""
+        """The situation before anything has run."""
         status = {}
         for thread in self.threads:
             is_region = thread.name in self.reach.published
@@ -154,7 +154,7 @@ class WaySearch:
         number: int,
         carried: Mapping[Variable, Term] = NOTHING,
     ) -> Term:
-        """A term in a situation; what comes from outside is what step ``number`` reads."""
+        """A term in a situation; its values from outside are those that step ``number`` reads."""
         if term.get_id() not in self.known:
             found = logic.unknowns([term])
             self.known[term.get_id()] = term, [self.names[name] for name in found]
@@ -177,11 +177,11 @@ class WaySearch:
         return z3.simplify(z3.substitute(term, *pairs)) if pairs else term
 
     def is_outside(self, name: Variable) -> bool:
-        """Whether data are written by a body of the user's, or come by a command."""
+        """Whether a body of the user's or a command writes the data."""
         return name[1] in self.reach.component.from_outside()
 
     def read(self, name: Variable, number: int) -> Term:
-        """What a step reads from outside."""
+        """The unknown for a value from outside that a step reads."""
         return logic.symbol(f"{name}@{number}", self.reach.types[name])
 
     def possible(self, point: Point, *conditions: Term) -> bool:
@@ -199,12 +199,12 @@ class WaySearch:
         return bool(self.reach.budget.ask(solver) == z3.sat)
 
     def typed(self, name: Variable, term: Term) -> list[Term]:
-        """That what is read from outside lies in its type."""
+        """That a value read from outside lies in its type."""
         type_ = self.reach.types[name]
         return [] if type_ == BOOLEAN else [logic.within(term, type_)]
 
     def outside_in(self, terms: Iterable[Term]) -> dict[tuple[Variable, int], Term]:
-        """What terms hold of what was read from outside, with the steps that read it."""
+        """The values from outside in some terms, with the number of the step that read each."""
         found = {}
         for text, term in logic.unknowns(terms).items():
             name, _, number = text.rpartition("@")
@@ -215,7 +215,7 @@ class WaySearch:
     # --- steps
 
     def moves(self, point: Point) -> Iterator[SearchMove]:
-        """The situations one step further; their way is still that to the one before."""
+        """The situations one step further, still with the way to the situation before."""
         number = len(point.way.steps)
         for thread in self._turns(point):
             for occurrence, carried in self.occurrences(thread, point):
@@ -227,7 +227,7 @@ class WaySearch:
                         yield SearchMove(thread.name, outcome, condition, after, rows)
 
     def _raisers(self, occurrence: Occurrence, carried: Mapping[Variable, Term]) -> tuple[str, ...]:
-        """The rows that an event from outside comes by; none when it comes at any time."""
+        """The rows that raise an event from outside; none when it comes at any time."""
         rows = self.external.get(occurrence.subject, []) if carried is OUTSIDE else []
         return () if None in rows else tuple(row for row in rows if row in self.rows)
 
@@ -335,7 +335,7 @@ class WaySearch:
                 status[other.name] = (at, queue, kept, lost)
 
     def released(self, thread: Thread, at: Configuration, kept: tuple[Kept, ...]) -> int | None:
-        """The oldest deferred event that is due."""
+        """The index of the oldest deferred event that is due."""
         for index, ((event, _), free) in enumerate(kept):
             if free or not any(event in thread.tree.states[name].defers for name in at.active):
                 return index
@@ -344,7 +344,7 @@ class WaySearch:
     def occurrences(
         self, thread: Thread, point: Point
     ) -> Iterator[tuple[Occurrence, Mapping[Variable, Term]]]:
-        """What a thread's next step may be made for, with what it carries."""
+        """The occurrences that a thread's next step may be made for, with their values."""
         at, queue, kept, lost = point.status[thread.name]
         if at.stopped:
             return
@@ -374,7 +374,7 @@ class WaySearch:
     # --- words
 
     def told(self, way: TimedWay) -> str:
-        """A way: each step with its region when there are several."""
+        """A way as text: each step, with its region when there are several."""
         several = len({made.thread for made in way.steps}) > 1
         parts: list[str] = []
         last: str | None = None
@@ -397,7 +397,7 @@ class WaySearch:
 
 
 def _key(point: Point) -> str:
-    """The same for situations that differ only in the numbers of what they read."""
+    """A key that is equal for situations that differ only in the numbers of their reads."""
     values = [term for _, term in sorted(point.store.items(), key=lambda item: str(item[0]))]
     waiting = [q for s in point.status.values() for q in (*s[1], *(kept for kept, _ in s[2]))]
     queued = [t for q in waiting for _, t in q[1]]
@@ -427,7 +427,7 @@ def _key(point: Point) -> str:
 
 
 def _cone(reach: Reachable, bad: Term) -> list[Thread]:
-    """The threads that what a term asks for may depend on."""
+    """The threads that a term may depend on."""
     wanted: set[str] = set()
     asked = [bad]
     events: set[str] = set()

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""One step of a region, with data as terms: what can come of it, and when.
+"""One step of a region, with data as terms: its outcomes, and their conditions.
 
-A `OpenStep` follows docs/semantics.md like an interpreter does. Where it has to know
-whether a condition holds, it asks; `outcomes` runs it once for each series of
+An `OpenStep` follows docs/semantics.md as an interpreter does. Where it has to know
+whether a condition holds, it asks. `outcomes` runs it once for each series of
 answers that some data allow.
 """
 
@@ -26,7 +26,7 @@ from .logic import Questions, Term, Variable, term, variable
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """Where the control of a region is; all but ``history`` in tree order."""
+    """The control of a region; all but ``history`` in tree order."""
 
     active: tuple[str, ...] = ()
     completed: tuple[str, ...] = ()
@@ -34,19 +34,19 @@ class Configuration:
     pending: tuple[str, ...] = ()
     """Those whose completion has not had its step."""
     done: tuple[str, ...] = ()
-    """Active states whose do activity has said so."""
+    """Active states whose do activity is done."""
     history: tuple[tuple[RegionKey, str], ...] = ()
     stopped: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rival:
-    """A transition that was not looked at, as one with the same trigger came before it."""
+    """A transition that was not tried, because one with the same trigger came before it."""
 
     first: str
     second: str
     condition: Term
-    """When the second could have fired as well."""
+    """Under which the second could have been taken as well."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,19 +65,19 @@ class StuckStep(Exception):  # noqa: N818
 
 
 class Defeat(Enum):
-    """Why a transition that was selected has not fired."""
+    """Why a transition that was selected has not been taken."""
 
     DEFERRAL = 1
     """A state of another region defers the event."""
     CONFLICT = 2
-    """A transition that fired before leaves what this one starts from."""
+    """A transition taken before leaves the source of this one."""
     END = 3
-    """A transition that fired before ends the region."""
+    """A transition taken before ends the region."""
 
 
 @dataclass(frozen=True, slots=True)
 class Beaten:
-    """A transition that was selected and not fired, for a transition or a deferring state."""
+    """A transition that was selected and not taken, for a transition or a deferring state."""
 
     transition: str
     by: str
@@ -94,10 +94,10 @@ class OpenStep:
     questions: Questions
     decide: Callable[[Term], bool]
     recall: Callable[[RegionKey], str | None] = lambda slot: None
-    """What a region remembers of which this step and the configuration before say nothing."""
+    """The leaf that a region remembers, unless this step or the configuration before has it."""
     contested: Mapping[Variable, Term] | None = None
-    """Where ``before`` is a part of a configuration (`parts`): what may be set by regions that it
-    says nothing about, with what stands for it once the step has selected."""
+    """Where ``before`` is a part of a configuration (`parts`): the data that other active regions
+    may set, each with the unknown for it once the step has selected."""
     active: set[str] = field(init=False)
     history: dict[RegionKey, str | None] = field(init=False)
     store: dict[Variable, Term] = field(default_factory=dict)
@@ -112,7 +112,7 @@ class OpenStep:
     deferred: bool = False
     firing: bool = False
     noted: list[Any] = field(default_factory=list)
-    """What a step that is watched has to tell."""
+    """The notes of a watched step."""
 
     def __post_init__(self) -> None:
         self.active = set(self.before.active)
@@ -148,7 +148,7 @@ class OpenStep:
         return self.questions.term(expression)
 
     def holds(self, expression: Expression | None) -> bool:
-        """Whether a condition holds now; no condition holds."""
+        """Whether a condition holds now; a missing condition holds."""
         return expression is None or self.decide(self.value(expression))
 
     def perform(self, flow: Flow) -> None:
@@ -166,7 +166,7 @@ class OpenStep:
                     self.merge(action)
 
     def merge(self, action: If) -> None:
-        """Run both branches, and take from each what it sets where it is taken."""
+        """Run both branches; each variable gets the value of the branch that is taken."""
         condition = self.value(action.condition)
         before = self.store
         self.store = dict(before)
@@ -181,7 +181,7 @@ class OpenStep:
     # --- selection
 
     def select(self) -> list[TransitionPath]:
-        """What each lane selects, in lane order; nothing when the event is deferred."""
+        """The selection of each region, in model order; nothing when the event is deferred."""
         chosen: list[TransitionPath] = []
         deferring: list[str] = []
         busy: set[str] = set()
@@ -206,7 +206,7 @@ class OpenStep:
         return [] if self.deferred else chosen
 
     def select_in(self, chain: Sequence[str]) -> TransitionPath | DeferredStep | None:
-        """The first enabled transition of the states of a lane, innermost first."""
+        """The first enabled transition of the states of a region, innermost first."""
         for name in chain:
             path = self.first_of(self.tree.triggered(name, self.occurrence))
             if path is not None:
@@ -257,7 +257,7 @@ class OpenStep:
         return None if rest is None else (*incoming, *rest)
 
     def has_completed(self, state: str) -> bool:
-        """Whether a source of a join has completed; where nothing is known of its region, yes."""
+        """Whether a source of a join has completed; yes where its region is unknown."""
         if state in self.before.completed or self.contested is None:
             return state in self.before.completed
         lane = self.tree.lane_of[state]
@@ -266,7 +266,7 @@ class OpenStep:
     # --- firing
 
     def fire_all(self, paths: Sequence[TransitionPath]) -> None:
-        """Fire what was selected; what an earlier firing conflicts with is dropped."""
+        """Take the selected transitions; one that conflicts with an earlier one is dropped."""
         self.firing = True
         made: list[TransitionPath] = []
         leaving: dict[str, TransitionPath] = {}
@@ -303,7 +303,7 @@ class OpenStep:
         return path[0].source
 
     def goal(self, path: TransitionPath) -> str:
-        """Where it leads: for a fork, the orthogonal state."""
+        """Its target: for a fork, the orthogonal state around the targets."""
         target = path[-1].target
         if self.tree.kinds.get(target) is PseudoKind.FORK:
             targets = tuple(t.target for t in self.tree.outgoing[target])
@@ -319,7 +319,7 @@ class OpenStep:
         return self.tree.common(source, goal)
 
     def fire(self, path: TransitionPath) -> None:
-        """Fire a compound transition: exits, effects, entries."""
+        """Take a compound transition: exits, effects, entries."""
         if path[0].kind is TransitionKind.INTERNAL:
             self.effect(path[0])
             return
@@ -378,7 +378,7 @@ class OpenStep:
                 self.left.add(name)
 
     def remember(self, name: str) -> None:
-        """Keep the last leaf of each region around, for histories."""
+        """Keep the last leaf of each enclosing region, for histories."""
         state = self.tree.states[name]
         if len(state.regions) == 1:
             return
@@ -390,7 +390,7 @@ class OpenStep:
             self.history[own] = None
 
     def enter(self, path: Sequence[str], fork: str | None = None) -> None:
-        """Enter the states of a path, the last vertex with what it (or a fork) leads to."""
+        """Enter the states of a path, then the targets of a fork or the default ones."""
         first, *rest = path
         if first in self.tree.kinds:
             self.arrivals.append(first)
@@ -422,7 +422,7 @@ class OpenStep:
         self.enter(self.tree.path(initial.target, slot))
 
     def restore(self, vertex: str, *, deep: bool) -> None:
-        """Enter what a history remembers, or by its default."""
+        """Enter the states that a history remembers, or its default."""
         slot = self.tree.slots[vertex]
         last = self.last(slot)
         if last is None:
@@ -459,7 +459,7 @@ class OpenStep:
     # --- the end
 
     def configuration(self) -> Configuration:
-        """Where the step has led, with the completions that it has made."""
+        """The configuration after the step, with the completions that the step made."""
         tree = self.tree
         if self.stopped:
             return Configuration(tree.ordered(self.active), stopped=True)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""One region as it was seen so far: its nodes, its steps, and how finely it is looked at."""
+"""One region as explored so far: its nodes, its steps, and how finely it is explored."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from .stepping import Configuration
 Steps = dict[tuple[Configuration, Occurrence], tuple[Outcome, ...]]
 """The outcomes of steps, data aside."""
 Cells = tuple[int, ...]
-"""For each variable that a region writes and tells apart, the cell that it is in."""
+"""The cell of each variable that a region writes and distinguishes."""
 
 MOST_NODES = 1_000
-"""A region of more is looked at more coarsely."""
+"""A region of more nodes is explored more coarsely."""
 MOST_QUESTIONS = 1_500
-"""So is one that needs more answers of z3 to tell its data apart."""
+"""A region that needs more answers of z3 for its data is explored more coarsely."""
 MOST_CONFIGURATIONS = 3_000
-"""A region of more, data and histories aside, is looked at in parts."""
+"""A region of more configurations, data and histories aside, is explored in parts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,25 +48,25 @@ class Edge:
 
 @dataclass
 class Thread:
-    """A region, or an activity with a flow (a region of one state), and what it was seen to do."""
+    """A region, or an activity with a flow (a region of one state), with its nodes and edges."""
 
     tree: ChartTree
     own: tuple[Variable, ...]
     types: Mapping[Variable, ScalarType]
     nodes: dict[Situation, Edge | None] = field(default_factory=dict)
-    """Each with the edge that leads to it on a shortest way."""
+    """Each node with the edge that leads to it on a shortest way."""
     edges: list[Edge] = field(default_factory=list)
     questions: int = 0
     past: dict[RegionKey, set[str]] | None = None
-    """What each region inside was seen to remember, where no node says it."""
+    """The leaves that each region inside was seen to remember, where nodes do not have them."""
     steps: Steps = field(default_factory=dict)
     exact: Steps = field(default_factory=dict)
     """The same with histories, where ``steps`` are without."""
     known: dict[tuple[object, ...], tuple[Cells, ...]] = field(default_factory=dict)
     answers: dict[tuple[object, ...], tuple[Term, bool]] = field(default_factory=dict)
-    """Whether a condition can be met, with the condition, which keeps its number."""
+    """Whether a condition can be met, with the condition, so that it keeps its number."""
     parts: RegionParts | None = None
-    """Where configurations are looked at in parts."""
+    """Where configurations are explored in parts."""
 
     @property
     def name(self) -> str:
@@ -74,25 +74,25 @@ class Thread:
         return self.tree.region.name
 
     def begin(self, start: Situation) -> None:
-        """Forget what was seen, but for what steps come to."""
+        """Forget nodes and edges, but keep the outcomes of steps."""
         self.nodes, self.edges = {start: None}, []
         if self.parts is not None:
             self.parts.clear()
 
     @property
     def tells_more(self) -> bool:
-        """Whether data or histories are told apart."""
+        """Whether the nodes distinguish data or histories."""
         return bool(self.own) or (self.past is None and bool(self.tree.remembered))
 
     @property
     def most(self) -> int | None:
-        """How many nodes it may have until it is looked at more coarsely."""
+        """How many nodes it may have before it is explored more coarsely."""
         if self.tells_more:
             return MOST_NODES
         return None if self.parts is not None or not self.tree.orthogonal else MOST_CONFIGURATIONS
 
     def look_coarser(self) -> None:
-        """Forget what histories remember, or else the data, or else what regions are together."""
+        """Drop the histories, or else the data, or else the combinations of regions."""
         if self.past is None and self.tree.remembered:
             self.past, self.exact, self.steps = {}, self.steps, {}
         elif self.own:
@@ -105,11 +105,11 @@ class Thread:
         self.answers.clear()
 
     def places(self, at: Configuration) -> Iterable[Configuration]:
-        """A configuration, or the parts of it that are looked at."""
+        """A configuration, or the parts of it that are explored."""
         return (at,) if self.parts is None else self.parts.of(at)
 
     def remember(self, outcome: Outcome) -> None:
-        """Note what a step remembers; the steps that recall it have further outcomes then."""
+        """Note the leaves that a step remembers; steps that recall them are made again."""
         if self.past is None:
             return
         grown = set()
@@ -124,5 +124,5 @@ class Thread:
             }
 
     def recalls(self) -> int:
-        """How much is known of what histories remember."""
+        """The number of leaves that histories were seen to remember."""
         return sum(len(leaves) for leaves in (self.past or {}).values())

@@ -3,9 +3,9 @@
 
 """Whether a schedule takes a way: the path formula of a search's steps.
 
-Each step happens in some execution of its row; the executions that are not on the
-way must have had nothing to do. Time-outs count executions; what comes from
-outside changes only when the port region, or the user's body, runs.
+Each step happens in some execution of its row. The executions that are not on the
+way must have had nothing to do. Time-outs count executions. Values from
+outside change only when the port region or the user's body runs.
 """
 
 from __future__ import annotations
@@ -44,17 +44,17 @@ class TimedStep:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TimedWay:
-    """Steps from the start, and what a schedule must meet to make them."""
+    """Steps from the start, and the terms that a schedule must meet to make them."""
 
     search: WaySearch
     steps: tuple[TimedStep, ...] = ()
     terms: tuple[Term, ...] = ()
     added: tuple[Term, ...] = ()
-    """Those of them that the last step has added."""
+    """The terms that the last step has added."""
     due: Mapping[str, Mapping[str, Term]] = field(default_factory=dict)
-    """For each thread its running time-outs, with the execution each is due in."""
+    """The running time-outs of each thread, each with the execution in which it is due."""
     latest: Mapping[str, int] = field(default_factory=dict)
-    """For each thread its latest step."""
+    """The latest step of each thread."""
     reads: tuple[tuple[Variable, Term, Term], ...] = ()
     """Values from outside, each with how often its writer has run before."""
 
@@ -104,7 +104,7 @@ class TimedWay:
         return terms
 
     def model(self, bad: Term) -> Term | None:
-        """Data and times with which the way is taken, and its end is bad."""
+        """Data and times with which the way is taken and ends in a bad situation."""
         reads = [*self.reads]
         terms = [*self.terms, *self.ending(), bad]
         for (name, _), symbol in self.search.outside_in([bad]).items():
@@ -118,7 +118,7 @@ class TimedWay:
         return solver.model() if solver.check() == z3.sat else None
 
     def data(self, model: Term, bad: Term) -> str:
-        """What came from outside, where it decides."""
+        """The values from outside that decide, as text."""
         found = []
         read = self.search.outside_in([*self.terms, bad])
         for (name, number), symbol in sorted(read.items(), key=lambda item: item[0][1]):
@@ -144,7 +144,7 @@ class TimedWay:
         return self.search.counts[key]
 
     def _just_raised(self, made: TimedStep, name: str) -> Term:
-        """That a row has run since the execution before a step, so that it may have raised."""
+        """That a row has run since the execution before a step, so that it may raise its event."""
         raiser = self.search.rows[name]
         moment = made.row.moment(made.execution - 1)
         earlier = raiser.executions_before(moment, made.row.turn)
@@ -235,7 +235,7 @@ class TimedWay:
         moment: Term,
         turn: int,
     ) -> list[Term]:
-        """Between two runs of what writes it, a value from outside does not change."""
+        """That a value from outside does not change between two runs of its writer."""
         writer = self._writer(name)
         if writer is None or writer not in self.search.rows:
             return []
@@ -253,7 +253,7 @@ class TimedWay:
         return terms
 
     def _writer(self, name: Variable) -> str | None:
-        """The row that a value from outside comes by."""
+        """The row that writes a value from outside."""
         if name[0] in ("port", "port state"):
             return PORTS
         if name[0] == "data":

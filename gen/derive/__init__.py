@@ -1,4 +1,4 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What follows from a resolved system: distribution, tables, priorities, tasks, identifiers."""
+"""Consequences of a resolved system: distribution, tables, priorities, tasks, identifiers."""

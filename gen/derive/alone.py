@@ -3,11 +3,11 @@
 
 """An instance by itself: the system in which a component is tested as a unit.
 
-Nothing is connected: what comes to its ports comes from outside, or not at all. An activity whose
-body is the user's has a stub. For each data item that it writes there is an input port
-``<item>_given``, and what arrives there is written. The events that it raises come from outside.
-So it does all that its declaration lets it do, and nothing else. What a command that the component
-requires has read or replied is given alike.
+Nothing is connected: values come to its ports from outside, or not at all. An activity whose body
+is the user's has a stub. For each data item that the activity writes there is an input port
+``<item>_given``, whose values are written. The events that it raises come from outside. So the
+stub does all that the declaration allows, and nothing else. Values that a required command reads
+or replies come through such ports as well.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ REPLIES = ""
 
 
 def hindrance(component: Component) -> str | None:
-    """What keeps its instances from standing alone; None where nothing does."""
+    """The reason why its instances cannot stand alone; None where they can."""
     for one in component.provides:
         if one.server is not None and named(component.activities, one.server).flow is None:
             return f"the user's {one.server} serves its interface {one.name}"
@@ -120,7 +120,7 @@ def _only(processor: Processor, instance: str) -> Processor:
 def _with_rows(
     processors: Sequence[Processor], instance: Instance, component: Component
 ) -> tuple[Processor, ...]:
-    """With rows for what only the component that stands alone has, in front of all others."""
+    """With rows, in front of all others, for the parts that only the lone component has."""
     first = min(processors, key=lambda one: (one.released_by is not None, one.period))
     rows: list[Slot] = []
     if instance.component.port_region is None and component.port_region is not None:
@@ -133,7 +133,7 @@ def _with_rows(
 
 
 def _with_stubs(component: Component) -> Component:
-    """The component without what only others can give it, and with stubs."""
+    """The component with stubs, and without the parts that only others can serve."""
     given = _given(component)
     ports = [replace(port, is_command=False, is_void=False) for port in component.ports]
     ports += [port for some in given.values() for port in some.values()]
@@ -246,7 +246,7 @@ def _is_known(condition: Expression) -> bool:
 
 
 def _of_given(condition: Expression, given: dict[str, Port]) -> Expression:
-    """What a clause says of the values before the execution and of those that were given."""
+    """The clause over the values before the execution and those that were given."""
     match condition:
         case Operation(operands=operands):
             inner = tuple(_of_given(one, given) for one in operands)

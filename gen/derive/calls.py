@@ -100,7 +100,7 @@ def published_by(binding: Binding) -> str | None:
 
 
 def readers_through(system: System, instance: str, item: str) -> tuple[str, ...]:
-    """The rows that read a data item through a command: published, or a stand-in."""
+    """The rows that read a data item through a command: a published item, or a fallback."""
     found: list[str] = []
     for binding in system.bindings:
         provider, stand_in = binding.provider, binding.need.stand_in

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What follows from a valid model: tables, priorities, tasks and shared objects.
+"""Consequences of a valid model: tables, priorities, tasks and shared objects.
 
-All times in ns, every figure on the safe side.
+All times are in ns, and every figure is on the safe side.
 """
 
 from __future__ import annotations
@@ -80,10 +80,10 @@ def prioritised(processors: Sequence[Processor]) -> tuple[Processor, ...]:
 def tasks_of(system: System) -> tuple[Task, ...]:
     """Processors in model order, then for each message the driver's work on it.
 
-    A driver has two tasks, one that receives and one that transmits, both of
-    the priority above all processors. Each serves a frame at a time, so what it
-    does is described by one entry for each message, at the message's period: it
-    follows the processor that sends the frame, or the frame's arrival.
+    A driver has two tasks, one that receives and one that transmits, both of the priority
+    above all processors. Each serves one frame at a time, so one entry for each message, at
+    the message's period, describes its work. The processor that sends the frame, or the
+    frame's arrival, releases the entry.
     """
     tasks = [
         Task(
@@ -160,7 +160,7 @@ def tasks_of(system: System) -> tuple[Task, ...]:
 
 
 def driver_core(system: System, bus: Bus, node: str) -> int:
-    """The core of a bus's driver on a node: that of its reception, or else of what sends first."""
+    """The core of a bus's driver on a node: that of its reception, or else of the first sender."""
     for processor in system.processors:
         if processor.released_by == bus.name and processor.node == node:
             return processor.core
@@ -175,7 +175,7 @@ def driver_core(system: System, bus: Bus, node: str) -> int:
 
 
 def programs(system: System) -> tuple[System, ...]:
-    """What runs on each node, as a system of its own; the system itself where there is one node.
+    """The part of the system on each node, as a system of its own; with one node all of it.
 
     Nodes without a processor have no program, and a bus that the node only knows has no code.
     """
@@ -204,8 +204,8 @@ def on_one_node(system: System) -> System:
 def objects_of(system: System) -> tuple[SharedObject, ...]:
     """Every protected object of the generated programs, with its users and ceiling.
 
-    ``system`` has its tasks. Where there are several nodes, what each of them has by
-    the same name has that of its node in front.
+    ``system`` has its tasks. Where there are several nodes, objects that each of them has by
+    the same name have the node's name in front.
     """
     parts = programs(system)
     if len(parts) == 1:

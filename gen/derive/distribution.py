@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Components on several nodes: what travels between them, and what runs on each.
+"""Components on several nodes: the messages between nodes, and the part on each node.
 
 A connection whose ends are on different nodes becomes a message of the bus; neither
-component knows. The program of a node is that of a system which has this node only:
-what comes from another is, to it, a message from outside.
+component knows. The program of a node is that of a system which has this node only: a
+message of another node is one from outside there.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ Check = TypeVar("Check", Protection, Authentication)
 class Carrier:
     """Makes messages of the connections between nodes.
 
-    There is one of each output port, called like instance and port, with the period of
-    what sends it, unless the model has a message of that port; then it has more targets.
-    What no classic frame can carry is CAN FD where the bus has a rate for that.
+    Each output port has one message, called like instance and port, with the period of its
+    sender. A message that the model has for the port gets more targets instead. A value that
+    no classic frame can carry goes by CAN FD where the bus has a rate for that.
     """
 
     instances: Mapping[str, Instance]
@@ -53,8 +53,8 @@ class Carrier:
     ) -> tuple[tuple[Connection, ...], tuple[Message, ...]]:
         """The connections that are left, and all messages.
 
-        Left are those inside a node, and between nodes those that no message can carry:
-        the rules say of them what is missing.
+        Connections inside a node are left, and those between nodes that no message can carry:
+        the rules report why.
         """
         left: list[Connection] = []
         found = {message.name.lower(): message for message in messages}
@@ -106,9 +106,9 @@ class Carrier:
 def with_nodes(system: System) -> System:
     """The system with a node for each of its processors.
 
-    Without `node` a processor is where the instance of its first row is; and one that is
-    released by a bus is on every node that receives from it, with the node's name behind
-    its own where there are several.
+    Without `node` a processor is where the instance of its first row is. A processor that a
+    bus releases is on every node that receives from that bus. Where there are several such
+    nodes, the node's name stands behind that of the processor.
     """
     found: list[Processor] = []
     for processor in system.processors:
@@ -189,7 +189,7 @@ def without_idle_buses(system: System) -> System:
 
 
 def part_of(system: System, node: Node) -> System:
-    """What runs on a node, as a system of its own, without tasks, objects and chains."""
+    """The part of a system on a node, as a system of its own, without tasks, objects and chains."""
     here = {instance.name for instance in system.instances if instance.node == node.name}
     messages = tuple(
         replace(

@@ -3,10 +3,9 @@
 
 """CAN identifiers for messages that have none given, in an order of urgency.
 
-By deadline, as for tasks (Leung and Whitehead 1982), the more urgent goes before the less
-urgent; of two with one deadline the earlier in the model. On a bus this is a good guess,
-and the analysis tells whether it suffices. An order that the analysis found is numbered
-by `with_order`.
+A shorter deadline goes first, as for tasks (Leung and Whitehead 1982); of two messages with one
+deadline the earlier in the model. On a bus this is a good guess, and the analysis shows whether
+it suffices. `with_order` numbers an order that the analysis found.
 """
 
 from __future__ import annotations
@@ -39,8 +38,8 @@ def _numbered(message: Message, place: int) -> Message:
 def identified(messages: Sequence[Message]) -> tuple[Message, ...]:
     """The messages with identifiers: those given are kept, the others by deadline.
 
-    They count from 1 on each bus and step over given ones; of an extended identifier
-    the 11 leading bits count, and the others are 0, so that the order holds for both formats.
+    Numbers count from 1 on each bus and step over given ones. Of an extended identifier the
+    11 leading bits count and the others are 0, so that the order holds for both formats.
     """
     taken = {(m.bus, leading(m)) for m in messages if m.identifier != OPEN}
     chosen: dict[str, Message] = {}

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What is known of a data item whenever it is read, beside its type.
+"""Conditions that a data item meets whenever it is read, beside its type.
 
 An activity that requires a condition must be given data that meet it. A condition on one data
-item alone holds whenever the item is read, if the initial value meets it and the writer keeps
-it: an activity that ensures it, or a region whose code never breaks the invariant.
+item alone holds at every reading if the initial value meets it and the writer keeps it. Such
+a writer is an activity that ensures it, or a region whose code never breaks the invariant.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from ravenchart.gen.model.system import System
 
 
 def kept_of(system: System, component: Component, data: Data) -> tuple[Expression, ...]:
-    """What is known of a data item that an activity's `requires` names; else nothing."""
+    """The conditions that hold of a data item; none where no `requires` of an activity names it."""
     if not any(data.name in _names(clause) for a in component.activities for clause in a.requires):
         return ()
     writers = (row for row in component.runnables() if data.name in row.writes)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the MACs of authenticated messages add to the WCETs of rows."""
+"""The MACs of authenticated messages in the WCETs of rows."""
 
 from __future__ import annotations
 

@@ -1,16 +1,17 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Commands of tasks on other nodes: the messages that carry calls, replies and what is read.
+"""Commands of tasks on other nodes: the messages that carry calls, replies and published data.
 
 As with connections (`distribution`), neither component knows. The calls of a command by an
-instance are one message: a number that tells them apart, and the argument. Where somebody
-waits for replies they are another, with the number of the call, and a chain leads from the
-caller's release through the server to the arrival of the reply, limited as the binding says.
+instance are one message: the number of the call, and the argument. Where the caller waits for
+replies they are another message, with the number of the call. A chain then leads from the
+caller's release through the server to the arrival of the reply, within the binding's limit.
 
-What is read is published: one message for all readers carries it, sent by the row that
-writes it, as often as the fastest of them looks. To ask for it would add a frame and a
-wait. A chain leads from its sending to the reader, whose age is limited as the binding says.
+A data item that readers on other nodes read is published: one message carries it for all of
+them. The row that writes the item sends it, as often as the fastest reader looks. To ask for
+the item would add a frame and a wait. A chain leads from the sending to the reader; the binding
+limits its age.
 """
 
 from __future__ import annotations
@@ -132,7 +133,7 @@ def _names(binding: Binding) -> Iterator[str]:
 def _bound(
     system: System, binding: Binding, made: Mapping[tuple[str, str], Remote | RemoteRead]
 ) -> Binding:
-    """A binding with what carries it; one across nodes that nothing uses leads nowhere."""
+    """A binding with its messages; across nodes without provider where no row uses it."""
     carried = made.get((binding.instance, binding.need.name))
     if carried is not None:
         return replace(binding, provider=carried)
@@ -143,7 +144,7 @@ def _bound(
 
 @dataclass(frozen=True, slots=True)
 class _Call:
-    """What carries one command."""
+    """The messages of one command, with their chains and types."""
 
     providers: Mapping[tuple[str, str], Remote | RemoteRead]
     """By instance and command."""
@@ -153,7 +154,7 @@ class _Call:
 
 
 def _call(system: System, binding: Binding) -> _Call | None:
-    """What carries the command of a binding; None where nothing can, or nothing calls it."""
+    """The messages of a binding's command; None where no message can carry it, or no row calls."""
     need, server = binding.need, binding.provider
     component = system.instance(binding.instance).component
     period = component.send_period(need.name)
@@ -202,20 +203,20 @@ def _call(system: System, binding: Binding) -> _Call | None:
 
 
 def _published_as(binding: Binding) -> str:
-    """The message that carries what is read."""
+    """The message that carries a published data item."""
     assert isinstance(binding.provider, Server)
     return f"{path_name(binding.provider.instance)}_{binding.need.name}"
 
 
 def _writer(system: System, binding: Binding) -> Region | Activity | None:
-    """The row that writes what is read, and sends it; None where none does."""
+    """The row that writes a published data item and sends it; None where none does."""
     assert isinstance(binding.provider, Server)
     rows = system.instance(binding.provider.instance).component.runnables()
     return next((row for row in rows if published_by(binding) in row.writes), None)
 
 
 def _reads(system: System, across: Sequence[Binding]) -> Iterator[_Call]:
-    """What carries the read commands between nodes, for all readers of each."""
+    """The messages of the read commands between nodes, for all readers of each."""
     of: defaultdict[str, list[Binding]] = defaultdict(list)
     for binding in across:
         read = readers(system.instance(binding.instance).component, binding.need)
@@ -226,7 +227,7 @@ def _reads(system: System, across: Sequence[Binding]) -> Iterator[_Call]:
 
 
 def _read(system: System, name: str, bindings: Sequence[Binding]) -> _Call:
-    """What carries a read command to its readers, which are on other nodes."""
+    """The message of a read command to its readers, which are on other nodes."""
     first = bindings[0]
     item, writer, reply = published_by(first), _writer(system, first), first.need.reply
     assert isinstance(first.provider, Server)
@@ -278,7 +279,7 @@ def _laid_out(message: Message, system: System) -> Message:
 
 
 def _numbered(name: str, origin: Origin, carried: Type | None) -> RecordType:
-    """A record of the number of a call, and what is carried with it."""
+    """A record of the number of a call, and its argument or reply."""
     fields: tuple[Field, ...] = ()
     if isinstance(carried, RecordType):
         fields = carried.fields

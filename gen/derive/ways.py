@@ -3,9 +3,9 @@
 
 """The ways that values take through messages, ports, rows and data, for chains.
 
-A row leads to what it writes, to the
-ports that it sends on and, where it is a region, to what asks for its state; of several
-shortest ways the one is meant whose places come first in the model.
+A row leads to the data that it writes and to the ports that it sends on. A region leads also to
+the rows that ask for its state. Of several shortest ways the one is meant whose stops come first
+in the model.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from ravenchart.gen.model.system import Carried, Chain, Gap, Stop, System
 from .calls import published_by, rows_of
 
 Flow = Mapping[Stop, Sequence[Stop]]
-"""What values go to from each place, in model order."""
+"""The stops that values go to from each stop, in model order."""
 
 
 def flow_of(system: System) -> Flow:
-    """Where values go from each place of a system."""
+    """Where values go from each stop of a system."""
     flow: defaultdict[Stop, list[Stop]] = defaultdict(list)
     for instance in system.instances:
         component = instance.component
@@ -67,7 +67,7 @@ def flow_of(system: System) -> Flow:
 def _event_over(
     system: System, flow: Flow, before: Stop, after: Stop
 ) -> tuple[str, str, str] | None:
-    """An event on the way over a gap of a chain: itself, what raises it and the region it is for.
+    """An event over a gap of a chain: itself, the element that raises it and the region it is for.
 
     None where no single event joins both sides.
     """
@@ -102,7 +102,7 @@ def routed(system: System) -> System:
 
 
 def _stop(place: str) -> Stop:
-    """A place as the path of a chain names it: elements have a dot, messages none."""
+    """A stop as the path of a chain names it: elements have a dot, messages none."""
     return place if "." in place else Carried(place)
 
 
@@ -119,7 +119,7 @@ def _routed(chain: Chain, system: System, flow: Flow) -> Chain:
 
 
 def _gap(system: System, flow: Flow, before: Stop, after: Stop) -> Gap:
-    """What is known of two places between which no values go."""
+    """The gap between two stops that no values join, with the reasons."""
     back: defaultdict[Stop, list[Stop]] = defaultdict(list)
     for place, following in flow.items():
         for one in following:
@@ -135,7 +135,7 @@ def _gap(system: System, flow: Flow, before: Stop, after: Stop) -> Gap:
 
 
 def _ends(flow: Flow, first: Stop) -> tuple[str, ...]:
-    """The places behind a place from which nothing goes on."""
+    """The stops behind a stop from which nothing goes on."""
     seen, ahead = {first}, [first]
     for place in ahead:
         new = [one for one in flow.get(place, ()) if one not in seen]
@@ -145,7 +145,7 @@ def _ends(flow: Flow, first: Stop) -> tuple[str, ...]:
 
 
 def _shortest(flow: Flow, first: Stop, last: Stop) -> list[Stop]:
-    """The shortest way between two places, both included; nothing where there is none."""
+    """The shortest way between two stops, both included; nothing where there is none."""
     came_from = {first: first}
     ahead = [first]
     while ahead and last not in came_from:

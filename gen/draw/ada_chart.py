@@ -3,9 +3,9 @@
 
 """The picture of a chart as generated Ada text declares it.
 
-It shows what the declared form says and no more: guards in Ada, targets down to the
-leaves. A composite has no initial state of its own there, final and terminate are
-leaves like others, and behaviours are elsewhere.
+It shows the declared form and no more: guards in Ada, targets down to the leaves. A composite
+has no initial state of its own there, final and terminate are leaves like others, and
+behaviours are elsewhere.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class _Chart:
     # --- states
 
     def _inner_lanes(self) -> Mapping[str, tuple[str, ...]]:
-        """The types of the lanes inside each leaf that a test of their leaves names first."""
+        """The types of the regions inside each leaf that a test of their leaves names first."""
         found: dict[str, dict[str, None]] = {}
         for tests in self.form.conditions.values():
             states = [s for s in map(self._tested, tests) if s is not None]
@@ -72,7 +72,7 @@ class _Chart:
         return {state: tuple(lanes) for state, lanes in found.items()}
 
     def _area(self, name: str, within: str, initial: str | None) -> Area:
-        """What stands in a lane's type or in a composite."""
+        """The vertices in the type of a region's leaves, or in a composite."""
         vertices: list[DrawnVertex] = []
         seen: set[str] = set()
         inner = {c.first: c for c in reversed(self.form.composites) if c.outer == within}
@@ -106,7 +106,7 @@ class _Chart:
     # --- transitions
 
     def _tested(self, condition: str) -> tuple[str, str] | None:
-        """The lane's type and the state that a condition asks for."""
+        """The type of leaves and the state that a condition asks for."""
         test = re.fullmatch(r"(?:Leaf|Place\.(\w+)) (?:=|in) (?:\w+\.)?(\w+)", condition)
         return None if test is None else (self.component.get(test[1] or "", "Leaf"), test[2])
 
@@ -175,7 +175,7 @@ def _short(leaf: str) -> str:
 
 
 def _trigger(occurrences: str) -> str:
-    """What a transition waits for, of ``Now = ...`` or ``Now in ... | ...``."""
+    """The triggers of a transition, of ``Now = ...`` or ``Now in ... | ...``."""
     found: list[str] = []
     for name in re.sub(r"Now (=|in) ", "", occurrences).split(" | "):
         for begin, words in _TRIGGERS:

@@ -3,9 +3,9 @@
 
 """The declared form of a chart, read from generated Ada text.
 
-Of the specs of a component and of one of its regions this reads the types of the
-states and the functions `In_Source`, `Enabled` and `Target`, and nothing else: what
-the proof rests on. Guards stay text.
+The reader takes the types of the states and the functions `In_Source`, `Enabled` and `Target`
+from the specs of a component and of one of its regions. The proof rests on these. Guards stay
+text.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class NotDeclaredError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class DeclaredComposite:
-    """A composite state: the range of leaves of ``outer``, a composite or a lane's type."""
+    """A composite state: a range of the leaves of ``outer``, a composite or a type of leaves."""
 
     name: str
     outer: str
@@ -79,7 +79,7 @@ class DrawnLane:
 class Declared:
     """The declared form: the states, and for each transition its conditions and its move.
 
-    A move is one leaf or call where a chart has one lane only.
+    A move is one leaf or call where a chart has no orthogonal regions.
     """
 
     title: str
@@ -92,7 +92,7 @@ class Declared:
 
 @v_args(meta=True)
 class _Reader(Transformer[Token, object]):
-    """Builds what each declaration says; conjuncts are slices of the text."""
+    """Builds the meaning of each declaration; conjuncts are slices of the text."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -145,7 +145,7 @@ class _Reader(Transformer[Token, object]):
 
 
 def _rows(parts: Sequence[object]) -> dict[str, object]:
-    """What the alternatives of a case say of each transition."""
+    """The alternatives of a case, by transition."""
     rows = [part for part in parts if isinstance(part, dict)]
     return {name: said for row in rows for name, said in row.items()}
 
@@ -205,7 +205,7 @@ def _declarations(text: str) -> Iterator[str]:
 
 
 def _read(kind: str, text: str) -> Any:
-    """What a declaration of that kind says."""
+    """The meaning of a declaration of that kind."""
     try:
         return _Reader(text).transform(_PARSER.parse(text, start=kind))
     except LarkError as problem:

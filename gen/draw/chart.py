@@ -200,8 +200,8 @@ class _Drawing:
     def _edge(self, tail: str, head: str, place: RegionKey, **look: str) -> Iterator[DotEdge]:
         """An edge between nodes or composite states, these clipped at their border.
 
-        A second edge, not seen, keeps what stands in ``place`` around one end
-        above what stands there around the other.
+        A second edge, not seen, keeps the vertex of ``place`` around one end
+        above that around the other.
         """
         attributes: Attributes = dict(look)
         above, below = tail, head

@@ -26,7 +26,7 @@ DASHED: Attributes = {"style": "dashed"}
 class DeviceLink:
     """A required interface, and the device or provided interface that something of it is bound to.
 
-    ``interface`` None: of a device. What is on another node comes by messages.
+    ``interface`` None: of a device. A provider on another node is reached by messages.
     """
 
     instance: str
@@ -36,7 +36,7 @@ class DeviceLink:
 
 
 def device_links(system: System) -> tuple[DeviceLink, ...]:
-    """What bindings lead to, each once, in model order."""
+    """The links that bindings make, each once, in model order."""
     found: dict[DeviceLink, None] = {}
     for binding in system.bindings:
         provider, own = binding.provider, (binding.instance, binding.need.interface)

@@ -21,7 +21,7 @@ _WORDS: Mapping[Shape, str] = {
     Shape.DEEP_HISTORY: "H*",
     Shape.TERMINATE: "terminate",
 }
-"""What stands in the box of a vertex that Mermaid has no shape for."""
+"""The text in the box of a vertex that Mermaid has no shape for."""
 
 
 _ENTITIES = str.maketrans({";": "#59;", ":": "#58;", "<": "#lt;", ">": "#gt;"})
@@ -46,7 +46,7 @@ _RESERVED = frozenset(
 
 
 def mermaid(picture: Picture) -> str:
-    """The text of a chart. What Mermaid cannot draw is said in its first lines."""
+    """The text of a chart. Its first lines name the parts that Mermaid cannot draw."""
     lines = ["---", f"title: {picture.title}", "---", "stateDiagram-v2"]
     lines += [f"  {line}" for line in (*_remarks(picture), *_Drawing(picture).lines())]
     return "".join(f"{line}\n" for line in lines)

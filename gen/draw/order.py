@@ -3,8 +3,8 @@
 
 """Which way a chart is read: from its initial states onward.
 
-An arrow that leads back is given to Graphviz turned round, so that what comes
-first stands above what follows, whatever cycles the chart has.
+Graphviz gets an arrow that leads back turned round. So a vertex stands above those that follow
+it, whatever cycles the chart has.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Arrangement:
         return next((pair for pair in zip(one, other, strict=False) if pair[0] != pair[1]), None)
 
     def _in_order(self, area: Area) -> list[str]:
-        """What stands in an area: each part in reverse postorder from where it begins."""
+        """The vertices of an area: each part in reverse postorder from where it begins."""
         names = [vertex.name for vertex in area.vertices]
         graph: nx.DiGraph[str] = nx.DiGraph()
         graph.add_nodes_from(names)

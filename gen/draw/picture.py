@@ -24,7 +24,7 @@ RegionKey = tuple[str | None, str]
 
 
 class Shape(Enum):
-    """What a vertex looks like; pseudostates have the values of `PseudoKind`."""
+    """The look of a vertex; pseudostates have the values of `PseudoKind`."""
 
     STATE = "state"
     FINAL = "final"
@@ -84,7 +84,7 @@ class DrawnVertex:
 
 @dataclass(frozen=True, slots=True)
 class Area:
-    """A region: where its initial pseudostate leads (None: not known) and what stands in it."""
+    """A region: where its initial pseudostate leads (None: not known), and its vertices."""
 
     name: str
     initial: str | None
@@ -177,7 +177,7 @@ def _do(activity: Activity) -> str:
 
 
 def label(transition: Transition) -> Label:
-    """What a transition has to say."""
+    """The trigger, guard and effect of a transition as text."""
     guard = "else" if transition.otherwise else ""
     if transition.guard is not None:
         guard = words.shown_expression(transition.guard)

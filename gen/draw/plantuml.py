@@ -22,7 +22,7 @@ _STEREOTYPES: Mapping[Shape, str] = {
 
 
 def plantuml(picture: Picture) -> str:
-    """The text of a chart. What PlantUML cannot draw is said in its first lines."""
+    """The text of a chart. Its first lines name the parts that PlantUML cannot draw."""
     shapes = {vertex.shape for vertex, _ in picture.vertices()}
     lines = ["@startuml", f"title {picture.title}", *_remarks(picture, shapes)]
     lines += ["hide empty description", *_area(picture.area)]

@@ -3,13 +3,12 @@
 
 """The component structure of a system as a graph for Graphviz.
 
-Each node of the hardware is a cluster with its instances, their ports,
-interfaces and connections, with the devices that it calls, and with its
-processors, each a cluster with its table in order. A binding is a dashed arrow
-from who requires to who provides; a diamond is at the array of what it leads to.
-A bus is a cluster of its messages. The instances are read from the one with
-the most neighbours outward, buses last; a port stands on the side of what it
-is connected with, so that no wire has to go round.
+Each node of the hardware is a cluster with its instances, their ports, interfaces and
+connections, and the devices that it calls. Its processors are in the cluster, each a cluster with
+its table in order. A binding is a dashed arrow from who requires to who provides; an edge from an
+array to a member has a diamond at the array. A bus is a cluster of its messages. The instances
+are read from the one with the most neighbours outward, buses last. A port stands on the side of
+its peer, so that no wire has to pass around a box.
 """
 
 from __future__ import annotations
@@ -250,7 +249,7 @@ def _title(processor: Processor) -> str:
 
 
 def _rim(node: Node) -> str:
-    """What stands right of all that is in a node, and left of every bus."""
+    """The name of the hidden point right of all that is in a node, and left of every bus."""
     return f"rim {node.name}"
 
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What Graphviz makes of DOT text, as the project keeps it: no version, and whose picture it is."""
+"""Drawings of Graphviz as the project keeps them: without a version, with the DOT text's digest."""
 
 from __future__ import annotations
 
@@ -24,5 +24,5 @@ def finished(svg: str, dot: str) -> str:
 
 
 def mark(dot: str) -> str:
-    """What the description of a drawing says: equal for equal DOT texts alone."""
+    """The description of a drawing: equal for equal DOT texts alone."""
     return f"ravenchart draw, DOT sha256 {hashlib.sha256(dot.encode()).hexdigest()}"

@@ -3,8 +3,8 @@
 
 """Expressions, flows and triggers as text, in the model's own syntax.
 
-What `expression` gives reads back as the same expression. Actions are written
-as YAML in one line, without the quotes that a comma or a colon would need there.
+The text of `shown_expression` reads back as the same expression. Actions are written as YAML in
+one line, without the quotes that a comma or a colon would need there.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _operation(operator: str, operands: tuple[Expression, ...]) -> tuple[int, st
 
 
 def _at_least(binding: int, item: Expression) -> str:
-    """The text as an operand of something that binds as tightly as that."""
+    """The text as an operand of an operator that binds as tightly as that."""
     own, text = _bound(item)
     return text if own >= binding else f"({text})"
 
@@ -130,7 +130,7 @@ def actions(flow: Flow) -> tuple[str, ...]:
 
 
 def trigger(item: Trigger) -> str:
-    """What a transition waits for; nothing for a completion or a segment."""
+    """The trigger of a transition; nothing for a completion or a segment."""
     match item:
         case OnEvent(event):
             return event

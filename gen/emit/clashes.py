@@ -3,11 +3,10 @@
 
 """Names that would clash in the generated program, found in the program itself.
 
-Model names become Ada names beside those that the generator adds, such as
-``Step`` or ``Level_Board``. Rather than keep lists of these, the program is
-made (as constructs, not as text) and its declarations are compared: two of one
-name in one scope, one that hides what is used inside it, one that hides a
-unit. The elements that gave the name are reported.
+Model names become Ada names beside those that the generator adds, such as ``Step`` or
+``Level_Board``. There is no list of these. The program is made (as constructs, not as text) and
+its declarations are compared. Two of one name in one scope clash, as does one that hides a name
+used inside it, or a unit. The elements that gave the name are reported.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ def _units(system: System) -> tuple[MadeUnit, ...]:
 
 
 def _clashing(system: System) -> Iterator[tuple[str, DottedName]]:
-    """(Ada name, unit) of whatever clashes in the program of one node."""
+    """(Ada name, unit) of each clash in the program of one node."""
     specs: dict[DottedName, frozenset[str]] = {}
     for made in _units(system):
         name = made.reading.name

@@ -173,9 +173,9 @@ def program(
 def _without_claims(
     system: System, whole: bool = False
 ) -> tuple[_Maker, tuple[MadeUnit, ...], tuple[MadeUnit, ...]]:
-    """What makes the units, and those before and behind the timing certificate.
+    """The maker of the units, and the units before and behind the timing certificate.
 
-    Made once, checked and then written.
+    The units are made once, checked and then written.
     """
     maker = _Maker(system, whole=whole)
 

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Arrays of instances: which a model declares, and what a reference with a star stands for.
+"""Arrays of instances: those that a model declares, and the names for a reference with a star.
 
 An instance `wheel` with `count: 4` is the four instances `wheel_1` to `wheel_4`, and `wheel_*` in
 a reference stands for all of them, in this order. A star behind the last name of a reference
-stands for the numbers from 1 of those that the component has: `speed_*` of a component with the
-ports `speed_1` and `speed_2` for these two.
+stands for the numbers from 1 on that the component has. So `speed_*` of a component with the
+ports `speed_1` and `speed_2` stands for these two.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class InstanceArray:
 
 @dataclass(slots=True)
 class InstanceLevel:
-    """What references of a model, or of a composite component, begin with.
+    """The instances with which references of a model, or of a composite component, begin.
 
     All names are in lower case here.
     """
@@ -115,7 +115,7 @@ class InstanceLevel:
 
 @dataclass(frozen=True, slots=True)
 class StarNames:
-    """What a reference stands for; it ``fits`` any number where it is unknown how many."""
+    """The names that a reference stands for; it ``fits`` any number where that is unknown."""
 
     names: tuple[str, ...]
     has_star: bool = False
@@ -128,7 +128,7 @@ class StarNames:
 
 @dataclass(slots=True)
 class ArrayNames:
-    """The instances of a model and of its components, and what is wrong with references."""
+    """The instances of a model and of its components, and the errors in references."""
 
     top: InstanceLevel
     components: dict[str, InstanceLevel]
@@ -158,7 +158,7 @@ class ArrayNames:
     def names(
         self, text: str, at: Origin, level: InstanceLevel, numbered: tuple[str, ...] = ()
     ) -> StarNames | None:
-        """What a reference stands for; None where that cannot be known.
+        """The names that a reference stands for; None where that cannot be known.
 
         The last name may have a star where ``numbered`` has the sections that hold its names.
         """
@@ -244,7 +244,7 @@ class ArrayNames:
         return None
 
     def _inside(self, around: InstanceLevel | None, instance: str) -> InstanceLevel | None:
-        """What references inside an instance begin with."""
+        """The instances with which references inside an instance begin."""
         kind = None if around is None else around.kinds.get(instance.lower())
         return None if kind is None else self.components.get(kind)
 
@@ -258,7 +258,7 @@ def uses_of_arrays(uses: Iterable[NameUse], arrays: Sequence[InstanceArray]) -> 
 
 
 def with_stars(unknown: Iterable[Unknown], arrays: Sequence[InstanceArray]) -> Iterator[Unknown]:
-    """What could stand in place of unknown names: before the elements of an array all of them."""
+    """Candidates in place of unknown names: before the elements of an array all of them."""
     firsts = {array.elements[0]: f"{array.name}{ALL}" for array in arrays}
     for one in unknown:
         known = (name for own in one.known for name in (firsts.get(own), own) if name is not None)

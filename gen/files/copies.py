@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Copies of the trees of files in which something is changed; all places are kept.
+"""Changed copies of the trees of files; all locations are kept.
 
-What is damaged inside damages all around it, as in the trees themselves.
+A damaged value damages all around it, as in the trees themselves.
 """
 
 from __future__ import annotations

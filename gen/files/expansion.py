@@ -4,8 +4,8 @@
 """Arrays of instances written out, before any name is looked up.
 
 In the trees of the files an array becomes its elements, and an entry or item whose references have
-stars becomes one for each element. So nothing behind knows of arrays. What is written out keeps
-the location of what was written.
+stars becomes one for each element. So no later stage knows of arrays. Each element keeps the
+location of its array, and each entry that of the entry with the star.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
 
 """From a tree to checked forms, with every mistake of form reported at once.
 
-What is wrong is taken out of the tree, so that the rest can be looked at; what
-was taken out leaves its name behind, so that its uses are not reported too.
+A wrong value is taken out of the tree, so that the rest can be checked. The value
+leaves its name behind, so that its uses are not reported too.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ KINDS = {
 
 
 def check(tree: Map) -> tuple[ModelFile | None, list[Diagnostic]]:
-    """The file's form, without what was wrong, and what was wrong."""
+    """The file's form without its wrong values, and the errors."""
     found: list[Diagnostic] = []
     removed: set[int] = set()
     while True:
@@ -194,7 +194,7 @@ class ErrorPlace:
         return error(code, self.origin, f"{self.subject} {words}{self._but()}")
 
     def _but(self) -> str:
-        """What the value is instead."""
+        """The kind or text of the value that stands there instead."""
         if isinstance(self.value, Map):
             return ", not a mapping"
         if isinstance(self.value, Seq):
@@ -269,7 +269,7 @@ def _meanings(loc: Iterable[str | int]) -> dict[str, str]:
 
 
 SHAPES = ("range", "values", "fields", "set", "send", "call", "raise", "if", "in", "out")
-"""The keys by which forms are told apart."""
+"""The keys by which a form is chosen."""
 
 
 def _allowed(loc: Iterable[str | int]) -> list[str]:

@@ -29,7 +29,7 @@ class Link:
     element: str
     """Its name from the outside to the inside: `Pump.Infusion.Alarm`."""
     kind: str
-    """What it is, as the headings of the model reference call it."""
+    """Its kind, as the headings of the model reference call it."""
     path: tuple[PathPart, ...]
     """From the root of the file: `components`, `Pump`, `regions`, ..."""
     ids: tuple[str, ...]

@@ -3,11 +3,10 @@
 
 """YAML text to a tree of located values, within limits.
 
-Built from PyYAML's parser events, not by a loader: no tags, anchors or
-aliases, scalars by the rules of this language and not those of YAML 1.1, and
-every key and value keeps its place. Scalars are integers (decimal or 0x,
-underscores between digits), ``true`` and ``false``; everything else is text,
-and so is everything in quotes.
+The tree is built from PyYAML's parser events, not by a loader. Tags, anchors and aliases are
+refused. Scalars follow the rules of this language and not those of YAML 1.1. Every key and value
+keeps its location. Scalars are integers (decimal or 0x, underscores between digits), ``true`` and
+``false``; everything else is text, and so is everything in quotes.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ DEEPEST = 64
 INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]*(?:_[0-9]+)*|0x[0-9A-Fa-f]+(?:_[0-9A-Fa-f]+)*)")
 LINE_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 UNLIKE = re.compile("[?!\ufeff]|[|>][-+0-9]*#")
-"""What libyaml and PyYAML's own parser read differently in some places."""
+"""Text that libyaml and PyYAML's own parser may read differently."""
 
 
 @dataclass(frozen=True, slots=True)

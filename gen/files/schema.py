@@ -4,8 +4,7 @@
 """The file format of models: every key, what it means, its units and its range.
 
 The one source for the validation of files, for docs/model.schema.json and for
-docs/model-reference.md. What needs more than one element to be judged is in
-`resolve` and `rules`.
+docs/model-reference.md. Checks that need more than one element are in `resolve` and `rules`.
 """
 
 from typing import Annotated, Any, Literal
@@ -415,7 +414,7 @@ NeverForm = Annotated[
     Annotated[ExpressionText, Tag("<one>")] | Annotated[InvariantForm, Tag("<map>")],
     shaped("a condition, or a mapping with the keys `condition` and `req`"),
 ]
-"""What shall never hold."""
+"""An invariant: a condition that shall never hold."""
 
 
 class ComponentForm(Element):

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the file format is made of: values with their limits, and located mappings.
+"""The parts of the file format: values with their limits, and located mappings.
 
 The forms themselves are in `schema`.
 """
@@ -144,14 +144,14 @@ DatabaseName = Annotated[
         {"type": "string", "pattern": DATABASE_NAME, "maxLength": LONGEST_DATABASE_NAME}
     ),
 ]
-"""What a message, a signal or a node is called in CAN databases."""
+"""The name of a message, a signal or a node in CAN databases."""
 
 DatabaseText = Annotated[
     str,
     AfterValidator(_database_text),
     WithJsonSchema({"type": "string", "minLength": 1, "maxLength": LONGEST_DATABASE_NAME}),
 ]
-"""What a value of a signal is called in CAN databases."""
+"""The name of a value of a signal in CAN databases."""
 
 Reference = Annotated[str, WithJsonSchema({"type": "string", "pattern": IDENTIFIER})]
 """The name of something declared elsewhere."""
@@ -273,7 +273,7 @@ class Element(BaseModel):
 
     @property
     def tree(self) -> Map:
-        """What was read."""
+        """The mapping that was read."""
         private = self.__pydantic_private__  # `self._raw` would search for it
         assert private is not None
         found: Map = private["_raw"]

@@ -83,11 +83,11 @@ class Sequence:
 YamlNode = YamlScalar | YamlMapping | Sequence
 
 Plain = str | dict[str, "Plain"] | list["Plain"]
-"""What a tree says, without where: scalars as text."""
+"""The content of a tree, without locations: scalars as text."""
 
 
 def plain_tree(node: YamlNode) -> Plain:
-    """What a tree says."""
+    """The content of a tree."""
     match node:
         case YamlScalar():
             return node.value

@@ -1,4 +1,4 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a model is written in: terms, types, expressions, intervals, units and names."""
+"""The language of models: terms, types, expressions, intervals, units and names."""

@@ -106,7 +106,7 @@ class Waiting:
 
 
 class Parser:
-    """Reads one text. What waits for operands is in a list, so that nothing recurses."""
+    """Reads one text. Operators that wait for operands are in a list, so that nothing recurses."""
 
     def __init__(self, text: str) -> None:
         """Before the first token."""
@@ -177,7 +177,7 @@ class Parser:
         return _term("inside", region.at, region.text, member=state.text)
 
     def _named(self, name: Token) -> Term | None:
-        """What a name begins; None where operands of a function are due."""
+        """The term that a name begins; None where operands of a function are due."""
         if self._take("."):
             member = self._must(word=True)
             return _term("member", name.at, name.text, member=member.text)
@@ -252,7 +252,7 @@ FOREIGN = {
     "?": "write `if a then b else c`",
     "**": "there is no power operator",
 }
-"""What other languages write, and what this one does."""
+"""Spellings of other languages, each with that of this one."""
 
 
 @lru_cache(maxsize=4096)

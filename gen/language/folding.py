@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Expressions without what decides itself: constants computed, redundant operators left out.
+"""Expressions in simplest form: constants computed, redundant operators left out.
 
-The Ada compiler warns of such parts, and warnings are errors. So nothing of this form
-leaves here; comparisons that nothing can change are reported by `decided`.
+The Ada compiler warns of such parts, and warnings are errors. So no such part leaves this module.
+`decided` reports comparisons whose result no data can change.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ TRUE, FALSE = Literal("True", BOOLEAN), Literal("False", BOOLEAN)
 
 
 def _truth(expression: Expression) -> bool | None:
-    """What a Boolean literal says; None for all else."""
+    """The value of a Boolean literal; None for all else."""
     if isinstance(expression, Literal) and expression.type == BOOLEAN:
         return str(expression.value).lower() == "true"
     return None
@@ -111,7 +111,7 @@ class Decided:
 
 
 def decided(operator: str, left: Expression, right: Expression) -> Decided | None:
-    """What is known of a comparison without data: of two constants, or of a term with itself."""
+    """The result of a comparison without data: of two constants, or of a term with itself."""
     if left == right:
         return Decided(operator in ("=", "<=", ">="), "both sides are the same")
     if isinstance(left, Literal) and isinstance(right, Literal):

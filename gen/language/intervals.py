@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Integer intervals: what an operation can yield, given what its operands can be."""
+"""Integer intervals: the results that an operation can yield, given the ranges of its operands."""
 
 from __future__ import annotations
 
@@ -70,13 +70,13 @@ def apply(operator: str, operands: tuple[Interval, ...]) -> Interval:
 
 
 def meet(a: Interval, b: Interval) -> Interval | None:
-    """What both hold; None when there is nothing."""
+    """The numbers in both; None when there are none."""
     low, high = max(a[0], b[0]), min(a[1], b[1])
     return (low, high) if low <= high else None
 
 
 def below(a: Interval, operator: str, b: Interval) -> Interval | None:
-    """What is left of ``a`` once it is known that ``a operator b``; None when nothing is."""
+    """The part of ``a`` for which ``a operator b`` can hold; None when there is none."""
     match operator:
         case "<":
             return meet(a, (a[0], b[1] - 1))

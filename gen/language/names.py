@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Names: what may be one, what it would clash with, and what was meant."""
+"""Names: the rules for them, the names that they would clash with, and the likely name meant."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ REQUIREMENT = r"^[A-Za-z0-9]([-_A-Za-z0-9.:/]*[A-Za-z0-9])?$"
 """The id of a requirement, as a list of requirements has it."""
 LONGEST_REQUIREMENT = 64
 DATABASE_NAME = r"^[_A-Za-z][_A-Za-z0-9]*$"
-"""What a message or signal can be called in a CAN database (DBC): an identifier of C."""
+"""The form of a message's or signal's name in a CAN database (DBC): an identifier of C."""
 LONGEST_DATABASE_NAME = 128
 LONG_NAME = 24
 """Names up to this length always fit the lines of the generated program."""
@@ -52,7 +52,7 @@ NS_DESC_ SGTYPE_ SGTYPE_VAL_ SG_ SG_MUL_VAL_ SIGTYPE_VALTYPE_ SIG_GROUP_ SIG_TYP
 VAL_ VAL_TABLE_ VERSION Vector__XXX
 """
 DATABASE_KEYWORDS = frozenset(_DATABASE_KEYWORDS.split())
-"""Words that have a meaning in a DBC, so that nothing in it is called so."""
+"""Words that have a meaning in a DBC: no element in it has such a name."""
 
 GNAT_PREFIXES = frozenset("agis")
 """Parents of GNAT's own units in names of files: `a-*` is a child of Ada, `g-*` one of GNAT."""
@@ -70,7 +70,7 @@ CHILDREN = {
 
 _HIDING = "ada system standard interfaces ravenchart boolean natural positive string true false"
 HIDING = frozenset(_HIDING.split())
-"""What the generated program names by itself everywhere: nothing in it can hide that."""
+"""Names that the generated program uses everywhere: no name in it can hide them."""
 
 T = TypeVar("T")
 

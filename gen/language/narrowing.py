@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What conditions say about names: narrower bounds where they are known to hold."""
+"""Bounds of names from conditions: narrower ones where a condition is known to hold."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ COMPARISONS = ("=", "/=", "<", "<=", ">", ">=")
 
 Key = tuple[Reading, str, str | None]
 Known = Mapping[Key, Interval]
-"""What conditions around a place say about names, beyond their types."""
+"""The bounds of names by the conditions around a term, beyond their types."""
 
 MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "/=": "/="}
 NEGATED = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "=": "/=", "/=": "="}
 
 
 def narrowed(known: Known, condition: Expression, holds: bool) -> Known:
-    """What is known about names once it is known whether the condition holds."""
+    """The bounds of names once it is known whether the condition holds."""
     if not isinstance(condition, Operation):
         return known
     operator, operands = condition.operator, condition.operands
@@ -49,7 +49,7 @@ def _bounds(known: Known, expression: Expression) -> Interval | None:
 
 
 def _narrow_one(known: Known, name: Expression, operator: str, other: Expression) -> Known:
-    """What ``name operator other`` adds, when the first is a name."""
+    """The bounds with ``name operator other`` added, when the first is a name."""
     mine, others = _bounds(known, name), _bounds(known, other)
     if not isinstance(name, Name) or mine is None or others is None:
         return known

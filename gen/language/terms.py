@@ -106,7 +106,7 @@ Value = Scalar | tuple[tuple[str, Scalar], ...]
 
 
 class Reading(Enum):
-    """What a name in an expression denotes."""
+    """The kind of element that a name in an expression denotes."""
 
     DATA = "data"
     PARAMETER = "parameter"
@@ -242,9 +242,9 @@ Flow = tuple[Action, ...]
 
 
 def always(flow: Flow) -> set[str]:
-    """What a flow sends, raises or sets on every path: ports, events, data.
+    """The ports, events and data that a flow sends on, raises or sets on every path.
 
-    Of a record, of which fields are set one by one, ``data.field``.
+    Of a record whose fields are set one by one: ``data.field``.
     """
     sure: set[str] = set()
     for action in flow:

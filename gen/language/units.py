@@ -12,7 +12,7 @@ _COUNT = re.compile(r"(\d+(?:\.\d+)?)(?: +(\S.*))?")
 
 
 def count_of(unit: str | None) -> tuple[Decimal, str | None]:
-    """What one count stands for: how much, exactly, of which unit."""
+    """The amount that one count stands for, exactly, and its unit."""
     found = None if unit is None else _COUNT.fullmatch(unit)
     if found is None or Decimal(found[1]) == 0:
         return Decimal(1), unit

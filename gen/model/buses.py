@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Buses, the messages on them, and what a node receives of them."""
+"""Buses, the messages on them, and the receptions of a node."""
 
 from __future__ import annotations
 
@@ -109,8 +109,8 @@ class Message:
     sporadic: bool = False
     """From outside, and nothing says how long after a frame the next one comes."""
     every: int = 0
-    """Of a read command between nodes: sent in each so-many-eth execution of the row that writes
-    the data item which is its source. 0: of a port or a call."""
+    """Of a read command between nodes: n, where the row that writes the source sends in every n-th
+    execution. 0: of a port or a call."""
 
     protection: Protection | None = None
     """From end to end; None: none."""
@@ -123,7 +123,7 @@ class Message:
     controls: str = ""
     """The message with transport whose flow control it is; "" for all others."""
     database_name: str | None = None
-    """What databases call it, an identifier of C; None: as the model does."""
+    """Its name in databases, an identifier of C; None: that in the model."""
 
     @property
     def in_database(self) -> str:
@@ -142,7 +142,7 @@ class Message:
 
     @property
     def check(self) -> Protection | Authentication | None:
-        """What decides whether a frame that is received is used."""
+        """The check that decides whether a received frame is used."""
         return self.protection or self.authentication
 
     @property

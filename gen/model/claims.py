@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What an analysis claims of a system, as the timing certificate takes it."""
+"""The claimed bounds of an analysis, as the timing certificate takes them."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ NOTHING = Ns(0)
 
 @dataclass(frozen=True, slots=True)
 class ResponseClaim:
-    """A response from the event that leads to it, and the windows that show it.
+    """A response-time bound, from the event that leads to the job, and the windows that show it.
 
-    ``windows`` holds, for each job or instance of the busy period, the time from its
-    start in which that one is done (a frame: can begin); ``busy`` is how long a bus is
-    busy at a message's level. A processor whose response is longer than its deadline keeps
-    that by its offset: ``since`` each of its `instants.instants` its job is done that much later.
+    ``windows`` holds one time for each job or instance of the busy period, counted from the
+    start of that period: the job is done within it, or a frame can begin. ``busy`` is how long
+    a bus is busy at a message's level. A processor whose response is longer than its deadline
+    keeps that by its offset. ``since`` holds the time from each of its `instants.instants`
+    until its job is done.
     """
 
     response: Ns = NOTHING
@@ -40,9 +41,9 @@ class ChainClaim:
 
 @dataclass(frozen=True, slots=True)
 class Claims:
-    """All of them, by element; what is not there claims no time at all.
+    """All claims, by element; an element that is not there claims no time at all.
 
-    What they are about is not theirs to say: numbers only.
+    Claims are numbers only: the certificate takes their meaning from the model.
     """
 
     items: Mapping[str, ResponseClaim] = field(default_factory=dict)

@@ -74,7 +74,7 @@ class Event:
     origin: Origin
     type: Type | None = None
     overflow: Overflow | None = None
-    """What a full queue does with this event; None: what the region says."""
+    """The rule of a full queue for this event; None: that of the region."""
     external: bool = False
     """It may come from outside at any time, though the component raises it."""
 
@@ -138,11 +138,11 @@ class Clause:
 class Activity:
     """A named, bounded piece of work: the user's SPARK procedure, or a flow.
 
-    ``reads`` names data, parameters, input ports and regions (their published
-    state), ``writes`` data, ``sends`` output ports (a flow sends where it says so, a
-    user body at every execution, except on those that it ``may_send``), ``raises``
-    events. All in model order. With ``while_in`` it is the do activity of that state,
-    and may raise `DONE`, which completes it.
+    ``reads`` names data, parameters, input ports and regions (their published state),
+    ``writes`` data, ``sends`` output ports and ``raises`` events, all in model order. A flow
+    sends by its actions; a user body sends at every execution, except on the ports that it
+    ``may_send``. With ``while_in`` it is the do activity of that state, and may raise `DONE`,
+    which completes the state.
     """
 
     name: str

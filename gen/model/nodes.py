@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The nodes of a system: what the platform takes of each, and who watches over it."""
+"""The nodes of a system: the overheads of their platforms, and their supervision."""
 
 from __future__ import annotations
 
@@ -56,11 +56,11 @@ class Node:
     release: Ns = NO_TIME
     """Work above all tasks that makes one job ready."""
     tick: Tick | None = None
-    """What makes timed releases late by up to its period; None: a timer that is exact."""
+    """The tick that makes timed releases late by up to its period; None: an exact timer."""
     cores: int = 1
     supervision: Supervision | None = None
     database_name: str | None = None
-    """What databases call it; None: as the model does."""
+    """Its name in databases; None: that in the model."""
 
     @property
     def in_database(self) -> str:

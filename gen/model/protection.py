@@ -87,15 +87,15 @@ class Protection:
     def residual(self) -> float:
         """The probability that a frame of random data is used: right CRC, counter in sequence.
 
-        A frame whose counter is 15 in a profile that has 15 of them is refused: so the counter
-        has as many bits as the header gives it, not as many values as the profile uses.
+        A frame whose counter is 15 in a profile that has 15 of them is refused. So the bits of
+        the counter in the header count, not the values that the profile uses.
         """
         bits = next(one.width for one in self.profile.fields if one.name == COUNTER)
         nibble = sum(one.width for one in self.profile.fields if one.name == NIBBLE)
         return float(2.0 ** -(self.profile.crc_bits + nibble) * self.max_delta / 2**bits)
 
     def share(self, counter: int) -> tuple[str, int]:
-        """What the data identifier comes to in the CRC of a frame with that counter."""
+        """The share of the data identifier in the CRC of a frame with that counter."""
         if self.data_ids:
             return "list", self.data_ids[counter]
         low, high = self.data_id & 0xFF, self.data_id >> 8

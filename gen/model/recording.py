@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a model records: ports and data items whose values enter the trace, and charts."""
+"""The recordings of a model: ports and data items whose values enter the trace, and charts."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class RecordedItem:
 
 @dataclass(frozen=True, slots=True)
 class RecordedValue:
-    """One scalar of what is recorded: it has a number and a track of its own."""
+    """One scalar of a recorded item: it has a number and a track of its own."""
 
     element: str
     """``instance.item``, with the field of a record behind it."""
@@ -68,5 +68,5 @@ class RecordedValue:
 
     @property
     def unit(self) -> str | None:
-        """What one count of an integer stands for, where its type says so."""
+        """The unit of an integer, where its type has one."""
         return self.type.unit if isinstance(self.type, IntegerType) else None

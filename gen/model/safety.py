@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Invariants that are contracts of the generated code, with what makes them inductive.
+"""Invariants that are contracts of the generated code, with the facts that make them inductive.
 
 `behaviour.rules.inductive` finds them, and the emitter of charts writes them: an invariant over
 the states and data of one region, and the facts without which a transition might break it.
@@ -44,7 +44,7 @@ class Fact:
     """In ascending order; none where the vertex is never active."""
 
     def condition(self, component: Component) -> Expression:
-        """What holds of the data."""
+        """The condition that holds of the data."""
         item = Name(Reading.DATA, self.data, self.field, named(component.data, self.data).type)
         of_type = item.type if self.field is None else _record(item.type).field(self.field).type
         assert not isinstance(of_type, RecordType)
@@ -62,7 +62,7 @@ class SafeRegion:
     """Their names, in model order."""
     facts: tuple[Fact, ...]
     alone: tuple[str, ...] = ()
-    """Transitions with a guard that are selected only where no lane before theirs selects."""
+    """Transitions with a guard that are selected only where no region before theirs selects one."""
 
 
 def _record(of_type: Type) -> RecordType:
@@ -71,11 +71,11 @@ def _record(of_type: Type) -> RecordType:
 
 
 def knows_guards(region: Region, lane: Lane) -> bool:
-    """Whether the guards of a lane's transitions hold when they fire.
+    """Whether the guards of a region's transitions hold when these are taken.
 
-    All guards of a step are read before anything fires. They still hold where nothing fired
-    before in the same step: in the first lane, and in one that fires only when those before it,
-    which are inside it, do not.
+    All guards of a step are read before any transition is taken. They still hold where none was
+    taken before in the same step. That is so in the first region, and in one whose transitions
+    are taken only when none is in the regions before it, which are inside it.
     """
     before = region.lanes()[: region.lanes().index(lane)]
     return all(_is_inside(region, one, lane) for one in before)

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""How a value is laid out in a CAN frame: where the bits of each scalar of it stand.
+"""The layout of a value in a CAN frame: where the bits of each scalar of it stand.
 
 Bit 0 is the least significant bit of byte 0, bit 8 that of byte 1, and so on. An Intel
-signal begins at its least significant bit and goes upwards from there; a Motorola
-signal begins at its most significant bit, goes down to bit 0 of that byte and on at
-bit 7 of the next byte. These are the conventions of CAN databases (DBC).
+signal begins at its least significant bit and goes upwards from there. A Motorola signal
+begins at its most significant bit, goes down to bit 0 of that byte and on at bit 7 of the
+next byte. These are the conventions of CAN databases (DBC).
 """
 
 from __future__ import annotations
@@ -77,9 +77,9 @@ class Signal:
     pages: tuple[int, ...] = ()
     """Raw values of the multiplexor with which it is there; none: it always is."""
     database_name: str | None = dataclasses.field(default=None, compare=False)
-    """What databases call it; None: as the model does. No part of the layout."""
+    """Its name in databases; None: that in the model. No part of the layout."""
     value_names: tuple[tuple[str, str], ...] = dataclasses.field(default=(), compare=False)
-    """Literals that databases call otherwise, with what they call them. No part of the layout."""
+    """Literals with other names in databases, and these names. No part of the layout."""
 
     @property
     def name(self) -> str:
@@ -93,7 +93,7 @@ class Signal:
 
     @property
     def coding(self) -> tuple[int, bool, int, tuple[int, ...], str | None]:
-        """What decides how raw values become values."""
+        """The numbers that decide how raw values become values."""
         width = self.width if self.signed else 0
         return self.offset, self.signed, width, self.codes, self.other
 

@@ -3,12 +3,11 @@
 
 """Statecharts as the model holds them: vertices, transitions and their tree.
 
-A top-level region is a tree: a composite state has one nested region, an
-orthogonal one several. Leaf states and pseudostates are its leaves. A *lane* is
-a maximal part of the tree without orthogonality: the top-level region is one,
-and so is each region of an orthogonal state. In every active lane exactly one
-leaf is active; an orthogonal state is a leaf of the lane that it stands in.
-Terms are those of UML 2.5.1, clause 14.
+A top-level region is a tree: a composite state has one nested region, an orthogonal one
+several. Leaf states and pseudostates are its leaves. A `Lane` is the top-level region, or a
+region of an orthogonal state, as far as no other begins inside it. While such a region is
+active, exactly one of its leaves is; an orthogonal state is a leaf of the one that it stands
+in. Terms are those of UML 2.5.1, clause 14.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from ravenchart.gen.language.terms import Expression, Flow, Ns, named
 from ravenchart.gen.origins import Origin
 
 DONE = "done"
-"""What a do activity raises to complete its state."""
+"""The event that a do activity raises to complete its state."""
 
 
 RAISED_PER_STEP = 16
@@ -29,7 +28,7 @@ RAISED_PER_STEP = 16
 
 
 class Overflow(Enum):
-    """What a full queue does with one element more; either way the loss is counted."""
+    """The rule of a full queue for one element more; either way the loss is counted."""
 
     REJECT_NEWEST = "reject_newest"
     DROP_OLDEST = "drop_oldest"
@@ -94,7 +93,7 @@ class State:
 
 
 class PseudoKind(Enum):
-    """What a pseudostate does with what comes in."""
+    """The kind of a pseudostate, with its effect on a transition that reaches it."""
 
     CHOICE = "choice"
     JUNCTION = "junction"
@@ -187,7 +186,7 @@ class Transition:
 
 @dataclass(frozen=True, slots=True)
 class Lane:
-    """A part of the chart in which one leaf is active: ``owner`` None is the top-level region."""
+    """A region of the orthogonal state ``owner``, or the top-level region, with ``owner`` None."""
 
     name: str
     owner: str | None
@@ -270,12 +269,12 @@ class Region:
         )
 
     def default_leaf(self, name: str) -> str:
-        """The leaf of its lane that entering ``name`` by default leads to."""
+        """The leaf that default entry of ``name`` leads to; an orthogonal state is one itself."""
         regions = self.state(name).regions
         return name if len(regions) != 1 else self.default_of(name, regions[0].name)
 
     def default_of(self, owner: str | None, region: str = "") -> str:
-        """The leaf of its lane that entering a region by default leads to; None: the top-level one.
+        """The leaf that default entry of a region leads to; ``owner`` None: the top-level region.
 
         An orthogonal state on the way to the initial target is that leaf.
         """
@@ -285,10 +284,10 @@ class Region:
         stop = next((name for name in reversed(entered) if self.state(name).is_orthogonal), None)
         return stop or self.default_leaf(initial.target)
 
-    # --- lanes
+    # --- top-level and orthogonal regions
 
     def lanes(self) -> tuple[Lane, ...]:
-        """All lanes in model order, those inside a lane before it; the top-level region is last."""
+        """The orthogonal regions in model order, inner before outer; last the top-level region."""
         found: list[Lane] = []
 
         def inside(owner: str | None, region: str) -> None:
@@ -302,7 +301,7 @@ class Region:
         return (*found, Lane(self.name, None))
 
     def lane(self, vertex: str) -> Lane:
-        """The lane that a state or pseudostate stands in."""
+        """The innermost top-level or orthogonal region around a state or pseudostate."""
         return self._lanes[vertex.lower()]
 
     @cached_property

@@ -39,7 +39,7 @@ UNFIT_PORT = "RV-0715"
 
 
 class Work(Enum):
-    """What an entry of a processor's table runs."""
+    """The kind of work of an entry of a processor's table."""
 
     PORT_REGION = "ports"
     REGION = "region"
@@ -266,7 +266,7 @@ class System:
     safe_regions: tuple[SafeRegion, ...] = ()
     """The invariants that are contracts of the code, filled in when behaviour was checked."""
     recorded: tuple[RecordedItem, ...] = ()
-    """What `record` names."""
+    """The items that `record` names."""
     deployment: str | None = None
     """The deployment that was chosen, in lower case, where the model has several."""
 
@@ -318,7 +318,7 @@ class System:
 
     @cached_property
     def bound(self) -> dict[tuple[str, str], Binding]:
-        """What provides each required command, by instance and command."""
+        """The binding of each required command, by instance and command."""
         return {(b.instance, b.need.name): b for b in self.bindings}
 
     def sender(self, message: Message) -> str | None:
@@ -331,7 +331,7 @@ class System:
         return tuple(Reception(message, home, len(homes) > 1) for home in homes)
 
     def received(self, bus: str | None, node: str) -> tuple[Reception, ...]:
-        """What a node receives from a bus, in model order."""
+        """The receptions of a node from a bus, in model order."""
         found = (one for m in self.messages if m.bus == bus for one in self.receptions(m))
         return tuple(one for one in found if one.node == node)
 

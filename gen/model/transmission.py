@@ -12,7 +12,7 @@ from ravenchart.gen.language.terms import Ns
 
 
 class Mode(Enum):
-    """What makes a frame go."""
+    """The occasions on which a frame is sent."""
 
     ON_CHANGE = "on_change"
     """A value that differs from the last one sent."""

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What provides each required command, and what of the system follows from that.
+"""The provider of each required command, and its consequences for the system.
 
-Everything is decided here: the program has no test for what is there. A stand-in that
-nobody needs is left out, with its row and its data.
+Everything is decided here: the program does not test which providers there are. A fallback that
+no binding needs is left out, with its row and its data.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
 def bindings_of(
     instances: Iterable[Instance], given: Given, known: Sequence[str], findings: Findings
 ) -> tuple[Binding, ...]:
-    """What provides each command that an instance requires."""
+    """The binding of each command that an instance requires."""
     made: list[Binding] = []
     for form, provider in given.values():
         if provider is not None and form.has("time_limit") and not has_tasks(provider):
@@ -116,7 +116,7 @@ def bindings_of(
 
 
 def _binding(wanted: str) -> str:
-    """How to bind what is unbound, in the model or in the composite around it."""
+    """How to bind an unbound interface, in the model or in the composite around it."""
     *around, instance, interface = wanted.split(".")
     where = f" of the component of {'.'.join(around)}" if around else ""
     return f"add `- {{from: {instance}.{interface}, to: ...}}` under `bindings:`{where}"
@@ -125,9 +125,9 @@ def _binding(wanted: str) -> str:
 def event_wires(
     instances: Iterable[Instance], given: Given, findings: Findings
 ) -> tuple[tuple[Connection, ...], tuple[Poll, ...]]:
-    """What brings the events of required interfaces.
+    """The connections and polls that bring the events of required interfaces.
 
-    Of a task it is a connection of the ports on both sides; a device is polled.
+    An event of a task comes by a connection of the ports on both sides; a device is polled.
     """
     made: list[Connection] = []
     polls: list[Poll] = []
@@ -201,9 +201,9 @@ def _bound(
     uneven: set[tuple[str, str]],
     findings: Findings,
 ) -> Binding:
-    """What provides one command; reported when nothing does and nothing stands in.
+    """The binding of one command; an error where it has neither provider nor fallback.
 
-    ``uneven`` has the interfaces and providers whose axes were told to differ.
+    ``uneven`` has the interfaces and providers whose different axes were reported.
     """
     at, notes = form.at("to"), [(need.origin, f"{need.name} is required here")]
 
@@ -242,7 +242,7 @@ def _axes(count: int) -> str:
 
 
 def with_bindings(system: System, bindings: tuple[Binding, ...], polls: tuple[Poll, ...]) -> System:
-    """The system with its bindings: stand-ins that nobody needs gone, calls in the WCETs."""
+    """The system with its bindings: without idle fallbacks, with calls in the WCETs."""
     of: defaultdict[str, list[Binding]] = defaultdict(list)
     for binding in bindings:
         of[binding.instance].append(binding)
@@ -276,7 +276,7 @@ def _parts(device: Device) -> tuple[Device, ...]:
 
 
 def _pruned(component: Component, bindings: Iterable[Binding]) -> Component:
-    """A component as an instance has it: without the stand-ins that nobody needs."""
+    """A component as an instance has it: without the fallbacks that no binding needs."""
     idle = {
         b.need.stand_in.activity for b in bindings if b.need.stand_in and b.provider is not None
     }
@@ -304,10 +304,10 @@ def _in_use(component: Component, instances: Iterable[Instance]) -> Component:
 
 
 def _times_of_calls(component: Component, bindings: Sequence[Binding]) -> dict[str, Ns]:
-    """What the devices that each row calls add to its WCET.
+    """The time that calls of devices add to the WCET of each row.
 
-    A region reads once in an execution, and calls once in each of its steps; what serves
-    requests does both for each.
+    A region reads once in an execution, and calls once in each of its steps; an activity that
+    serves requests does both for each request.
     """
     found: dict[str, Ns] = {}
     for row in component.runnables():
@@ -327,7 +327,7 @@ def _times_of_calls(component: Component, bindings: Sequence[Binding]) -> dict[s
 def _of_kept(
     processor: Processor, kept: dict[str, set[str]], added: dict[str, dict[str, Ns]]
 ) -> Processor:
-    """A processor with the rows that are left, and what they call in their WCETs."""
+    """A processor with the rows that are left, and their calls in their WCETs."""
     left = [s for s in processor.slots if s.owner not in kept or s.name in kept[s.owner]]
     period = processor.period
     if left and period == table_period(processor.slots):

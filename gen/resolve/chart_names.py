@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The names of a chart's vertices: what can be looked up before anything is resolved."""
+"""The names of a chart's vertices, which can be looked up before anything is resolved."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def concurrent_states(states: Mapping[str, StateForm] | None) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class NamedVertex:
-    """What a name in a chart stands for, as far as its kind tells."""
+    """The vertex that a name in a chart stands for, as far as its kind tells."""
 
     name: str
     what: str
@@ -81,7 +81,7 @@ PSEUDO_WORDS = {
 
 
 def vertex_of(name: str, form: StateForm) -> NamedVertex:
-    """What a form under ``states`` declares."""
+    """The vertex that a form under ``states`` declares."""
     if form.kind == "final":
         return NamedVertex(name, FINAL_STATE)
     if form.kind is not None:

@@ -21,7 +21,7 @@ from .vocabulary import Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """What the parts of one region are resolved in."""
+    """The surroundings in which the parts of one region are resolved."""
 
     region: str
     period: Ns

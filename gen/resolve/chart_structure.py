@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What makes a chart a chart: rules on pseudostates, on which everything else relies.
+"""The structure of charts: rules on pseudostates, on which everything else relies.
 
-They are checked as soon as a region is resolved. One that breaks a rule counts as damaged,
-and nothing else is said about it.
+They are checked as soon as a region is resolved. A region that breaks a rule counts as damaged,
+and nothing else is reported about it.
 """
 
 from __future__ import annotations
@@ -254,7 +254,7 @@ def _history(tree: Tree, pseudo: Pseudostate) -> Iterator[Diagnostic]:
 
 
 def _deferrals(tree: Tree) -> Iterator[Diagnostic]:
-    """No state defers what its own transition always takes."""
+    """No state defers an event that its own transition always takes."""
     for state in tree.region.states:
         for event in state.defers:
             for transition in tree.outgoing.get(state.name, ()):

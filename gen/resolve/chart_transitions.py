@@ -210,7 +210,7 @@ def _one_trigger(
 def _words(
     form: TransitionForm, source: NamedVertex | None, trigger: Trigger | None, setting: Setting
 ) -> Vocabulary:
-    """What guard and effect may name: the event's value as well, when it carries one."""
+    """The names that guard and effect may use: the event's value as well, when it carries one."""
     if isinstance(trigger, OnEvent):
         event = setting.targets.events.find(trigger.event)
         if event is not None and event.type is not None:
@@ -228,7 +228,7 @@ def _words(
 
 
 def _asking(words: Vocabulary, source: NamedVertex | None, setting: Setting) -> Vocabulary:
-    """The words of a condition that is read before anything fires: also states of its region."""
+    """The words of a condition read before any transition is taken: also states of its region."""
     if source is None or source.pseudo not in (None, PseudoKind.JUNCTION):
         return words
     return replace(words, may_ask=partial(setting.states.is_beside, source.name))

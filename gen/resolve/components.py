@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Components resolved: what their names mean, then their regions and activities."""
+"""Components resolved: the meaning of their names, then their regions and activities."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ def _calls(form: ComponentForm, members: Members, needs: tuple[Need, ...]) -> Na
 
 
 def _rows(name: str, form: ComponentForm, component: Component) -> NameScope[str]:
-    """What tables may hold of an instance of the component."""
+    """The rows that tables may hold of an instance of the component."""
     scope: NameScope[str] = NameScope(f"region or activity of {name}")
     scope.open = form.lost("regions") or form.lost("activities")
     if component.port_region is not None:
@@ -355,7 +355,7 @@ def _agreed(
     targets: Targets,
     findings: Findings,
 ) -> dict[str, tuple[str, ...]]:
-    """What the flow does; where that was declared too, both must agree."""
+    """The names that the flow uses, by key; where the key is declared too, both must agree."""
     agreed: dict[str, tuple[str, ...]] = {}
     for key, verb, done in (
         ("reads", "read", use.reads),

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Composite components: instances inside a component, and what its ports and interfaces lead to.
+"""Composite components: instances inside a component, and the ends of its ports and interfaces.
 
 A composite is resolved once, to the instances without others inside them, by their paths, and to
 the connections and bindings between these. So each instance of it is that with its own path in
-front, and nothing behind the resolver knows of composites.
+front, and no stage behind the resolver knows of composites.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ class Inside:
 
 @dataclass(frozen=True, slots=True)
 class Composite:
-    """A composite component; what was wrong keeps its name.
+    """A composite component; a wrong element keeps its name.
 
     Connections and bindings are those of instances without others inside them.
     """
@@ -96,7 +96,7 @@ class Composite:
     members: Members
     inside: NameScope[Inside]
     leads: Mapping[str, Ends]
-    """What each port leads to, by its name in lower case."""
+    """The ends that each port leads to, by its name in lower case."""
     requires: NameScope[Interface]
     provides: NameScope[Interface]
     connections: tuple[Connection, ...]
@@ -124,7 +124,7 @@ def connectable(of: Parts | Composite) -> NameScope[Port]:
 
 
 def within(path: str, of: Parts | Composite, port: Port) -> Ends:
-    """What a port of the instance at the path is, or leads to."""
+    """The ends that a port of the instance at the path is, or leads to."""
     if isinstance(of, Parts):
         return ((End(path, port.name), port),)
     found = of.leads.get(port.name.lower(), ())

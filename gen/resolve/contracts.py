@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Contracts of activities: `requires` and `ensures`, over what the activity reads and makes."""
+"""Contracts of activities: `requires` and `ensures`, over their inputs and results."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from .typed import OLD, PORT_TESTS, SENT, Checker, condition
 from .vocabulary import CheckedExpression, Vocabulary
 
 Lists = Mapping[str, tuple[str, ...]]
-"""What an activity reads, writes, sends, calls and raises, by key."""
+"""The names that an activity reads, writes, sends on, calls and raises, by key."""
 
 
 def sent(lists: Lists) -> tuple[str, ...]:
@@ -39,12 +39,12 @@ def sent(lists: Lists) -> tuple[str, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """One side of an activity's contract: what it may name."""
+    """One side of an activity's contract: the names that it may use."""
 
     activity: str = ""
     is_flow: bool = False
     before: frozenset[str] = frozenset()
-    """What has a value when an execution begins."""
+    """Names that have a value when an execution begins."""
     written: frozenset[str] = frozenset()
     sent: frozenset[str] = frozenset()
     every_time: frozenset[str] = frozenset()
@@ -176,7 +176,7 @@ def contract_of(
     targets: Targets,
     findings: Findings,
 ) -> tuple[tuple[Clause, ...], tuple[Clause, ...]]:
-    """What an activity requires, and what it ensures."""
+    """The clauses that an activity requires, and those that it ensures."""
     is_flow = not isinstance(form.body, str)
     written = frozenset(lists["writes"])
     #  a flow finds what it writes as it was: it sets some of it, or sets it in some executions
@@ -190,7 +190,7 @@ def contract_of(
 
 
 def _with_outputs(words: Vocabulary, targets: Targets) -> NameScope[tuple[Reading, str, Type]]:
-    """What may be read, and what may be sent or be the argument of a call."""
+    """The names that may be read, and those of output ports and of called commands."""
     known = words.readable
     scope: NameScope[tuple[Reading, str, Type]] = NameScope(
         "data item, parameter or port", dict(known.items), known.open

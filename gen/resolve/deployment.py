@@ -340,7 +340,7 @@ def _row_at(text: str, origin: Origin, site: DeploymentNames) -> str | None:
 
 
 def shutdown_of(form: ShutdownForm | None, site: DeploymentNames) -> Shutdown:
-    """What a request to stop does."""
+    """The events that a request to stop raises, and the grace."""
     if form is None:
         return Shutdown((), Ns(0))
     raised: Iterable[tuple[str, str] | None] = (

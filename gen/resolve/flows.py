@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Flows: actions resolved, and what they read, write, send and raise."""
+"""Flows: actions resolved, and the names that they read, write, send on and raise."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ ActionForms = Sequence[SetForm | SendForm | CallForm | RaiseForm | IfForm]
 
 @dataclass(frozen=True, slots=True)
 class Targets:
-    """What the flows of a component may write, send on and raise."""
+    """The data, ports, commands and events that the flows of a component may use."""
 
     data: NameScope[Type]
     outputs: NameScope[Type]
@@ -72,7 +72,7 @@ def _actions(
     targets: Targets,
     findings: Findings,
 ) -> Flow:
-    """What a form stands for: one action, but for a record one for each field."""
+    """The actions of a form: one, but for a record one for each field."""
     action: Action | None
     match form:
         case SetForm():
@@ -263,7 +263,7 @@ def _values(
     words: Vocabulary,
     findings: Findings,
 ) -> FlowValues | None:
-    """What a port or event that carries ``type_`` is given by ``with``."""
+    """The values that ``with`` gives to a port or event that carries ``type_``."""
     if isinstance(type_, RecordType):
         return _fields(form, given, carrier, type_, words, findings)
     if isinstance(given, Mapping):
@@ -338,12 +338,12 @@ def _fields_of(kind: Reading, name: str, type_: RecordType) -> FlowValues:
     return tuple((one.name, Name(kind, name, one.name, one.type)) for one in type_.fields)
 
 
-# --- What flows do ---------------------------------------------------------------
+# --- The names that flows use ----------------------------------------------------
 
 
 @dataclass(slots=True)
 class Use:
-    """What flows and conditions read, write, send and raise; keys in order of first use."""
+    """The names that flows and conditions read, write, send on and raise, in order of first use."""
 
     reads: dict[str, None] = field(default_factory=dict)
     writes: dict[str, Origin] = field(default_factory=dict)
@@ -351,7 +351,7 @@ class Use:
     raises: dict[str, Origin] = field(default_factory=dict)
 
     def expression(self, expression: Expression | None) -> None:
-        """Add what an expression reads."""
+        """Add the names that an expression reads."""
         for leaf in () if expression is None else leaves(expression):
             match leaf:
                 case Name(kind=Reading.EVENT):
@@ -360,7 +360,7 @@ class Use:
                     self.reads.setdefault(name)
 
     def flow(self, flow: Flow) -> None:
-        """Add what a flow does."""
+        """Add the names that a flow uses."""
         for action in actions_of(flow):
             match action:
                 case Set(origin, data, _, value):

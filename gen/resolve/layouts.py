@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The signals of a message, from what the model says of them."""
+"""The signals of a message, from their forms in the model."""
 
 from __future__ import annotations
 
@@ -202,7 +202,7 @@ class _Maker:
         return None if self.findings.count() > before else made
 
     def _value_names(self, form: SignalForm, key: str, made: Signal) -> dict[str, str]:
-        """What databases call literals: each value of the signal by another name."""
+        """The names of literals in databases: each value of the signal has another name."""
         given = form.value_names or {}
         if given and isinstance(made.type, IntegerType):
             message = f"{made.type.name} is no enumeration and has no `value_names`"

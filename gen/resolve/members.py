@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The members of a component: parameters, ports, events and data, and what they are named."""
+"""The members of a component: parameters, ports, events and data, and their names."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from .values import initial_value, parameter
 from .vocabulary import EVENT, Vocabulary
 
 TABLE_WORDS = ("ports", "receive")
-"""What tables call the port region and a bus's reception."""
+"""The names of the port region and of a bus's reception in tables."""
 
 RENAMED = ("state", "transition", "event")
 """Kinds of elements that get another name in Ada where theirs is one of Ada's."""
@@ -261,7 +261,7 @@ def _data(
 def invariants_of(
     form: ComponentForm, words: Vocabulary, findings: Findings
 ) -> tuple[Invariant, ...]:
-    """What shall never hold."""
+    """The invariants: conditions that shall never hold."""
     scope: NameScope[Invariant] = NameScope("invariant")
     for name, text in (form.never or {}).items():
         origin = form.entry_at("never", name)
@@ -278,7 +278,7 @@ def invariants_of(
 def vocabulary_of(
     members: Members, regions: NameScope[NameScope[str]], literals: frozenset[str]
 ) -> Vocabulary:
-    """What the expressions of the component may name."""
+    """The names that the expressions of the component may use."""
     readable: NameScope[tuple[Reading, str, Type]] = NameScope("data item, parameter or input port")
     inputs: NameScope[str] = NameScope("input port")
     readable.open = members.ports.open or members.data_types.open or members.parameters.open

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Paths of a deployment: the instance that `arm.shoulder.move` names, and what it names of it.
+"""Paths of a deployment: the instance that `arm.shoulder.move` names, and the element of it.
 
 An instance of a composite component is no instance of the `System`: those inside it are. Its
 ports and interfaces are theirs, and from outside they are reached through it alone.
@@ -42,7 +42,7 @@ class Owners(NameScope[Instance | Placed]):
 
 @dataclass(frozen=True, slots=True)
 class DeploymentNames:
-    """What the elements of a deployment may refer to."""
+    """The names that the elements of a deployment may refer to."""
 
     nodes: NameScope[Node]
     buses: NameScope[Bus]
@@ -56,7 +56,7 @@ class DeploymentNames:
         return [one for one in self.components.sound() if isinstance(one, Composite)]
 
     def parts(self, instance: Instance) -> Parts | None:
-        """What the component of an instance has."""
+        """The parts of an instance's component; None where it is lost."""
         found = self.components.find(instance.component.name)
         return found if isinstance(found, Parts) else None
 

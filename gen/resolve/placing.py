@@ -111,7 +111,7 @@ class _Placing:
 def _delegations(
     path: str, form: InstanceForm | InnerInstanceForm, of: Composite
 ) -> Iterator[Delegation]:
-    """What the ports and interfaces of a composite lead to."""
+    """The ends that the ports and interfaces of a composite lead to."""
     for port in of.members.ports.sound():
         for end, _ in within(path, of, port):
             yield Delegation(end, f"{path}.{port.name}", form.origin)

@@ -25,7 +25,7 @@ MISSING = "add the name of what is recorded"
 
 
 def recorded_of(files: Sequence[ModelFile], site: DeploymentNames) -> tuple[RecordedItem, ...]:
-    """What the files record, in their order."""
+    """The items that the files record, in their order."""
     return tuple(
         found
         for file in files
@@ -35,7 +35,7 @@ def recorded_of(files: Sequence[ModelFile], site: DeploymentNames) -> tuple[Reco
 
 
 def _recorded(text: str, origin: Origin, site: DeploymentNames) -> Iterator[RecordedItem]:
-    """What one entry names: the path of an instance, an item, and perhaps a field of a record."""
+    """The items of one entry: an instance's path, an item's name, and perhaps a record's field."""
     findings = site.findings
     first, *names = text.split(".")
     if not names or "" in (first, *names):
@@ -99,7 +99,7 @@ def _with_field(
 
 
 def _items(parts: Parts) -> NameScope[Port | Data | Region]:
-    """What can be recorded of an instance: no commands."""
+    """The items of an instance that can be recorded: no commands."""
     members, component = parts.members, parts.component
     kind = f"port, data item or region of {component.name}"
     scope: NameScope[Port | Data | Region] = NameScope(kind)

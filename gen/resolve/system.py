@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Forms to a `System`: every name resolved, every type known, every place kept.
+"""Forms to a `System`: every name resolved, every type known, every location kept.
 
-What is wrong is reported and left out; what was left out keeps its name, so
-that its uses are not reported as well.
+A wrong element is reported and left out. The element keeps its name, so that its uses are not
+reported as well.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ NEEDED = {
     "instances": "instance",
     "processors": "processor",
 }
-"""Sections without which there is no system, and what stands in them."""
+"""Sections that a system must have, with the words for their elements."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +155,7 @@ MOST_PROCESSORS = 30
 
 
 def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
-    """What no system can do without, and what this version has once."""
+    """Sections that a system must have, and elements of which it has one or a limited number."""
     for section, noun in NEEDED.items():
         if whole and model.is_empty(section):
             hint = f"declare one under `{section}:`"
@@ -210,7 +210,7 @@ UNITS = (
 
 
 def _units(model: Merged) -> Iterator[tuple[str, str, Origin]]:
-    """What becomes a unit; a composite component does not, but those inside it do."""
+    """The elements that become units; of a composite component those inside it do."""
     for section, kind in UNITS:
         for name, form in model.entries(section):
             if section != "components" or not is_composite(form):
@@ -219,7 +219,7 @@ def _units(model: Merged) -> Iterator[tuple[str, str, Origin]]:
 
 @dataclass(frozen=True, slots=True)
 class _Units:
-    """The child units of a system: what each is, its name in the model, and where it stands."""
+    """The child units of a system: the kind, the name in the model, and the location of each."""
 
     system: str
     findings: Findings
@@ -313,9 +313,9 @@ class _Sections:
         types: NameScope[Type],
         damaged: frozenset[str],
     ) -> tuple[tuple[Binding, ...], tuple[Connection, ...], tuple[Poll, ...]]:
-        """What provides each required command, and brings each event.
+        """The bindings of commands, and the connections and polls that bring events.
 
-        None where something of it was lost.
+        All are empty where a binding or device was lost.
         """
         count = self.findings.count()
         scope: NameScope[Provider] = self.scope("devices", "device")
@@ -352,7 +352,7 @@ class _Sections:
         return tuple(bus for bus, _ in found)
 
     def shutdown(self, site: DeploymentNames) -> Shutdown:
-        """What a request to stop does."""
+        """The effect of a request to stop."""
         given = [file.shutdown for file in self.model.files if file.shutdown is not None]
         lost = any(file.lost("shutdown") for file in self.model.files)
         if lost or any(form.list_damaged("raises") for form in given):

@@ -56,10 +56,10 @@ class Checker:
     findings: Findings
     place: TextPlace
     known: Known = field(init=False)
-    """What the conditions around a term say about names."""
+    """The bounds of names by the conditions around a term."""
 
     def __post_init__(self) -> None:
-        """Begin with what is known around the text."""
+        """Begin with the bounds around the text."""
         self.known = self.vocabulary.known
 
     def at(self, term: Term) -> Origin:
@@ -128,7 +128,7 @@ class Checker:
         return None
 
     def reading(self, name: Name, type_: Type) -> CheckedExpression:
-        """What reading a name yields."""
+        """The type or bounds that reading a name yields."""
         if isinstance(type_, IntegerType):
             bounds = self.known.get((name.kind, name.name, name.field), (type_.first, type_.last))
             return CheckedExpression(name, None, bounds, type_.unit)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What expressions may name, and what a sound expression is known to yield."""
+"""The names that expressions may use, and the type or bounds that a sound expression yields."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from ravenchart.gen.language.terms import (
 from ravenchart.gen.origins import Origin
 
 EVENT = "event"
-"""What expressions call the value of the triggering event."""
+"""The name of the triggering event's value in expressions."""
 
 
 @dataclass(frozen=True, slots=True)
 class Vocabulary:
-    """What expressions of one region or activity may name."""
+    """The names that expressions of one region or activity may use."""
 
     readable: NameScope[tuple[Reading, str, Type]]
     inputs: NameScope[str]
@@ -39,11 +39,11 @@ class Vocabulary:
     concurrent: frozenset[str] = frozenset()
     """States of the own region that lie in one of several regions of a state, in lower case."""
     may_ask: Callable[[str], bool] | None = None
-    """Which of them may be asked for here; None where nothing is read before a step fires."""
+    """Which of them may be tested here; None where nothing is read before a step's transitions."""
     no_event: str = "there is no triggering event here"
     """Why ``event`` has no value."""
     known: Known = field(default_factory=dict)
-    """What the conditions around a place say about names."""
+    """The bounds of names by the conditions around an expression."""
 
     def where(self, condition: Expression, holds: bool) -> Vocabulary:
         """The same, where it is known whether the condition holds."""
@@ -74,7 +74,7 @@ class Vocabulary:
 class CheckedExpression:
     """A sound expression; an integer has no ``type`` but bounds and a unit.
 
-    ``bare`` marks what holds only numbers: it agrees with every unit.
+    ``bare`` marks an expression of numbers only: it agrees with every unit.
     """
 
     expression: Expression
@@ -93,7 +93,7 @@ def literal_use(literal: str, of_type: EnumerationType, origin: Origin) -> NameU
 
 
 def yielded(checked: CheckedExpression) -> str:
-    """What an expression yields, in words."""
+    """The kind of an expression's value, in words."""
     if checked.type is not None:
         kind = "a record" if isinstance(checked.type, RecordType) else "a value"
         return f"{kind} of type {checked.type.name}"

@@ -1,4 +1,4 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a system must keep to be valid, each with its code."""
+"""The rules that a valid system keeps, each with its code."""

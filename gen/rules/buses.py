@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Rules of what a bus tells the model of its controllers' faults, and of recovery from them."""
+"""Rules on the faults of controllers that a bus reports to the model, and on their recovery."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ravenchart.gen.resolve.system import Resolved
 from ravenchart.gen.resolve.transport import TRANSPORT
 
 FAULTS = "RV-0618"
-"""A fault that cannot be noticed, or a recovery that nobody can request."""
+"""A fault that cannot be noticed, or a recovery that no region can request."""
 
 WATCH = "RV-0714"
 """A bus with `watch` that a node watches in no row, or in several."""

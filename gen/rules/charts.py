@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Validity rules of charts: what is never reached, is never taken, or is in another's way.
+"""Validity rules of charts: states never reached, and transitions never taken or in conflict.
 
 Guards are not looked into, but for the literals ``true`` and ``false``.
 """
@@ -125,7 +125,7 @@ def _incomplete(component: Component, region: Region) -> Iterator[Diagnostic]:
 
 
 def completions_can_come(component: Component, resolved: Resolved) -> Iterator[Diagnostic]:
-    """What waits for a completion can get it, and what is completed waits for it."""
+    """A completion transition can get its completion, and one waits for each `DONE` raised."""
     for region in sound_regions(component, resolved):
         yield from _incomplete(component, region)
     regions = {region.name: region for region in sound_regions(component, resolved)}
@@ -233,7 +233,7 @@ def _shut_out(tree: Tree, leaving: tuple[Transition, ...]) -> Iterator[Diagnosti
 
 
 def _taken(tree: Tree, transition: Transition) -> str | None:
-    """What a transition takes away from the later ones of its source, in words."""
+    """The occurrence that a transition takes from the later ones of its source, in words."""
     source = transition.source
     match transition.trigger:
         case OnEvent(event):
@@ -246,7 +246,7 @@ def _taken(tree: Tree, transition: Transition) -> str | None:
 
 
 def firings_agree(component: Component, resolved: Resolved) -> Iterator[Diagnostic]:
-    """A warning where a transition leaves an orthogonal state and another fires in it."""
+    """A warning where an event can take a transition out of an orthogonal state and one in it."""
     for region in sound_regions(component, resolved):
         if not any(state.is_orthogonal for state in region.states):
             continue
@@ -279,7 +279,7 @@ def firings_agree(component: Component, resolved: Resolved) -> Iterator[Diagnost
 
 
 def _conflict(tree: Tree, first: Transition, second: Transition) -> tuple[Transition, str] | None:
-    """Which of two transitions leaves the orthogonal state that both fire in."""
+    """Which of two transitions leaves the orthogonal state that both are inside."""
     state = tree.divide((first.source, second.source))
     if state is None:
         return None

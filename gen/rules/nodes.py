@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Rules of systems with several nodes: what may reach from one to another, and what not."""
+"""Rules of systems with several nodes: which elements may reach from one to another."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from ravenchart.gen.origins import Origin
 from ravenchart.gen.resolve.system import Resolved
 
 ABSENT = "RV-0802"
-"""What cannot reach from one node to another yet."""
+"""Elements that cannot reach from one node to another yet."""
 
 ROOM = "RV-0617"
 """Transmit buffers by priority that do not hold what a node sends."""
 
 SILENCE = "RV-0712"
-"""What the silence of a processor shall do that nothing can."""
+"""A reaction to silence without a supervision, or a supervision on several cores."""
 
 UNHEARD = "RV-0713"
 """An event of the silence of a processor for which only that processor waits."""
@@ -64,7 +64,10 @@ def calls_can_be_carried(resolved: Resolved) -> Iterator[Diagnostic]:
 
 
 def servers_call_once(resolved: Resolved) -> Iterator[Diagnostic]:
-    """What serves several requests in one execution may call as often: no message does."""
+    """A row that serves several requests in one execution calls no command of another node.
+
+    It may call once for each request, and a message carries one call in its period.
+    """
     system = resolved.system
     for binding in system.bindings:
         component = system.instance(binding.instance).component
@@ -107,7 +110,7 @@ def raised_events_are_near(resolved: Resolved) -> Iterator[Diagnostic]:
 
 
 def silence_is_seen(resolved: Resolved) -> Iterator[Diagnostic]:
-    """What a processor's silence raises needs a supervision, and somebody else who reacts."""
+    """An event of a processor's silence needs a supervision, and a region of another processor."""
     system = resolved.system
     nodes = {node.name: node for node in system.nodes}
     for processor in system.processors:

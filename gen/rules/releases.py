@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Rules for processors that a queued port releases: which ports may, and what these run.
+"""Rules for processors that a queued port releases: the ports, and the rows of the tables.
 
 A value of one periodic row releases the processor. Its table handles that value and nothing
 else, so no row of it counts executions as time, and none waits for a value that another port has.
@@ -21,10 +21,10 @@ from ravenchart.gen.origins import Origin
 from ravenchart.gen.resolve.system import Resolved
 
 TABLE = "RV-0716"
-"""What the table of a processor that a port releases must be."""
+"""The rule on the table of a processor that a port releases."""
 
 Problem = tuple[str, Origin, str, str]
-"""What is wrong, where that is declared, a word on it, and what to do."""
+"""The error, the location of its cause, a note on that, and the hint."""
 
 
 def ports_can_release(resolved: Resolved) -> Iterator[Diagnostic]:
@@ -84,7 +84,7 @@ def _is_queued(instance: Instance, end: End) -> bool:
 
 
 def _of_port(instance: Instance, end: End) -> Iterator[Problem]:
-    """What is wrong with the port itself."""
+    """The errors of the port itself."""
     port = instance.component.port(end.port)
     declared = port.origin, f"`{port.name}` is declared here"
     if not _is_queued(instance, end):
@@ -96,7 +96,7 @@ def _of_port(instance: Instance, end: End) -> Iterator[Problem]:
 
 
 def _of_instance(system: System, instance: Instance, end: End) -> Iterator[Problem]:
-    """What the component has besides, that needs time or another port."""
+    """Other elements of the component that need time or another port."""
     component = instance.component
     cannot = f"{end} cannot release a processor"
     apart = "put it into a component of its own, on a periodic processor"
@@ -137,7 +137,7 @@ def _of_instance(system: System, instance: Instance, end: End) -> Iterator[Probl
 
 
 def _of_senders(system: System, end: End) -> Iterator[Problem]:
-    """What sends to the port must be one activity or region of a periodic processor."""
+    """The sender to the port must be one activity or region of a periodic processor."""
     cannot = f"{end} cannot release a processor"
     periodic = "let one row of a periodic processor send to it over a connection"
     for message in system.messages:

@@ -1,11 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Validity rules of a whole system: what it is made of and how it is wired and run.
+"""Validity rules of a whole system: its elements, its connections and its tables.
 
-Each rule is one function from what was resolved to its violations. A rule that
-needs all of a section is silent where some of it was lost: what is missing has
-been reported already.
+Each rule is one function from the resolved system to its violations. A rule that needs
+all of a section is silent where some of it was lost: the loss has been reported already.
 """
 
 from __future__ import annotations
@@ -170,7 +169,7 @@ def inputs_have_one_source(resolved: Resolved) -> Iterator[Diagnostic]:
 
 
 def _may_be_told(component: Component, resolved: Resolved) -> bool:
-    """Whether a port of it may have lost the event of an interface that it is told."""
+    """Whether a port of it may have lost the event of a required interface."""
     return component.name in resolved.damaged and bool(component.needs or component.hears)
 
 
@@ -265,7 +264,7 @@ def messages_have_one_sender(resolved: Resolved) -> Iterator[Diagnostic]:
 
 
 def sections_are_part_of_work(resolved: Resolved) -> Iterator[Diagnostic]:
-    """What runs inside a protected operation is part of some worst-case execution time."""
+    """The time inside a protected operation is part of some worst-case execution time."""
     system = resolved.system
     for node in system.nodes:
         here = [p for p in system.processors if p.slots and p.node == node.name]

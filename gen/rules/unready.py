@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What is checked and analysed, and cannot be generated yet: told before anything is written."""
+"""Elements that are checked and analysed but have no code yet: `generate` refuses them."""
 
 from __future__ import annotations
 

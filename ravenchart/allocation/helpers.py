@@ -39,7 +39,7 @@ def helped(address: str | None) -> AbstractContextManager[Helpers | None]:
 def scheduled(address: str) -> Iterator[Helpers]:
     """The workers of the scheduler at ``address``, such as ``tcp://host:8786``.
 
-    Unusable where Dask is not installed, nobody answers, a worker has not this version of
+    Unusable where Dask is not installed, no scheduler answers, a worker has another version of
     Ravenchart, or the connection is lost.
     """
     try:

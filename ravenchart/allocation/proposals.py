@@ -3,11 +3,11 @@
 
 """The periodic rows of a model put together anew, and checked.
 
-Sporadic processors, drivers and the host probe stay as they are. The strategies search
-with the drivers and sporadic processors above all tables. What they come to is completed
-as a model is and analysed as one, with its messages, chains and queues; where these are
-not kept, rows move on (`search`). Rows of a table keep the order that they
-have in the model: what hands a value on comes before what takes it.
+Sporadic processors, drivers and the host probe stay as they are. The strategies search with
+the drivers and sporadic processors above all tables. Their tables are completed as a model
+is, and analysed as one with its messages, chains and queues. Where a limit of these is not
+kept, `search` moves rows. Rows of a table keep the order that they have in the model: a row
+that hands a value on comes before the row that takes it.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class WantedTable:
     """"" where a model of several nodes has it on each."""
     core: int
     released_by: str | None
-    """What releases a sporadic one; None: it is periodic."""
+    """The bus or port that releases a sporadic one; None: it is periodic."""
     priority: int
     period: int
     offset: int
@@ -113,9 +113,9 @@ def propose(
     better: Callable[[Proposal], None] = lambda _: None,
     helpers: Callable[[RankOf], Ranked] | None = None,
 ) -> Proposal:
-    """The model's periodic rows put together by that strategy; ``better`` hears the best so far.
+    """The model's periodic rows put together by that strategy; ``better`` gets the best so far.
 
-    ``helpers`` makes of a function of tables one of many tables, which work at the same time.
+    ``helpers`` turns a function of tables into one of many tables, which works on them in parallel.
     """
     system = analysis.system
     judge = Judge(system)

@@ -3,9 +3,9 @@
 
 """Tables judged by the analysis of the whole model: tasks, messages, chains, queues.
 
-The core's strategies know tasks only. What they find is the start here: single rows and
-tables move until the whole model keeps every deadline and limit, and then as long as what
-the strategy wants grows.
+The core's strategies know tasks only. Their tables are the start here: single rows and tables
+move until the whole model keeps every deadline and limit. Then they move while the rank by
+the strategy grows.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Judged:
 
 Judge = Callable[[list[Table]], Judged]
 Better = Callable[[Judged], None]
-"""Hears of the best tables so far, each time when there are better ones."""
+"""Gets the best tables so far, each time when there are better ones."""
 Ranked = Callable[[Sequence[list[Table]]], Iterator[Rank]]
 """How good each of many tables is, in their order. Only as many are asked for as are needed."""
 

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the rules of behaviour found earlier, kept by the content of the model (`kept`).
+"""Earlier results of the rules of behaviour, kept by the content of the model (`kept`).
 
 A key covers every file of the model, the sources of the tool, and the versions of Python and z3.
-A result that is not finished is kept with the work that it might take.
+An unfinished result is kept with the effort that it was allowed.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ def key(sources: Mapping[str, Sequence[str]]) -> str:
 
 
 def load(key: str, effort: int, *, finished: bool) -> Behaviour | None:
-    """What was found; None when nothing is kept.
+    """The result that is kept; None without one.
 
-    One that was not finished counts when it might take ``effort``, unless it must be ``finished``.
+    An unfinished one counts if it was allowed ``effort``, unless it must be ``finished``.
     """
     entry: Any = kept.load(KIND, key)
     try:

@@ -49,7 +49,7 @@ class Checked:
     warnings: str
     sources: Sources
     diagnostics: tuple[Diagnostic, ...]
-    """What ``warnings`` shows."""
+    """The diagnostics that ``warnings`` shows."""
     read: Mapping[str, str]
     """SHA-256 of each file of the model, by its path."""
 
@@ -80,9 +80,9 @@ def check(
 ) -> Checked:
     """Load, check and analyse a model; Refused with every diagnostic when it is wrong.
 
-    ``effort`` is how many situations and questions the rules of behaviour may take. What they
-    found in the same content before is taken again; with ``finish``, unless it was not
-    finished. ``read`` is how files are read.
+    ``effort`` limits the situations and questions of the rules of behaviour. Their earlier
+    result for the same content is used again; with ``finish``, only if it is finished. ``read``
+    reads the files.
     """
     digests: dict[str, str] = {}
 
@@ -108,7 +108,7 @@ def check(
 
 
 def _behaviour(loaded: Loaded, system: System, effort: int, finish: bool) -> Behaviour:
-    """What the rules of behaviour find, or have found before in the same content."""
+    """The result of the rules of behaviour, from now or from an earlier check of this content."""
     key = check_cache.key(loaded.sources)
     found = check_cache.load(key, effort, finished=finish)
     if found is None:

@@ -22,9 +22,9 @@ class Compilation:
     image: Path
 
     def run(self, *more: str, tell: Callable[[str], None] = lambda _: None) -> str:
-        """What gprbuild says where all is well; it compiles what is not up to date.
+        """Compile the units that are not up to date; the output of a gprbuild that succeeds.
 
-        ``tell`` gets how far it is.
+        ``tell`` gets the progress.
         """
         words = [steps.OF_GPRBUILD, *self.arguments, *more]
         taken = steps.Announced(steps.COMPILING, tell).takes

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The search for garbage in circles, which costs most where much is made and all of it stays."""
+"""The search for garbage in circles, which is slowest where many objects are made and all stay."""
 
 from __future__ import annotations
 

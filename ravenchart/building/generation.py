@@ -40,7 +40,7 @@ def without_clashes(checked: Checked) -> None:
 
 
 def claims(checked: Checked) -> Claims:
-    """What the program's certificate claims, in ns. Refused when something cannot be shown."""
+    """The values that the program's certificate states, in ns; Refused if one cannot be shown."""
     gaps = tuple(uncertified(checked.analysis))
     if gaps:
         raise Refused("\n".join(render(gap, {}) for gap in gaps), gaps)

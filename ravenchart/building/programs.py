@@ -56,9 +56,9 @@ def to_standard_error(text: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """What runs on one node: where its sources are, its objects, itself and its proof.
+    """The program of one node: where its sources, objects, executable and proof are.
 
-    ``folder`` is below generated/ and below the place of the objects: "" of the only node.
+    ``folder`` is below generated/ and below the folder of the objects: "" of the only node.
     """
 
     checked: Checked
@@ -96,9 +96,9 @@ class Program:
     ) -> Path:
         """Compile it; the path of the executable. ToolFailed with the compiler's words, or
         where the memory of the target has no room for it. Refused where a stack is too small;
-        without ``stacks_needed`` nobody looks.
+        without ``stacks_needed`` stacks are not examined.
 
-        ``warn`` gets the compiler's warnings, and ``tell`` how far the build is. Without a
+        ``warn`` gets the compiler's warnings, and ``tell`` the progress of the build. Without a
         ``board`` it is for this machine.
 
         Refused where ``driver`` cannot do what the model wants, and with ``registers`` of the
@@ -225,7 +225,7 @@ class Program:
 
     @property
     def part(self) -> System:
-        """What of the system it is."""
+        """The part of the system that the program is made of."""
         return next(p for p in programs(self.checked.system) if p.nodes[0].name == self.node)
 
     def proof(self, driver: str, *, warnings: str = "continue", whole: bool = False) -> ProofTask:
@@ -262,7 +262,7 @@ def programs_of(checked: Checked) -> tuple[Program, ...]:
 
 
 def build_home(checked: Checked, driver: str, target: str = NATIVE) -> Path:
-    """What is built of a model, below build/ of the place of work, apart for driver and target."""
+    """The folder of a model's builds for a driver and target, below build/ of `work`."""
     place = driver if target == NATIVE else f"{driver}-{target}"
     return work() / "build" / f"{checked.stem}-{_mark(checked.path)}-{place}"
 
@@ -273,7 +273,7 @@ def homes_of(model: Path) -> list[Path]:
 
 
 def _mark(model: Path) -> str:
-    """What tells models of one name apart: where their main files are."""
+    """A digest of the location of the main file: it distinguishes models of one name."""
     place = model.parent if is_usual(model) else model
     return hashlib.sha256(str(place.resolve()).encode()).hexdigest()[:8]
 

@@ -37,7 +37,7 @@ FRAMES = ROOT / "spark_runtime" / "frames.toml"
 """The bounds of frames of Ravenchart's own sources that the compiler has none for."""
 ENDINGS = frozenset({"__gnat_last_chance_handler"})
 ATTACHING = "system__interrupts__install_restricted_handlers"
-"""What attaches handlers of interrupts. Which, the call graph does not say."""
+"""The procedure that attaches interrupt handlers. The call graph does not name the handlers."""
 PUT_ALL = "ravenchart_put_all"
 """By this name the runtime of this machine calls the report of a program, for its snapshots."""
 SAFE = 1_024
@@ -55,7 +55,7 @@ class BuiltProgram:
     target: Target
     mode: str
     tools: str
-    """What the names of nm, size and objdump begin with."""
+    """The prefix of the names of nm, size and objdump."""
     sources: Mapping[str, tuple[str, ...]]
     """The lines of the model's files, for messages."""
     digests: Mapping[str, str]
@@ -117,7 +117,7 @@ def write(found: Memory, path: Path) -> None:
 
 
 def kept(image: Path) -> Memory:
-    """What was found of a program."""
+    """The record of a program's stacks and memory."""
     return read_record(record_of(image))
 
 
@@ -130,7 +130,7 @@ def read_record(path: Path) -> Memory:
 
 
 def facts_of(target: Target) -> tuple[Path, ...]:
-    """What decides beside a program whether its stacks are large enough, this module apart."""
+    """The files, beside program and this module, that decide whether its stacks are enough."""
     return FRAMES, file_of(target.name)
 
 
@@ -288,14 +288,14 @@ def _known(system: System) -> dict[str, tuple[str, Origin, int | None]]:
 
 
 def _ending(made: BuiltProgram, depths: Depths) -> int:
-    """What the run-time library executes on the stack of a task that ends."""
+    """Bytes of the calls that the run-time library makes on the stack of a task that ends."""
     wanted = set(made.target.facts.stacks.on_end)
     found = [title for title, one in depths.graph.items() if graph.plain_symbol(one.name) in wanted]
     return max(map(depths.depth, found), default=0)
 
 
 def _interrupted(made: BuiltProgram, depths: Depths) -> int:
-    """What an interrupt takes of the stack of the task that it interrupts."""
+    """Bytes that an interrupt takes of the stack of the task that it interrupts."""
     facts = made.target.facts.stacks.interrupted
     if facts is None:
         return 0

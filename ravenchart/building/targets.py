@@ -29,7 +29,7 @@ from ravenchart.tools import children
 from . import variants
 
 COMPILERS = variants.RUNTIME / "compilers"
-"""What gprbuild must know of compilers beside what it knows itself."""
+"""Descriptions of the compilers that gprbuild does not find by itself."""
 SECOND = 10**9
 """In ns."""
 
@@ -55,7 +55,7 @@ class CanController(_Form):
 
 
 class TargetOverheads(_Form):
-    """What the run-time library costs there, in ns; named as the keys of a node are."""
+    """The overheads of the run-time library there, in ns; named as the keys of a node are."""
 
     context_switch: Span
     critical_section: Span
@@ -91,14 +91,14 @@ class InterruptStack(_Form):
 
 
 class Interrupted(_Form):
-    """What an interrupt takes of the stack of its task: a frame, and what is called from there."""
+    """The stack that an interrupt takes of its task: a frame, and the calls from there."""
 
     frame: int = Field(ge=0)
     calls: tuple[str, ...]
 
 
 class Stacks(_Form):
-    """What is known of stacks beside the program: see docs/memory.md."""
+    """Facts about stacks that the program does not show: see docs/memory.md."""
 
     library: int | None = Field(default=None, gt=0)
     interrupted: Interrupted | None = None
@@ -225,7 +225,7 @@ def check_system(made: Board, system: System) -> tuple[str, ...]:
 
 
 def _late(made: Board, system: System, node: Node) -> Iterator[str]:
-    """What is wrong with the `tick` of a node."""
+    """The error that the `tick` of a node causes, with its hint."""
     rate, timer = made.clock_rate, made.target.facts.tick
     has = node.tick.period if node.tick else 0
     if timer is not None and has < timer:

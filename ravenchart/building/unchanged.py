@@ -3,11 +3,11 @@
 
 """Generations and builds that have nothing to do, known before the model is read (`kept`).
 
-The record of a generation has the SHA-256 of every file that it read, that it wrote, and of the
-user's that it looked at. Its key covers the tool, the folder, and the model as it is named. While
-all is as recorded, what was said and done is known. That of a build has its calls of gprbuild too.
-They are made again, for gprbuild alone knows whether compilers, switches and sources are as they
-were. What they made must be what was examined then.
+The record of a generation has the SHA-256 of every file that it read or wrote, and of the user's
+files that it looked at. Its key covers the tool, the folder, and the name of the model. While all
+files are as recorded, messages and results are those of the record. The record of a build has its
+calls of gprbuild, too. They are made again: gprbuild alone knows whether compilers, switches and
+sources have changed. The programs must then be those that were examined.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ KIND = "generations"
 FORMAT = 1
 """Part of each key: raised when what an entry holds changes."""
 UNREADABLE = (AttributeError, KeyError, OSError, TypeError, ValueError)
-"""What comes of an entry that has another form, and of a file that cannot be read."""
+"""Exceptions of an entry that has another form, and of a file that cannot be read."""
 
 
 @dataclass(frozen=True, slots=True)
 class Generation:
-    """What was found in a model, and what was written: nothing of it would be changed."""
+    """The diagnostics and the written files of a model: a new generation would be the same."""
 
     warnings: str
     found: tuple[Diagnostic, ...]

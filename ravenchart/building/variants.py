@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What programs can be built for: targets, CAN drivers and registers.
+"""The variants of a program: targets, CAN drivers and registers.
 
-Apart from what builds them: the options of commands are made of it, and shall not wait for that.
+The options of commands are made of them, and shall not wait for the modules that build programs.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ DRIVER_FOLDERS = {
 
 DRIVERS = tuple(DRIVER_FOLDERS)
 REGISTERS = ("simulated", "hardware")
-"""What the registers of devices can be: see the project file of a program."""
+"""The kinds of device registers: see the project file of a program."""
 
 
 def targets() -> tuple[str, ...]:

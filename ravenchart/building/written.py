@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a generation writes: which files, and what the list of them beside them says."""
+"""The files that a generation writes, and the list of them beside them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ EDITED = ".edited"
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """What a generation did.
+    """The result of a generation.
 
     ``files`` were generated, the manifest not counted; of these ``changed`` have other bytes
     than before. ``edited`` had been changed by hand: their copies lie beside them.

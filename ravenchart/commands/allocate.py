@@ -90,7 +90,7 @@ def _answer(proposal: Proposal, strategy: str) -> AllocateResult:
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     sub.add_argument(
         "--strategy", choices=tuple(STRATEGIES), required=True,

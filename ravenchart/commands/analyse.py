@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     sub.add_argument(
         "--html", type=Path, metavar="FILE", help="write the report as a page of HTML there too"

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What `--json` prints: one object for each call, whatever comes of it.
+"""The output of `--json`: one object for each call, whether it succeeds or fails.
 
-A command fills in ``result`` and tells its warnings; `command_line` tells how it failed. Here the
-text for people is kept off standard output, and the object printed. Standard error has the same
-text as without `--json`. docs/answer.schema.json is made of `Answer`, and of the
-classes in `reported` and `results`.
+A command fills in ``result`` and adds its warnings; `command_line` adds its failure. This module
+keeps the text for people off standard output, and prints the object. Standard error has the same
+text as without `--json`. docs/answer.schema.json is made of `Answer`, and of the classes in
+`reported` and `results`.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ HINT = re.compile(r"\s*hint: (?P<message>.*)")
 
 @dataclass(slots=True)
 class Answer:
-    """What one call came to; ``figures`` is the answer of `analyse`, ``lines`` of `simulate`."""
+    """The answer to one call; ``figures`` are those of `analyse`, ``lines`` those of `simulate`."""
 
     command: str | None
     result: Result | None = None
@@ -59,7 +59,7 @@ class Answer:
         self.found += [found_of(one) for one in diagnostics if isinstance(one, Diagnostic)]
 
     def tell(self, text: str, severity: Severity = "error") -> None:
-        """What is said in a text for people, which an outside program may have printed."""
+        """Add the messages of a text for people, which an outside program may have printed."""
         self.found += found_in(text, severity)
 
     def fail(self, text: str, diagnostics: Iterable[object] = ()) -> None:
@@ -82,7 +82,7 @@ class Answer:
         self.print(OK)
 
     def text(self, status: int) -> str:
-        """What is printed."""
+        """The printed text."""
         if self.lines is not None and status == 0:
             return self.lines
         head = {

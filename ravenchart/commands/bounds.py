@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""`--bounds FILE`: bounds of execution times from a static WCET tool, held against the model."""
+"""`--bounds FILE`: bounds of execution times from a static WCET tool, compared with the model."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     common.add_target(sub)
     common.add_driver(sub)
@@ -86,7 +86,7 @@ def _build(options: argparse.Namespace) -> None:
 
 
 def _build_again(options: argparse.Namespace, before: unchanged.Build) -> None:
-    """What gprbuild finds to do, and the rest where it has made another program."""
+    """Call gprbuild again; where it has made another program, examine that too."""
     generated = common.generated_before(before.generation, options.answer)
     options.answer.result = BuildResult(generated, [])
     for one in before.programs:
@@ -98,7 +98,7 @@ def _build_again(options: argparse.Namespace, before: unchanged.Build) -> None:
 
 
 def _examined(options: argparse.Namespace, node: str) -> unchanged.BuiltNode:
-    """The program of a node whose model has been told of."""
+    """The program of a node, built and examined; its model has been reported already."""
     from ravenchart.building import checking, programs
 
     found = programs.programs_of(checking.check(options.model))

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What `check`, `generate` and `build` answer with `--json`, beside the forms of `results`.
+"""The answers of `check`, `generate` and `build` with `--json`.
 
-Apart from these, for they are imported more often than all others together.
+They are apart from `results`, for they are imported more often than all others together.
 """
 
 from __future__ import annotations
@@ -67,6 +67,6 @@ class BuildResult(Result):
     """Programs, generated and compiled."""
 
     generated: GenerateResult
-    """What was generated."""
+    """The generation."""
     programs: list[Built]
     """One for each node that runs something."""

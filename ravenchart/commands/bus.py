@@ -30,7 +30,7 @@ EVENTS = ("cut", "mend", "hold_dominant", "hold_recessive", "let_go", "babble", 
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     sub.add_argument(
         "--port",
         type=_number(0, 65535),
@@ -85,7 +85,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 
 
 def server_settings(options: argparse.Namespace) -> list[str]:
-    """What the server is told, NAME=VALUE each."""
+    """The settings of the server, NAME=VALUE each."""
     told = [
         f"port={options.port}",
         f"name={options.name}",

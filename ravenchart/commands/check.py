@@ -92,7 +92,7 @@ def _one(options: argparse.Namespace) -> int:
 
 
 def _facts(system: System, safe: SafeRegion) -> Iterator[str]:
-    """What the proof of a region's invariants says of data, leaf by leaf."""
+    """The facts about data in the proof of a region's invariants, leaf by leaf."""
     component = next(c for c in system.components if c.name == safe.component)
     for fact in safe.facts:
         yield f"in {fact.vertex}, {shown_expression(fact.condition(component))}"

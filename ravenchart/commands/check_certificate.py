@@ -17,7 +17,7 @@ from .results import CertificateResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     sub.add_argument(
         "--generated", type=Path, metavar="FOLDER",

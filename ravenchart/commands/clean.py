@@ -16,7 +16,7 @@ from .results import CleanResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     sub.add_argument(
         "model",
         type=Path,

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What commands on a model share: how it is named, checked and written."""
+"""Shared parts of the commands on a model: how it is named, checked and written."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ def add_model(sub: argparse.ArgumentParser) -> None:
 
 
 def add_driver(sub: argparse.ArgumentParser) -> None:
-    """What the CAN layer of the program talks to."""
+    """The CAN driver of the program."""
     sub.add_argument(
         "--driver", choices=variants.DRIVERS, metavar="NAME", help=f"the CAN driver{AS_LISTED}"
     )
 
 
 def add_target(sub: argparse.ArgumentParser) -> None:
-    """What the program is built for."""
+    """The target of the program, and its run-time library."""
     sub.add_argument(
         "--target", choices=variants.targets(), default=variants.NATIVE,
         help="what the program runs on (default: this machine)",
@@ -208,7 +208,7 @@ def tell_warnings(warnings: str) -> None:
 
 
 def generated_before(found: Generation, answer: Answer) -> GenerateResult:
-    """Tell what a generation that has nothing to do would tell."""
+    """Print the messages of a generation that has nothing to do."""
     tell_warnings(found.warnings)
     answer.add(found.found)
     return tell_written(found.written, answer)
@@ -229,7 +229,7 @@ def verdict(found: Checked) -> str:
 
 
 def write(checked: Checked, answer: Answer) -> tuple[Written, GenerateResult]:
-    """Write the program of a model, and tell of it."""
+    """Write the program of a model, and print the result."""
     from ravenchart.building import generation  # only here: it imports all that writes Ada
 
     with progress("generate"):
@@ -238,7 +238,7 @@ def write(checked: Checked, answer: Answer) -> tuple[Written, GenerateResult]:
 
 
 def tell_written(written: Written, answer: Answer) -> GenerateResult:
-    """What a generation did, and what is still to write: printed, and for the answer."""
+    """Print the result of a generation and the bodies that are still to write; the answer."""
     from ravenchart.building.written import EDITED
 
     print(f"{written.folder}: {several(written.files, 'file')}, {written.changed} changed")

@@ -15,11 +15,11 @@ from ravenchart.failures import Refused
 from . import plain
 
 CORRUPT = (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError)
-"""What reading the figures of an answer that somebody changed may raise."""
+"""Exceptions of reading the figures of an answer that was edited."""
 
 
 def compared(earlier: Path, now: Figures) -> Differences:
-    """What changed since ``earlier``: a model, a plain file, or an answer of `--json`."""
+    """The changes since ``earlier``: a model, a plain file, or an answer of `--json`."""
     try:
         return differences(str(earlier), _figures(earlier), now)
     except CORRUPT as fault:
@@ -42,7 +42,7 @@ def _figures(path: Path) -> Figures:
 
 
 def _json(path: Path) -> Any:
-    """What a JSON file holds; None where it is none, which reading it as a plain file tells."""
+    """The value in a JSON file; None for another file, which is then read as a plain file."""
     try:
         return json.loads(path.read_bytes())
     except (ValueError, RecursionError):

@@ -18,7 +18,7 @@ SHELLS = ("bash", "zsh", "fish")
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     sub.add_argument("shell", choices=SHELLS, help="the shell that reads the script")
 
 

@@ -39,7 +39,7 @@ TOOLS = (
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """The command is told nothing."""
+    """The command has no arguments."""
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -54,7 +54,7 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def _rows() -> Iterator[tuple[str, str, str]]:
-    """State, what, and what is said of it."""
+    """State, name and text of each row."""
     place = "an installation" if ROOT == PACKAGE else "a checkout"
     yield "ok", "ravenchart", f"{version()}, {place}: {ROOT}"
     yield "ok", "python", f"{platform.python_version()}"

@@ -42,7 +42,7 @@ def write(drawings: Mapping[str, str], folder: Path) -> None:
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     source = sub.add_mutually_exclusive_group(required=True)
     source.add_argument(
         "model", type=Path, nargs="?", metavar="MODEL", help="the model's YAML file"

@@ -23,7 +23,7 @@ BAD = ("not met", "not shown")
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     sub.add_argument(
         "--out", type=Path, metavar="FOLDER",

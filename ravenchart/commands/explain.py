@@ -19,7 +19,7 @@ from .results import ExampleResult, ExplainResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     sub.add_argument(
         "code", metavar="CODE", help="the code of an error or warning, for example RV-0305"
     )

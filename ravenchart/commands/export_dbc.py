@@ -18,7 +18,7 @@ from .results import ExportResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     sub.add_argument("--bus", help="the bus; needed where the model has several")
     sub.add_argument(

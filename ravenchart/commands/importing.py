@@ -17,7 +17,7 @@ from .results import ImportResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     sub.add_argument(
         "database", type=Path, metavar="FILE", help="the database: DBC, KCD, SYM or ARXML"
     )

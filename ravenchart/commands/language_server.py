@@ -13,7 +13,7 @@ from ravenchart.failures import OK
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     sub.add_argument(
         "--stdio", action="store_true",
         help="talk over standard input and output: the only way, which some editors ask for",

@@ -27,7 +27,7 @@ _STYLES = {CaseVerdict.PASSED: "", CaseVerdict.FAILED: "bold red", CaseVerdict.S
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     sub.add_argument(
         "--interface", required=True, metavar="NAME", help="name of the interface in python-can"
     )
@@ -84,7 +84,7 @@ def verdict_line(result: SuiteResult) -> str:
 
 
 def answered(result: SuiteResult) -> results.LoopbackResult:
-    """What `--json` prints of it."""
+    """The result as `--json` prints it."""
     cases = [
         results.LoopbackCase(one.name, one.verdict.value.lower(), one.seconds, one.detail)
         for one in result.cases

@@ -13,7 +13,7 @@ from ravenchart.hw_can.conformance.suite import CaseVerdict, SuiteResult, histog
 
 
 def facts(result: SuiteResult) -> tuple[tuple[str, str], ...]:
-    """What was under test, as names and values."""
+    """The tested setup, as names and values."""
     setup = result.setup
     other = "the same bus object" if setup.echo else setup.receive_interface
     return (

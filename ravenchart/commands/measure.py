@@ -28,7 +28,7 @@ MOST = 1_000
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     running.add_arguments(sub)
     sub.add_argument(
         "--margin", type=_margin, default=20, metavar="PERCENT",
@@ -88,7 +88,7 @@ def _run(options: argparse.Namespace, checked: Checked, board: targets.Board | N
 
 
 def _observation(outcome: RunOutcome) -> Observation:
-    """What the run showed; Refused where it did not come to its end."""
+    """The observation of the run; Refused where the run did not reach its end."""
     seen = outcome.observation
     if seen is not None and seen.complete and seen.executions:
         return seen

@@ -34,7 +34,7 @@ SECOND = 1.0
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     sub.add_argument("--once", action="store_true", help="show one snapshot, and end")
     common.add_interface(sub, "watch the bus", builds=False)
@@ -122,7 +122,7 @@ class _Seen:
 
 
 def _way_to_show(options: argparse.Namespace, seen: _Seen, stack: ExitStack) -> Callable[[], None]:
-    """What shows the nodes as they are now: objects or lines for a pipe, tables in a terminal."""
+    """A function that shows the nodes: objects or lines for a pipe, tables in a terminal."""
     if options.json:
         write = options.answer.write
 

@@ -21,7 +21,7 @@ from ravenchart.hw_can.bench.schema import scenario_schema
 from .results import NewResult
 
 SYSTEM = "SYSTEM"
-"""What stands for the name of the system in the files."""
+"""The placeholder for the name of the system in the files."""
 
 FILES = {
     "model.yaml": "model.yaml",
@@ -35,7 +35,7 @@ FILES = {
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     sub.add_argument(
         "folder", type=Path, metavar="FOLDER", help="a new folder; the system is named after it"
     )

@@ -23,10 +23,10 @@ from ravenchart.failures import Refused
 
 
 def observation(checked: Checked, path: Path) -> Observation:
-    """What the trace that `ravenchart run` writes beside its report holds.
+    """The observation in the trace that `ravenchart run` writes beside its report.
 
-    The program that wrote it was generated from this model: ``generated/trace.json`` says what
-    its numbers mean. `Refused` for a trace that cannot be read, or was cut off.
+    A program that was generated from this model wrote the trace: ``generated/trace.json`` says
+    what its numbers mean. `Refused` for a trace that cannot be read, or was cut off.
     """
     names = checked.generated / "trace.json"
     try:

@@ -115,7 +115,7 @@ def write(path: Path, report: str) -> None:
 
 
 def _observed(path: Path, system: PlainSystem) -> list[Execution]:
-    """What was observed beside the WCETs, nearest to them first."""
+    """The observed times beside the WCETs, nearest to them first."""
     found = observed(text_of(path), str(path), system.network)
     if not isinstance(found, dict):
         raise Refused("\n".join(map(str, found[:SHOWN])))
@@ -176,7 +176,7 @@ def show(result: PlainResult, out: Console) -> None:
 
 
 def _advice(result: PlainResult) -> advice.Advice | None:
-    """What to change so that deadlines are met; limits of chains are not looked at."""
+    """Changes by which deadlines are met; limits of chains are not considered."""
     return advice.of_network(result.system.network, result.scaling, met=result.found.met)
 
 

@@ -21,7 +21,7 @@ from .results import Proved, ProveResult, Unproved
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     common.add_driver(sub)
     sub.add_argument(

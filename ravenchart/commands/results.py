@@ -28,15 +28,15 @@ class Unproved(Described):
     column: int
     """Of the line, from 1."""
     check: str
-    """What is not proved."""
+    """The check, in the words of gnatprove."""
     example: str
     """Values for which it fails; empty where the prover found none."""
     element: str
     """The element of the model that the code belongs to; empty where there is none."""
     origin: str
-    """Where that element stands in the model: file, line and column."""
+    """The location of that element in the model: file, line and column."""
     help: str
-    """What usually helps."""
+    """A change that usually helps."""
 
 
 @dataclass(slots=True)
@@ -54,9 +54,9 @@ class Proved(Described):
     assumed: int
     """How many statements `pragma Assume` there are."""
     outside: list[str]
-    """What is outside SPARK."""
+    """The units and subprograms outside SPARK."""
     unproved: list[Unproved]
-    """What is not proved."""
+    """The checks that are not proved."""
     clean: bool
     """Whether everything is proved, and nothing justified or assumed."""
     cached: bool
@@ -68,7 +68,7 @@ class ProveResult(Result):
     """Programs, generated and given to gnatprove."""
 
     generated: GenerateResult
-    """What was generated."""
+    """The generation."""
     programs: list[Proved]
     """One for each node that runs something."""
 
@@ -148,16 +148,16 @@ class Tool(Described):
     """A program, folder or right that Ravenchart needs."""
 
     name: str
-    """What it is."""
+    """Its name."""
     state: str
     """`ok`; `missing`: no program can be built; `absent`: only some commands need it."""
     text: str
-    """Version and place, or the command that installs it."""
+    """Version and path, or the command that installs it."""
 
 
 @dataclass(slots=True)
 class DoctorResult(Result):
-    """What is installed, and what is missing."""
+    """The programs, folders and rights that Ravenchart needs."""
 
     tools: list[Tool]
     """In the order of the printed list."""
@@ -175,7 +175,7 @@ class ExampleResult(Described):
 
 @dataclass(slots=True)
 class ExplainResult(Result):
-    """What a code means."""
+    """The explanation of a code."""
 
     code: str
     """The code."""
@@ -188,7 +188,7 @@ class ExplainResult(Result):
     corrected: ExampleResult
     """The same without it."""
     text: str
-    """What is printed without `--json`."""
+    """The text that is printed without `--json`."""
 
 
 @dataclass(slots=True)
@@ -204,7 +204,7 @@ class PageResult(Result):
     """A local page that can be opened from now on."""
 
     address: str
-    """Its URL, with the token: whoever has it can do all that the page does."""
+    """Its URL, with the token that gives access to all that the page can do."""
 
 
 @dataclass(slots=True)
@@ -219,7 +219,7 @@ class CompletionResult(Result):
 
 @dataclass(slots=True)
 class CleanResult(Result):
-    """What was deleted."""
+    """The folders that were deleted."""
 
     folders: list[str]
     """The folders."""
@@ -248,7 +248,7 @@ class LoopbackCase(Described):
     seconds: float
     """How long it took."""
     detail: str
-    """What was seen, or the reason."""
+    """The observation, or the reason."""
 
 
 @dataclass(slots=True)
@@ -292,7 +292,7 @@ class CertificateResult(Result):
     compared: dict[str, int]
     """How many comparisons of each class were made."""
     not_derived: dict[str, int]
-    """What was taken as it is, and how many numbers that are; 0: something else."""
+    """The facts that were not derived again, each with its count of numbers; 0: no numbers."""
 
 
 @dataclass(slots=True)
@@ -320,7 +320,7 @@ class TracedElement(Described):
     element: str
     """Its name."""
     kind: str
-    """What it is."""
+    """Its kind."""
     requirements: list[str]
     """The ids."""
     code: list[str]
@@ -368,7 +368,7 @@ class TestGoals(Described):
     """The goals of one kind."""
 
     kind: str
-    """What they are about."""
+    """The kind."""
     shown: int
     """How many of them the cases show."""
     goals: int
@@ -379,7 +379,7 @@ class TestGoals(Described):
 
 @dataclass(slots=True)
 class BodyCoverage(Described):
-    """What the cases execute of a body."""
+    """The coverage of a body by the cases."""
 
     file: str
     """The source."""
@@ -404,7 +404,7 @@ class TestsResult(Result):
     cases: list[TestCase]
     """The files."""
     goals: list[TestGoals]
-    """What they show of the charts."""
+    """The goals of the charts by kind, and how many the cases show."""
     open: list[str]
     """The goals that no case shows, and some execution may."""
     unreachable: list[str]
@@ -412,7 +412,7 @@ class TestsResult(Result):
     different: list[str]
     """The files under which program and interpreter executed different behaviours."""
     coverage: list[BodyCoverage]
-    """What the cases execute of the bodies; empty without `--coverage`."""
+    """The coverage of the bodies by the cases; empty without `--coverage`."""
 
 
 @dataclass(slots=True)
@@ -434,7 +434,7 @@ class TraceResult(Result):
     slices: int
     """How many stays in states it has."""
     lost: dict[str, int]
-    """What was lost in the run, by the name of its count."""
+    """The losses of the run, by the name of the count."""
     complete: bool
     """Whether the run ended by itself; else the counts of its end are missing."""
 

@@ -25,7 +25,7 @@ ALONE = "without a scenario no other node is on the bus"
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     running.add_arguments(sub)
     sub.add_argument(
         "--strict", action="store_true",

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What `run`, `shell` and `monitor` answer with `--json`, beside the forms of `results`."""
+"""The answers of `run`, `shell` and `monitor` with `--json`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class PlayedStep(Described):
     at: float
     """When, in s from the start."""
     text: str
-    """What it asked for."""
+    """The step in words."""
     passed: bool
     """Whether it passed."""
     outcome: str
@@ -45,7 +45,7 @@ class RunResult(Result):
     """A run of the controller, judged."""
 
     title: str
-    """What was run."""
+    """The title of the scenario, or the length of a run without one."""
     passed: bool
     """Whether nothing failed."""
     verdict: str
@@ -55,7 +55,7 @@ class RunResult(Result):
     failures: list[str]
     """The reasons; empty exactly when the run passed."""
     notes: list[str]
-    """What a reader should know besides."""
+    """Remarks that are no failures."""
     steps: list[PlayedStep]
     """Of the scenario."""
     processors: list[Observed]
@@ -68,7 +68,7 @@ class RunResult(Result):
 
 @dataclass(slots=True)
 class ShellResult(Result):
-    """What a script of the shell did."""
+    """The outcome of a script of the shell."""
 
     commands: list[PlayedStep]
     """Its lines that were carried out, the last one perhaps without success."""
@@ -81,7 +81,7 @@ class ShellResult(Result):
 
 @dataclass(slots=True)
 class MonitorResult(Result):
-    """What is seen of running controllers: with `--once` the answer, else a line each."""
+    """The running controllers at one time: with `--once` the answer, else a line each."""
 
     system: str
     """The name of the system."""

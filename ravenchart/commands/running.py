@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the commands share that run a model: its programs, built, and where they are run."""
+"""Shared parts of the commands that run a model: its programs, built, and where they are run."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def request(
 ) -> RunRequest:
     """The programs, generated and built in that mode; Unusable where they cannot be run so.
 
-    What they write goes to the ``folder``, or beside what is built.
+    They write to ``folder``, or beside the build results.
     """
     gateway = None
     if board is not None:

@@ -37,7 +37,7 @@ SCRIPT = "stdin"
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     common.add_interface(sub, "speak to a controller that runs already,")
     sub.add_argument(

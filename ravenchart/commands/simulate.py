@@ -3,10 +3,10 @@
 
 """`ravenchart simulate`: a model in virtual time, by its program or by the interpreter.
 
-The program is the generated one without tasks and buses: a main that holds the
-processors' tables, reads numbered stimuli from standard input, calls the rows in the
-order of `behaviour.interpreter.machine` and prints the lines of `StepRecord.text`; those of
-recorded values have numbers in place of literals.
+The program is the generated one without tasks and buses. Its main holds the processors' tables,
+reads numbered stimuli from standard input, and calls the rows in the order of
+`behaviour.interpreter.machine`. It prints the lines of `StepRecord.text`; those of recorded
+values have numbers in place of literals.
 """
 
 from __future__ import annotations
@@ -83,12 +83,12 @@ def _refused(found: Sequence[Diagnostic], path: Path, text: str) -> Refused:
 
 
 def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[StepRecord]:
-    """What the interpreter executes; Refused when the chart gets stuck."""
+    """The steps that the interpreter executes; Refused when the chart gets stuck."""
     return interpreted(system, stimuli).steps
 
 
 def interpreted(system: System, stimuli: Stimuli) -> Played:
-    """What the interpreter executes, and records; Refused when the chart gets stuck."""
+    """The steps and recorded values of the interpreter; Refused when the chart gets stuck."""
     machine = Machine(as_one(system))
     try:
         with progress("simulate"):
@@ -105,7 +105,7 @@ def refused_as(stuck: Stuck) -> Refused:
 
 
 def simulated_by_program(checked: Checked, stimuli: Stimuli, instance: str | None = None) -> Played:
-    """What the generated program executes, and records; ``instance`` as for others."""
+    """The steps and recorded values of the generated program, of an ``instance`` alone if given."""
     return executed(checked.system, _built(checked, instance), stimuli)
 
 
@@ -183,7 +183,7 @@ def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[Step
 
 
 def executed(system: System, program: Path, stimuli: Stimuli) -> Played:
-    """What the compiled program executes under the stimuli, and records."""
+    """The steps and recorded values of the compiled program under the stimuli."""
     known = {
         (instance.lower(), what.lower()): (number, of_type)
         for number, (instance, what, of_type) in enumerate(stimuli_of_system(system), 1)
@@ -278,7 +278,7 @@ def simulated(
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     sub.add_argument(
         "--events",

@@ -3,9 +3,9 @@
 
 """`ravenchart tests`: event files that take every transition and decide every guard both ways.
 
-The cases are found on the model, by its interpreter. Each is then played by the generated program
-too, and both must execute the same behaviours at the same times. What no case of the system shows
-is shown by components alone, with stubs for what the user writes.
+The cases are found on the model, by its interpreter. The generated program then plays each case,
+too. Both must execute the same behaviours at the same times. Goals that no case of the system
+shows are sought in single components, with stubs for the user's code.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ CASE, ALONE = "case-{:02}.yaml", "case-{:02}-{}.yaml"
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     sub.add_argument(
         "--folder", type=Path, metavar="DIR",
@@ -146,7 +146,7 @@ def _rows(found: SearchResult) -> list[TestGoals]:
 
 
 def _different(checked: Checked, cases: list[FoundCase], files: list[Path]) -> list[Path]:
-    """The cases in which program and interpreter differ; what is told of them is printed."""
+    """Play the cases and print how many agree; the files whose program and interpreter differ."""
     different: list[Path] = []
     compared = 0
     for instance in dict.fromkeys(case.instance for case in cases):
@@ -173,7 +173,7 @@ def _different(checked: Checked, cases: list[FoundCase], files: list[Path]) -> l
 
 
 def _covered(checked: Checked, cases: list[FoundCase], file: Path) -> list[SourceCoverage]:
-    """What the cases execute of the program; it is written, and what it comes to is printed."""
+    """The coverage of the program by the cases: it is written, and its totals are printed."""
     if all(case.instance is not None for case in cases):
         raise Unusable("no case is of the system, so there is no coverage of its program")
     home = build_home(checked, "coverage")

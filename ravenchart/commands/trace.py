@@ -25,7 +25,7 @@ SUFFIXES = ", ".join(FORMATS)
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     sub.add_argument(
         "trace", type=Path, metavar="FILE", nargs="+",
@@ -74,7 +74,7 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def _timeline(checked: Checked, paths: list[Path]) -> tuple[Timeline, list[str]]:
-    """What the files hold, and what controllers said; TraceError where it does not fit."""
+    """The timeline of the files, and the texts of controllers; TraceError where they do not fit."""
     simulated = simulation_in(checked, paths, of_simulation)
     if simulated is not None:
         return simulated, []

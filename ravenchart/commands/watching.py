@@ -3,9 +3,9 @@
 
 """`ravenchart check --watch`: the model is checked again whenever a file of it changes.
 
-The files are those that the last check read or tried to read, included ones too. They are
-looked at every `POLL` seconds, by `stat`. A model has at most 100 files, so that costs less than
-a thousandth of a core, works on network folders, and needs no library. An editor that writes a
+The files are those that the last check read or tried to read, included ones too. `stat` reads
+their state every `POLL` seconds. A model has at most 100 files, so polling takes less than a
+thousandth of a core. It works on network folders, and needs no library. An editor that writes a
 new file and renames it over the old one changes the inode: that is a change like any other.
 """
 

@@ -15,7 +15,7 @@ from . import common
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare what the command is told."""
+    """Declare the arguments of the command."""
     common.add_model(sub)
     common.add_port(sub)
     sub.add_argument(

@@ -3,7 +3,8 @@
 
 """`ravenchart import`: the messages of a CAN database as types, ports and messages of a model.
 
-What models have no words for is changed or left out, and the text says so at its top.
+Parts of the database that models have no words for are changed or left out. The text lists them
+at its top.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ FORMATS = (".dbc", ".kcd", ".sym", ".arxml")
 CLASSIC = 8
 """Bytes of a classic frame at most."""
 SHOWN = 16
-"""Names of raw values that a line of the text tells at most."""
+"""Names of raw values that a line of the text shows at most."""
 MONITOR = "monitor"
 """The node that receives every message."""
 
@@ -58,12 +59,12 @@ class Periods:
     """Of messages by name; they stand before the cycle time of the database."""
 
     def of(self, message: Message) -> str | None:
-        """That of a message; None where nobody says."""
+        """The period of a message; None where none is given."""
         return self.rows.get(message.name) or _cycle(message) or self.default
 
 
 def periods(default: str | None, path: Path | None) -> Periods:
-    """What the call says of periods: ``path`` is YAML, ``message: 20 ms``. Refused when wrong."""
+    """The periods of a call: ``path`` is YAML, ``message: 20 ms``. Refused when wrong."""
     rows: object = {}
     if path is not None:
         try:
@@ -94,10 +95,10 @@ def imported(
 
     Refused when the database cannot be read.
 
-    None: seen by a node that receives all of them. A signal that cannot be said is left out; what
-    the node sends has constants for its bits. ``lenient``: signals that share bits or reach
-    beyond their frame are left out, too. ``bus``: only the messages of that bus of the database.
-    ``parts``: only the sections for a model that includes them.
+    ``node`` None: seen by a node that receives all of them. A signal that a model cannot express
+    is left out; sent messages have constants for its bits. ``lenient``: signals that share bits or
+    reach beyond their frame are left out, too. ``bus``: only the messages of that bus of the
+    database. ``parts``: only the sections for a model that includes them.
     """
     given = given or Periods()
     database = read_database(path, lenient=lenient)
@@ -162,16 +163,16 @@ class _Writer:
     messages: list[tuple[list[str], Frames]] = field(default_factory=list)
     """The lines of each, and its frames."""
     changes: list[tuple[str, str]] = field(default_factory=list)
-    """What is otherwise than in the database: where, and how."""
+    """Differences from the database: where, and how."""
     left_out: list[str] = field(default_factory=list)
     """Signals that are not in the model, each with its message and the reason."""
 
     frames: list[Frames] = field(default_factory=list)
-    """What is on the bus."""
+    """All on the bus."""
     sent: list[SentMessage] = field(default_factory=list)
-    """What the node sends."""
+    """The messages that the node sends."""
     received: list[Frames] = field(default_factory=list)
-    """What it receives with a port."""
+    """The frames that it receives with a port."""
     originals: set[str] = field(default_factory=set)
     """Names of messages in the database that are in the model."""
     identifiers: dict[tuple[int, bool], str] = field(default_factory=dict)
@@ -193,7 +194,7 @@ class _Writer:
 
     @property
     def instance(self) -> str:
-        """What the text takes the component's instance to be called."""
+        """The name of the component's instance in the text."""
         return self.own_name.lower()
 
     def text(self, source: Path, known_rate: int | None, *, parts: bool) -> str:
@@ -245,7 +246,7 @@ class _Writer:
         return "\n".join(lines) + "\n"
 
     def _node_name(self) -> str | None:
-        """What the database calls the node, where a DBC can have it and the model has another."""
+        """The node's name in the database, where a DBC can have it and the model has another."""
         own = self.node
         if own is None or own == self.instance or database_problem_of(own) is not None:
             return None
@@ -257,7 +258,7 @@ class _Writer:
         return self.type_names.new(f"{name[:1].upper()}{name[1:]}_Bus", self.literals)
 
     def _table(self) -> list[str]:
-        """What is otherwise than in the database."""
+        """Comments that list the differences from the database."""
         if not self.changes:
             return []
         width = max(len(where) for where, _ in self.changes)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""`ravenchart export-dbc`: the database of a bus, with what a model has no words for.
+"""`ravenchart export-dbc`: the database of a bus, with the parts that a model has no words for.
 
-A message that stands in the model as it was imported is written as the database had it: names,
-comments, attributes, scales, multiplexors. The other ones are written as the model has them.
+A message that is still as it was imported is written as the database had it: names, comments,
+attributes, scales, multiplexors. The other ones are written as the model has them.
 """
 
 from __future__ import annotations

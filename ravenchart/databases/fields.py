@@ -38,7 +38,7 @@ class ImportedField:
     pages: frozenset[int] = frozenset()
     """Raw values of the multiplexor with which it is in the frame; none: it always is."""
     told: str | None = None
-    """What is otherwise than in the database, beyond the words."""
+    """The difference from the database that the words do not show."""
 
     @property
     def bits(self) -> tuple[int, ...]:
@@ -53,7 +53,7 @@ class ImportedField:
 
 @dataclass(slots=True)
 class Fields:
-    """What becomes of the signals of a message."""
+    """The fields that the signals of a message become."""
 
     message: Message
     taken: Set[str]

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence, Set
 from ravenchart.gen.language.names import CHILDREN, HIDING, LONG_NAME, PREDEFINED_TYPES, RESERVED
 
 HIDDEN = PREDEFINED_TYPES | HIDING | frozenset(CHILDREN)
-"""What types and their values cannot be named, in lower case."""
+"""Names that types and their values cannot have, in lower case."""
 
 
 class Names:
@@ -26,7 +26,7 @@ class Names:
             self._found[name] = self.new(name)
 
     def of(self, name: str) -> str:
-        """What one of the scope's names is in the model."""
+        """The name in the model of one of the scope's names."""
         return self._found[name]
 
     def new(self, name: str, besides: Set[str] = frozenset()) -> str:

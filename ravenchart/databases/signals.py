@@ -4,7 +4,7 @@
 """The signals of a CAN database as types and layouts of a model.
 
 A value counts the scale of its signal: 0.1 degC is a unit. A signal that models have no such
-words for, such as one of a negative scale, is imported as its raw counts, and that is said.
+words for, such as one of a negative scale, is imported as its raw counts, with the reason.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Unsayable(Exception):  # noqa: N818
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """What a model says of a signal."""
+    """A signal in the words of a model."""
 
     literals: tuple[str, ...] | None
     """Of an enumeration; () for Boolean, None for an integer."""
@@ -54,7 +54,7 @@ class Words:
     limits: tuple[int, int] = (0, 0)
     """Of an integer: its least and its greatest value."""
     other: int | None = None
-    """What is sent for the literal of all other raw values, the last one."""
+    """The raw value that is sent for the last literal, that of all other raw values."""
     named: tuple[tuple[int, str], ...] = ()
     """Of an integer: values that have a name in the database."""
 
@@ -75,7 +75,7 @@ class Words:
 
 
 def signal_words(signal: Signal, *, taken: Set[str] = frozenset()) -> Words:
-    """A signal in a model's words; `Unsayable` when not even its raw counts can be said.
+    """A signal in a model's words; `Unsayable` when a model cannot even have its raw counts.
 
     ``taken`` are names that no literal may have.
     """
@@ -155,9 +155,12 @@ def named_values(signal: Signal) -> dict[int, str]:
 def _is_number(signal: Signal, choices: Mapping[int, str], limits: tuple[int, int]) -> bool:
     """Do its values count something, so that names are those of single numbers?
 
-    That is so where it has a scale or an offset. Where not all values within its limits have a
-    name, it is also so where it has a unit or more than 8 bits, where one value alone of many has
-    a name, and where no value within its limits has one.
+    They do where it has a scale or an offset. Where a value within its limits has no name, they
+    also do in these cases:
+
+    - it has a unit or more than 8 bits;
+    - one value alone of many has a name;
+    - no value within its limits has a name.
     """
     if signal.conversion.scale != 1 or signal.conversion.offset != 0:
         return True

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a model has besides the messages of a database: figures that no database knows.
+"""The parts of a model besides the messages of a database: figures that no database knows.
 
 They are chosen so that the model passes `check` and a program can be made of it at once. The
 text says which of them to set.
@@ -18,7 +18,7 @@ from ravenchart.gen.language.quantities import parsed_duration, shown
 BIT_RATES = (500_000, 1_000_000)
 """Of a bus whose database does not say it, or says one that its frames do not leave room on."""
 LOAD = 0.6
-"""What frames may take of a rate that is chosen for them."""
+"""The largest load by frames of a bit rate that is chosen for them."""
 PORTS_PERIOD = "20 ms"
 SENDING_PERIOD = "100 ms"
 """Of a message that the node sends, and that no cycle time is known of."""
@@ -59,7 +59,7 @@ class Frames:
 
     @property
     def bits_each_second(self) -> float:
-        """What its frames take of a bit rate."""
+        """The bit rate that its frames take."""
         return self.bits / (_nanoseconds(self.period) / 1e9)
 
 
@@ -120,7 +120,7 @@ def _named(period: str) -> str:
 
 
 def behaviour(sent: Sequence[SentMessage], *, receives: bool) -> list[str]:
-    """What the component does with its ports, as keys of it."""
+    """The keys of the component for the rows that use its ports."""
     lines = [f"    port_region: {{period: {PORTS_PERIOD}, wcet: 200 us}}"] if receives else []
     rows = _rows(sent, receives=receives)
     if rows:

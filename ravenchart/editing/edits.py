@@ -20,7 +20,7 @@ from ravenchart.gen.files import spans
 from ravenchart.gen.files.spans import Plain, YamlMapping, YamlNode, YamlScalar, plain_tree
 
 Exchange = Callable[[YamlNode], Plain | None]
-"""What a node says after a change; None where it says what it said."""
+"""The value of a node after a change; None where the value stays."""
 
 _BREAK = re.compile(r"\r\n|\r|\n")
 _COMMENT = re.compile(r" *#[^\r\n]*(?:\r\n|\r|\n)")
@@ -257,7 +257,7 @@ def _list(mapping: YamlMapping, key: str) -> tuple[YamlScalar, spans.Sequence]:
 
 
 def _exchanged(node: YamlNode, exchange: Exchange) -> Plain:
-    """What a tree says after a change."""
+    """The value of a tree after a change."""
     new = exchange(node)
     if new is not None:
         return new
@@ -296,7 +296,7 @@ def _below(text: str, place: int, line: str) -> tuple[int, str]:
 
 
 def _dash(text: str, item: YamlNode) -> str:
-    """What stands before an item in its line: its margin, the dash and spaces."""
+    """The text before an item in its line: its margin, the dash and spaces."""
     head = text[_line_start(text, item.start) : item.start]
     if re.fullmatch(r" *- +", head) is None:
         raise LayoutError("the item does not stand in a line of its own: edit the file")

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a state of a model's files comes to: the ordinary pipeline, over texts in memory."""
+"""The evaluation of a model's files in one state: the ordinary pipeline, over texts in memory."""
 
 from __future__ import annotations
 

@@ -3,8 +3,8 @@
 
 """Where the text of a model says what runs where, when, and for how long.
 
-Names count without regard to case, as in the model. What is found here is text: it is there also
-where the model has errors.
+Names count without regard to case, as in the model. Only the text counts here, so a model with
+errors has these locations, too.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from ravenchart.gen.files.spans import YamlScalar
 from .edits import Document
 
 TIMES = ("period", "wcet", "deadline")
-"""What a row says of its time."""
+"""The keys of a row's times."""
 
 
 @dataclass(frozen=True, slots=True)
 class NamedEntry:
-    """A named entry of a section: the file that it stands in, its name, and what it says."""
+    """A named entry of a section: its file, its name, and its mapping."""
 
     file: str
     key: YamlScalar
@@ -65,7 +65,7 @@ class ItemRow:
 
 @dataclass(frozen=True, slots=True)
 class DeclaredRow:
-    """What a row of a table runs: declared once, also where several instances have it.
+    """The activity that a row of a table runs: declared once, also where several instances have it.
 
     ``owner`` is the component, or the bus; ``keys`` are those for its times, by `TIMES`.
     """
@@ -78,7 +78,7 @@ class DeclaredRow:
     keys: Mapping[str, str]
 
     def text(self, time: str) -> str | None:
-        """What is written of a time; None where nothing is."""
+        """The text of a time; None where it is not written."""
         key = self.keys.get(time)
         found = None if key is None else self.entry.mapping.scalar(key)
         return None if found is None else found.value
@@ -147,7 +147,7 @@ class ModelPlaces:
         ]
 
     def named(self, text: str) -> list[str]:
-        """What a reference stands for: with stars the elements of arrays, else itself."""
+        """The names that a reference stands for: with stars the elements of arrays, else itself."""
         heads: list[tuple[str, NamedEntry | None]] = [("", None)]
         *owners, last = text.split(".")
         for depth, segment in enumerate(owners):
@@ -219,7 +219,7 @@ class ModelPlaces:
         return None if name is None else self.components.get(name.value.lower())
 
     def row(self, element: str) -> DeclaredRow | None:
-        """What ``owner.name`` runs."""
+        """The declaration of the row ``owner.name``."""
         owner, _, name = element.lower().rpartition(".")
         component = self.component_of(owner)
         if component is not None:
@@ -231,7 +231,7 @@ class ModelPlaces:
         return None if bus is None or watch is None else self._row(bus, name, name, watch)
 
     def rows(self, component: NamedEntry) -> Iterator[DeclaredRow]:
-        """What an instance of a component has to run."""
+        """The declarations of the rows that an instance of a component has to run."""
         ports = _inner(component, "port_region")
         if ports is not None:
             yield self._row(component, "ports", "ports", ports)

@@ -212,7 +212,7 @@ def _without(document: Document, entry: NamedEntry) -> Document:
 
 
 def _understood(path: Path, files: _Files, before: Evaluation) -> System:
-    """What the texts say by now."""
+    """The model that the changed texts describe."""
     found = evaluate(path, files.texts(before.texts))
     if found.loaded.system is None:
         raise LayoutError(f"the tables do not fit the text: {found.found[0].message}")
@@ -222,7 +222,7 @@ def _understood(path: Path, files: _Files, before: Evaluation) -> System:
 def _set_values(
     files: _Files, system: System, tables: Sequence[WantedTable], names: Sequence[str]
 ) -> None:
-    """What the tables say of times and stacks, where it does not follow from the rows."""
+    """Set the times and stacks of the tables, where they do not follow from the rows."""
     for table, name in zip(tables, names, strict=True):
         now = _copy(system.processors, name)
         for key in TIMES:

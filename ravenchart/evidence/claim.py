@@ -26,7 +26,7 @@ class Shown(Enum):
 
 
 class ClaimKind(Enum):
-    """What a claim is about; the goals of the argument, in its order."""
+    """The subject of a claim; the goals of the argument, in its order."""
 
     TRANSLATION = "The program is what the model gives"
     PROGRAM = "The program is free of run-time errors and data races"
@@ -50,7 +50,7 @@ class Claim:
     """The elements of the model that it is about."""
     statement: str
     theorem: str
-    """What exactly is shown, and how."""
+    """The exact fact that is shown, and how."""
     method: str
     tool: str
     verdict: Shown

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The claims about a controller, each with what shows it and the verdict that follows.
+"""The claims about a controller, each with its evidence and the verdict that follows.
 
-A verdict is never kinder than the facts: what is not at hand is not shown, and what differs from
-the content that was proved is not met.
+A verdict is never better than the facts. A claim without evidence is not shown. A claim about
+content that differs from the proved content is not met.
 """
 
 from __future__ import annotations
@@ -269,7 +269,7 @@ def _bodies(facts: Facts, component: Component, node: NodeFacts, suffix: str) ->
 
 
 def _contracts(facts: Facts, component: Component, node: NodeFacts, suffix: str) -> Iterator[Claim]:
-    """What activities require is shown at each call, and what they ensure of their bodies."""
+    """Conditions of activities: `requires` is shown at each call, `ensures` of each body."""
     system, part = facts.checked.system, node.program.part
     for activity in component.activities:
         own = component_package(system, component)

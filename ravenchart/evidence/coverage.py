@@ -78,7 +78,7 @@ def _executed(counts: Sequence[int]) -> str:
 def _problems(
     file: str, version: str, body: CountedBody | None
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """What contradicts the counts, and what they leave open."""
+    """Contradictions to the counts, and the lines and branches that were not executed."""
     if body is None:
         return (f"the tracefile has no counts of {file}",), ()
     if not body.version:

@@ -21,9 +21,9 @@ class Lack(Described):
     kind: str
     """`claim`, `assumption`, `outside`, `given`, `test` or `limit`."""
     what: str
-    """What it is: the id of a claim or assumption, or an element."""
+    """Its subject: the id of a claim or assumption, an element, or a topic."""
     why: str
-    """Why it is not shown, or what is taken as given."""
+    """Why it is not shown, or the fact that is taken as given."""
 
 
 @dataclass(slots=True)
@@ -49,9 +49,9 @@ class ClaimEntry(Described):
     requirements: list[str]
     """Ids of the requirements that these elements name."""
     statement: str
-    """What is claimed."""
+    """The claim in a sentence."""
     theorem: str
-    """What exactly is shown, and how."""
+    """The exact fact that is shown, and how."""
     method: str
     """`proof`, `analysis ...`, `model checking`, `comparison`, `declaration` or `test`."""
     tool: str
@@ -63,7 +63,7 @@ class ClaimEntry(Described):
     digest: str
     """SHA-256 over the inputs: equal inputs have equal digests."""
     inputs: list[Input]
-    """What the verdict was made of."""
+    """The files and records that the verdict was made of."""
 
 
 @dataclass(slots=True)
@@ -101,7 +101,7 @@ class ElementEntry(Described):
     element: str
     """Its name."""
     kind: str
-    """What it is."""
+    """Its kind."""
     at: str
     """File, line and column."""
     requirements: list[str]
@@ -123,7 +123,7 @@ class Finding(Described):
     at: str
     """File, line and column."""
     message: str
-    """What is wrong."""
+    """The problem."""
 
 
 @dataclass(slots=True)
@@ -137,9 +137,9 @@ class ObjectiveEntry(Described):
     status: str
     """`met`, `partly`, `not met` or `user's`."""
     claims: str
-    """What serves it."""
+    """The claims that serve it, by kind."""
     rest: str
-    """What remains to do."""
+    """The work that remains."""
 
 
 @dataclass(slots=True)
@@ -151,7 +151,7 @@ class StandardEntry(Described):
     title: str
     """Its name."""
     note: str
-    """What holds for the whole table."""
+    """A note on the whole table."""
     objectives: list[ObjectiveEntry]
     """In the order of the standard."""
 
@@ -161,11 +161,11 @@ class KnownProblem(Described):
     """A known problem of a tool or of the runtime."""
 
     of: str
-    """Of what."""
+    """The tool, or the runtime."""
     what: str
     """The problem."""
     consequence: str
-    """What follows for a program."""
+    """The consequence for a program."""
 
 
 @dataclass(slots=True)
@@ -175,11 +175,11 @@ class Fault(Described):
     fault: str
     """The fault."""
     found_by: str
-    """What finds it."""
+    """The check that finds it."""
     follows: str
-    """What follows."""
+    """The reaction."""
     within: str
-    """Within which time the test wants it; empty where it measures none."""
+    """The time limit of the test for the reaction; empty where it measures none."""
     test: str
     """The test."""
 
@@ -191,7 +191,7 @@ class Evidence(Described):
     format: int
     """The version of this format."""
     tool: str
-    """What made it."""
+    """The tool that made it, with its version."""
     system: str
     """The name of the system."""
     model: list[Input]
@@ -201,7 +201,7 @@ class Evidence(Described):
     driver: str
     """The CAN driver."""
     not_shown: list[Lack]
-    """What is not shown: read this first."""
+    """The facts that are not shown: read these first."""
     claims: list[ClaimEntry]
     """Every claim."""
     requirements: list[RequirementEntry] | None
@@ -215,7 +215,7 @@ class Evidence(Described):
     known_problems: list[KnownProblem]
     """Of compiler, prover and runtime."""
     faults: list[Fault]
-    """The fault matrix; empty where it is not at hand."""
+    """The fault matrix; empty where the page is missing."""
     memory: list[Memory]
     """Stacks and memory of each build whose record is given."""
     files: list[str]

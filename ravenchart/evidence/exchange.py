@@ -64,7 +64,7 @@ def _result(one: Diagnostic) -> dict[str, Any]:
 
 
 def sbom(facts: Facts) -> dict[str, Any]:
-    """What the program is made of; CycloneDX."""
+    """The components of the program; CycloneDX."""
     system = facts.checked.system
     folder = facts.checked.folder
     own = [

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What is at hand about a model: checked, generated anew, and held against what is on disk.
+"""The facts about a model: it is checked, generated anew, and compared with the files on disk.
 
-Files are named from the checkout or from the model's folder, never by where that folder is: so
-equal inputs give equal facts.
+File names count from the checkout or from the model's folder, wherever that is. So equal inputs
+give equal facts.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from .tracefile import CountedBody
 FIRST_DRIVER = "loopback"
 """With it all of the runtime is proved; with another only what differs."""
 OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
-"""What may be outside SPARK in the runtime, with the entry of the ledger."""
+"""Names that may be outside SPARK in the runtime, with the entry of the ledger."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,9 +64,9 @@ class Facts:
     driver: str
     nodes: tuple[NodeFacts, ...]
     runtime: tuple[BelievedRecord, ...]
-    """Of the runtime and the HAL with this driver; none where they are not at hand."""
+    """Of the runtime and the HAL with this driver; empty where they are missing."""
     reasons: tuple[tuple[str, str], ...]
-    """What the user says may be outside SPARK, with the reason."""
+    """Names that may be outside SPARK by the user's list, with the reason."""
     runtime_reasons: tuple[tuple[str, str], ...]
     ungenerated: str
     """Why no program can be generated of the model; "" where one can."""
@@ -78,7 +78,7 @@ class Facts:
     memory: tuple[Memory, ...] = ()
     """Records of builds: stacks and memory."""
     coverage: tuple[CountedBody, ...] | None = None
-    """What test cases execute, where a tracefile is given."""
+    """The counts of test cases, where a tracefile is given."""
 
 
 def gather(
@@ -90,7 +90,7 @@ def gather(
     memory: Sequence[Path] = (),
     coverage: Path | None = None,
 ) -> Facts:
-    """What is at hand of a model; Refused where it has errors other than missed deadlines."""
+    """The facts about a model; Refused where it has errors other than missed deadlines."""
     folder = model.parent
 
     def read(path: Path, limit: int) -> bytes:

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What is not shown about a controller: the first page of the folder."""
+"""The facts about a controller that are not shown: the first page of the folder."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ LIMITS = (
     ("requirements", "An id at an element says that somebody saw a connection. That the element "
      "implements the text needs a review."),
 )  # fmt: skip
-"""What no folder shows."""
+"""Facts that no folder shows."""
 
 
 _UNCOVERED = Lack(

@@ -47,7 +47,7 @@ class _Row:
     text: str
     verdict: Shown
     told: str = ""
-    """What a reader sees who points at it."""
+    """The text that appears when a reader points at it."""
 
 
 def draw(system: str, digest: str, claims: Sequence[Claim], assumptions: Sequence[str]) -> str:

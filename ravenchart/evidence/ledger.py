@@ -59,7 +59,7 @@ WHERE: Mapping[str, Touched] = {
 
 
 def entries() -> tuple[Assumption, ...]:
-    """The whole ledger; empty where it is not at hand."""
+    """The whole ledger; empty where the page is missing."""
     if not PAGE.is_file():
         return ()
     found = ENTRY.findall(PAGE.read_text(encoding="utf-8"))

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Proof records, each held against the sources that are here now."""
+"""Proof records, each compared with the sources that are here now."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class RecordedEntity:
 
 @dataclass(frozen=True, slots=True)
 class BelievedRecord:
-    """What a record says, and why it cannot be believed of the sources that are here."""
+    """A proof record, and why it cannot be believed of the sources that are here."""
 
     name: str
     tool: str
@@ -55,7 +55,7 @@ class BelievedRecord:
     """SHA-256 over all that is recorded."""
 
     def of_unit(self, unit: str) -> tuple[RecordedEntity, ...]:
-        """What is recorded of an Ada unit and all that it encloses."""
+        """The records of an Ada unit and of all entities inside it."""
         head = unit.lower()
         names = ((e, e.name.lower()) for e in self.entities)
         return tuple(e for e, name in names if name == head or name.startswith(f"{head}."))
@@ -149,7 +149,7 @@ def missing(program: Program, record: BelievedRecord, driver: str) -> Iterator[s
 
 
 def own_sources(program: Program) -> tuple[Path, ...]:
-    """What is generated for a program, and each body of the user whose spec is generated."""
+    """The generated Ada sources of a program, and the user's bodies whose specs are generated."""
     places = (program.generated, program.generated / HARDWARE)
     made = sorted(p for place in places for p in place.glob("*") if p.suffix in ADA)
     specs = {path.stem for path in made if path.suffix == ".ads"}
@@ -184,7 +184,7 @@ def of_target(name: str) -> Path | None:
 
 
 def uncovered(outside: Collection[str], names: Collection[str]) -> tuple[str, ...]:
-    """What is outside SPARK and under no name of a list with reasons."""
+    """The entities outside SPARK that no name of a list with reasons covers."""
     listed = [re.escape(name.lower()) for name in names]
     covers = re.compile(rf"({'|'.join(listed)})(\..*)?") if listed else None
     return tuple(o for o in outside if covers is None or not covers.fullmatch(o.lower()))

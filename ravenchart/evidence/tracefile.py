@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What test cases execute, by an LCOV tracefile (geninfo(1), FILES).
+"""Counts of the lines and branches that test cases execute: an LCOV tracefile (geninfo(1), FILES).
 
 `ravenchart tests --coverage FILE` writes one. The version of a source there, its record VER, is the
 SHA-256 of the text that was counted.

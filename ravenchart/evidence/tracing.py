@@ -227,7 +227,7 @@ def _units(system: System, link: Link) -> Iterator[DottedName]:
 
 
 def _scenarios(facts: Facts, given: Sequence[Path] | None) -> Iterator[Probe]:
-    """What scenarios test; Refused where one does not fit the model."""
+    """The requirements that scenarios name; Refused where one does not fit the model."""
     folder = facts.checked.folder
     paths = sorted(folder.glob("*.yaml")) if given is None else given
     for path in paths:
@@ -282,7 +282,7 @@ def _unknown(
 
 
 def _gaps(trace: Trace) -> Iterator[Diagnostic]:
-    """What a requirement lacks."""
+    """Reports that a requirement lacks an element, a test or a proof."""
     one = trace.requirement
     if not trace.links:
         hint = f"write `req: [{one.id}]` at the elements that implement it"

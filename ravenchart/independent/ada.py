@@ -375,7 +375,7 @@ def cases(items: Sequence[Token], function: str) -> dict[str, tuple[Token, list[
 def alternatives(
     items: Sequence[Token], function: str
 ) -> tuple[list[Token], dict[str, tuple[Token, list[Token]]]]:
-    """What stands before the case of an expression function, and its alternatives by choice."""
+    """The tokens before the case of an expression function, and its alternatives by choice."""
     given = _given(items, function)
     at = _place(given, "(", "case")
     if at is None:
@@ -393,7 +393,7 @@ def alternatives(
 def elements(
     items: Sequence[Token], function: str
 ) -> tuple[list[Token], dict[str, tuple[Token, list[Token]]]]:
-    """What stands before the array that an expression function gives, and its elements by place."""
+    """The tokens before the array of an expression function, and its elements by position."""
     given = _given(items, function)
     at = _place(given, "(", "1", "=>")
     if at is None:
@@ -403,7 +403,7 @@ def elements(
 
 
 def _given(items: Sequence[Token], function: str) -> list[Token]:
-    """What an expression function gives, with its parentheses; empty where it is not declared."""
+    """The expression of an expression function, with parentheses; empty where none is declared."""
     for place, token in enumerate(items):
         if token.low == "function" and items[place + 1].low == function.lower():
             at = place + 2

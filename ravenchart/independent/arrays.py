@@ -106,7 +106,7 @@ class _Counting:
         return made
 
     def names(self, text: str, around: Mapping, numbered: tuple[str, ...] = ()) -> list[str]:
-        """What a reference stands for, at a level whose instances it begins with."""
+        """The names that a reference stands for; it begins with an instance of ``around``."""
         heads: list[tuple[str, Mapping | None]] = [("", around)]
         *owners, last = text.split(".")
         for word in owners:
@@ -164,7 +164,7 @@ class _Counting:
         return made
 
     def items(self, value: Value, near: Mapping) -> Value:
-        """A list, or what stands in its place, with a text for each element."""
+        """A list, or the text in its place, with a text for each element."""
         if isinstance(value, Text) and "*" not in value:
             return value
         made = Items()

@@ -3,9 +3,11 @@
 
 """A chart as the model has it, and the lines of its declared form that follow.
 
-The rules are those of docs/semantics.md (UML 2.5.1, 14.2.3): a line is a transition of a state
-with the junctions, forks and joins on its way, a segment that leaves a choice or a history, the
-restoring of a history, or a deferral.
+The rules are those of docs/semantics.md (UML 2.5.1, 14.2.3). A line is one of these:
+
+- a transition of a state, with the junctions, forks and joins on its way;
+- a segment that leaves a choice or a history;
+- the restoring of a history, or a deferral.
 """
 
 from __future__ import annotations
@@ -169,7 +171,7 @@ class Chart:
         return [*found, TOP]
 
     def leaves(self, region: Region) -> Iterator[str]:
-        """The leaves of a region's lane, in the order of the tree, pseudostates behind."""
+        """The leaves of a region, in the order of the tree, pseudostates behind."""
         inside = [v for v in self.vertices.values() if v.region == region]
         for vertex in inside:
             if vertex.is_range:
@@ -353,5 +355,5 @@ def domain_of(region: Region) -> str:
 
 
 def key_of(lane: Region) -> str:
-    """The component of a configuration that holds a lane's leaf."""
+    """The component of a configuration that holds the leaf of a region."""
     return "top" if lane[0] is None else f"in_{lane[1]}".lower()

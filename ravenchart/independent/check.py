@@ -22,11 +22,11 @@ ALWAYS = (
     "bodies of the program: gnatprove proves them against the declared form",
     "use of the certificate's facts by the program: the compiler compares them",
 )
-"""What this checker does not look at."""
+"""Facts that this checker does not compare."""
 
 
 MALFORMED = (LookupError, ValueError, StopIteration, RecursionError)
-"""What reading a text raises that is not of the form in question."""
+"""Exceptions of reading a text that has another form."""
 
 
 def checked(main: Path, generated: Path | None = None) -> Report:

@@ -77,10 +77,10 @@ class _Parts:
             raise UnusableError(f"{form.file}:{form.line}: over {LIMIT:,} instances")
 
     def ends(self, section: str, key: str, text: str) -> list[str]:
-        """What `instance.port` or `instance.interface` leads to in the end.
+        """The innermost ends that `instance.port` or `instance.interface` leads to.
 
-        It stands at `from` or `to` of a connection or binding; inside, its own name is at the
-        other key.
+        ``text`` is the value of `from` or `to` of a connection or binding; inside, its own name
+        is at the other key.
         """
         owner, _, name = text.rpartition(".")
         if owner.lower() not in self.around:

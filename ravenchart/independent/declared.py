@@ -23,7 +23,7 @@ KEYWORDS = frozenset(OTHERS.split())
 NUMBER = re.compile(r"\b0[xX][0-9A-Fa-f_]+\b")
 """A number of the expression language that is not decimal."""
 STOPS = words("if D = Ending then (others => Ravenchart.Timers.Stopped) else")
-"""What is asked before the elements of time-outs."""
+"""The condition before the elements of time-outs."""
 SIGNS = ("<", "<=", ">", ">=", "/=")
 
 
@@ -281,7 +281,7 @@ class _Comparison:
     def _restored(
         self, name: str, line: Line, found: tuple[Token, list[Token]] | None, at: int
     ) -> None:
-        """The lane of a history is given by the function that restores it."""
+        """The leaf in the region of a history is given by the function that restores it."""
         here = found[0].line if found else at
         said = self._configuration(found[1]) if found else {}
         lane = key_of(self.chart.lane(line.sources[0])) if self.several else "top"
@@ -358,12 +358,12 @@ class _Comparison:
 
 
 def _type_of(lane: Region) -> str:
-    """The type of a lane's leaves."""
+    """The type of a region's leaves."""
     return "Leaf" if lane[0] is None else f"{lane[1]}_Leaf"
 
 
 def _inside(items: Sequence[Token], package: str) -> list[Token]:
-    """What stands in a nested package."""
+    """The declarations of a nested package."""
     for place in range(len(items)):
         head = [t.low for t in items[place : place + 3]]
         if head == ["package", package.lower(), "is"]:

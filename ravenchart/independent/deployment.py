@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What runs where, worked out from the model: tasks with their rows, messages with their frames.
+"""The deployment by the model: tasks with their rows, messages with their frames.
 
 Follows docs/semantics.md ("Processors") and docs/architecture.md ("Several nodes"). Priorities
 that the model leaves open are deadline-monotonic (Leung and Whitehead 1982), and so are
@@ -52,7 +52,7 @@ class Task:
     bus: str | None = None  # that releases a processor
     port: str | None = None  # the same
     after: str | None = None
-    """What releases the driver: a task or a message."""
+    """The task or message that releases the driver."""
 
     @property
     def sporadic(self) -> bool:
@@ -123,7 +123,7 @@ class Deployment:
         return list(dict.fromkeys(self.node_of(end) for end in message.targets))
 
     def heard(self, bus: str, node: str) -> list[tuple[Message, str]]:
-        """What a node receives from a bus, with the driver's work on it."""
+        """The messages that a node receives from a bus, each with the driver's work on it."""
         found = []
         for message in self.messages:
             homes = self.receivers(message)
@@ -450,9 +450,9 @@ class Deployment:
     def blocking(self, task: Task) -> int:
         """The longest section of a lower task, or of the main program, that may delay a task.
 
-        One is always as long as a critical section: the main program and all processors and
-        supervisors share the count of faults, drivers a queue with whom they serve, and a probe
-        its result with the main program. Devices may be longer.
+        One is always as long as a critical section. The main program, processors and supervisors
+        share the count of faults. Drivers share a queue with the processors that they serve. A
+        probe shares its result with the main program. Sections of devices may be longer.
         """
         least = self.nodes.map(task.node).time("critical_section")
         longest = least

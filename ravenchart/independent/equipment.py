@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What rows call of devices: the time that it takes, who may be inside one, what falls away.
+"""The calls of devices by rows: their time, the tasks inside a device, the idle fallbacks.
 
-Follows docs/devices.md: a driver works inside its caller, so its time is in the row's WCET; a
-fallback that nobody needs is not executed; and a device that several tasks call is a protected
-object, inside which a driver works for as long as its longest command takes.
+Follows docs/devices.md. A driver works inside its caller, so its time is in the row's WCET. A
+fallback that no command needs is not executed. A device that several tasks call is a protected
+object. A driver works inside it for as long as its longest command takes.
 """
 
 from __future__ import annotations
@@ -96,13 +96,13 @@ class Equipment:
                     yield offer
 
     def idle(self, instance: str) -> set[str]:
-        """The activities of an instance, in lower case, that stand in for what is bound."""
+        """The fallbacks of an instance, in lower case, whose commands are all bound."""
         needs = list(self._needs(instance))
         named = [(f.partition(".")[0].lower(), offer) for _, f, offer in needs if f]
         return {a for a, offer in named if offer} - {a for a, offer in named if offer is None}
 
     def _calls(self, instance: str, row: str) -> Iterator[tuple[Offer, int]]:
-        """What a row calls, and how often in an execution."""
+        """The bound commands that a row calls, and how often in an execution."""
         component = self.component_of(instance)
         if row == "ports":
             yield from ((offer, 1) for offer in self._heard(instance))
@@ -121,7 +121,7 @@ class Equipment:
             yield offer, reads if commands.map(key).text("kind") == "read" else steps
 
     def time(self, instance: str, row: str) -> int:
-        """What the calls of a row add to its WCET."""
+        """The time that the calls of a row add to its WCET."""
         return sum(offer.time * times for offer, times in self._calls(instance, row))
 
     def called(self, instance: str, row: str) -> set[str]:

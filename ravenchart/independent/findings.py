@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What was compared, what disagrees, and what was not derived again."""
+"""The comparisons, the disagreements, and the facts that were not derived again."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Report:
     counts: dict[str, int] = field(default_factory=lambda: dict.fromkeys(CLASSES, 0))
     disagreements: list[Disagreement] = field(default_factory=list)
     not_derived: dict[str, int] = field(default_factory=dict)
-    """What this checker takes as it is, and how many numbers that are; 0: something else."""
+    """The facts that are not derived again, each with its count of numbers; 0: no numbers."""
 
     def agree(self, kind: str, file: Path, line: int, holds: bool, text: str) -> bool:
         """Count one comparison, and keep it where it fails."""

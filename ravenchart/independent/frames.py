@@ -67,7 +67,7 @@ class Frame:
         return up((Fraction(self.bits, rate) + Fraction(self.body, data_rate)) * 10**9)
 
     def parts(self) -> dict[str, int]:
-        """What the certificate states of it."""
+        """The figures of a frame that the certificate states."""
         if not self.fd:
             return {"Length": self.length}
         parts = ("length", "head", "early", "stuffed", "body", "bits")

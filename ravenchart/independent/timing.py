@@ -463,5 +463,5 @@ class Timing:
 
 
 def _work(costs: dict[int, int], jobs: int) -> int:
-    """What so many jobs in a row execute, from one that executes all rows on."""
+    """The time of so many consecutive jobs, the first of which executes all rows."""
     return sum(-(-jobs // divisor) * cost for divisor, cost in costs.items())

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What could stand at a place of a model, and what stands there.
+"""The words that could stand at a location of a model, and the meaning of the key there.
 
-A word that no model has is put at the place, and the model is read: what the forms and the
-resolver would have taken instead of that word are the proposals. So they are exactly those names
-that are allowed there, without a second description of the language.
+A word that no model has is put at the location, and the model is read. The proposals are the
+words that the forms and the resolver would have taken instead. So they are exactly the names that
+are allowed there, without a second description of the language.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def proposals(path: Path, file: str, offset: int, documents: Open) -> list[Compl
 
 
 def key_meaning(text: str, offset: int) -> str | None:
-    """What the key at a character means; None of anything else, and of names."""
+    """The meaning of the key at a character; None of anything else, and of names."""
     whole = FileText(text)
     scalar = whole.scalar_at(offset)
     if scalar is None:

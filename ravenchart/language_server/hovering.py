@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What an editor shows of a name: its kind, its declaration, and the bounds of the analysis."""
+"""The text that an editor shows of a name: kind, declaration, and bounds of the analysis."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ class ModelServer(LanguageServer):
     # --- Diagnostics
 
     def look(self, uri: str, pause: float, *, behaviour: bool) -> None:
-        """Look at the model of a document soon, and tell what is wrong with it."""
+        """Check the model of a document soon, and publish its diagnostics."""
         name = _name(uri)
         before = self.waiting.pop(name, None)
         if before is not None:
@@ -229,7 +229,7 @@ def server() -> ModelServer:
 
 
 def _names(made: ModelServer) -> None:
-    """What is asked of names: definition, references, rename."""
+    """The requests about names: definition, references, rename."""
 
     @made.feature(lsp.TEXT_DOCUMENT_DEFINITION)
     async def definition(ls: ModelServer, given: lsp.DefinitionParams) -> lsp.Location | None:

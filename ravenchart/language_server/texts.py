@@ -92,7 +92,7 @@ class FileText:
         return Range(self.position(span[0]), self.position(span[1]))
 
     def marked(self, origin: Origin) -> Range:
-        """What a diagnostic marks: the key or value there, at least a word or character."""
+        """The range that a diagnostic marks: its key or value, at least a word or character."""
         start = self.offset(origin)
         scalar = self.scalar_at(start)
         if scalar is not None and scalar.start <= start < scalar.end:

@@ -5,7 +5,7 @@
 
 A gnatprove belongs to a version of GNAT. That of GNAT 12 comes with the prover CVC4; those from
 GNAT 13 on come with cvc5, and write their results in another form, which `spark_results` reads as
-well. What both understand stands in switches.gpr, so that gnatprove called by hand succeeds too.
+well. The switches that both accept are in switches.gpr, so gnatprove called by hand succeeds too.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ AGES = (GNAT_14, GNAT_12)
 
 @cache
 def version() -> str:
-    """What ``gnatprove --version`` prints; ToolMissing without one on PATH."""
+    """The output of ``gnatprove --version``; ToolMissing without one on PATH."""
     return toolchain.run("gnatprove", ["--version"], Path.cwd(), {})
 
 

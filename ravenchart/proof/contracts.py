@@ -112,7 +112,7 @@ def _flat(text: str) -> str:
 
 
 def _conditions(spec: str, activity: Activity, aspect: str) -> list[tuple[int, int]]:
-    """Where the conditions of an aspect stand in the spec of a package of activities."""
+    """The locations of an aspect's conditions in the spec of a package of activities."""
     name = re.escape(ada_case(activity.name))
     begins = re.search(rf"\bprocedure {name}\b(?:(?!\bprocedure\b).)*?\b{aspect} =>", spec, re.S)
     if begins is None:

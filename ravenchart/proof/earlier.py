@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Results of earlier proofs, kept by the content that they speak of.
+"""Results of earlier proofs, kept by the content that they are about.
 
 A key is the SHA-256 over gnatprove's version, the run's settings, and the name and bytes of every
 file that it may read: another byte, tool or switch is another key. Entries are in `kept`; one
-that cannot be read is proved again. Whoever can write there can lie: see ASM-016 in
+that cannot be read is proved again. The entries are trusted: see ASM-016 in
 proofs/assumptions.md.
 """
 
@@ -31,7 +31,7 @@ KIND = "proofs"
 
 
 def key(version: str, task: ProofTask, inputs: Mapping[Path, str]) -> str:
-    """What the results depend on, as one digest; where objects go is no part of it."""
+    """A digest of all that the results depend on; the folder of the objects is no part of it."""
     scenario = {n: v for n, v in sorted(task.scenario.items()) if n != "RAVENCHART_BUILD"}
     base = task.project.resolve().parent
     parts = [

@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What may be outside SPARK in a proof, each with the reason: a TOML file.
+"""The units and subprograms that may be outside SPARK, each with the reason: a TOML file.
 
-A unit or subprogram outside SPARK is proved of nothing, yet every check that gnatprove made may
-be proved. So each of them is named here, or the proof fails::
+gnatprove makes no checks of them, so all checks may be proved although nothing is shown of them.
+So each of them is named here, or the proof fails::
 
     "Demo.Sensor.Activities.Read" = "reads a register; covered by test T-12"
 
-A name covers what is declared inside it.
+A name covers all declarations inside it.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def _covers(name: str, found: Outside) -> bool:
 
 
 def refused(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[Outside, ...]:
-    """What is outside SPARK and not in the list."""
+    """The entities outside SPARK that are not in the list."""
     return tuple(o for o in found if not any(_covers(name, o) for name in reasons))
 
 

@@ -4,8 +4,8 @@
 """Running gnatprove, and keeping the record of what it found.
 
 A record is one TOML file per project: for each source that the proof read its SHA-256, for
-each subprogram its checks and the provers that discharged them. No date, host
-or time stands in it, so a difference means a change.
+each subprogram its checks and the provers that discharged them. A record has no date, host or
+time, so a difference means a change.
 """
 
 from __future__ import annotations
@@ -95,10 +95,10 @@ def prove(
     """Run gnatprove, or take the results of an earlier run on the same content.
 
     NotProved when anything is left, ToolFailed when gnatprove ended for another reason or a source
-    was changed meanwhile. ``fresh`` runs it in any case, and each prover with it; else only
-    formulas that were not proved before go to a prover, and those that the ``memcached`` server of
-    a team does not have. The result folders are emptied first, so the results are those of this
-    run alone. How far the run is goes to ``tell``.
+    was changed meanwhile. ``fresh`` runs it in any case, and each prover with it. Else a prover
+    gets only formulas that were not proved before and that the ``memcached`` server of a team
+    does not have. The result folders are emptied first, so the results are those of this run
+    alone. ``tell`` gets the progress.
     """
     version = ages.version()
     inputs = _inputs(task.sources)

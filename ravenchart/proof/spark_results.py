@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What gnatprove found, read from the files that one run leaves in a result folder.
+"""The results of gnatprove, read from the files that one run leaves in a result folder.
 
-Each analysed unit has a `.spark` file (JSON) with its checks and with what of it is in SPARK,
-and an `.ali` file that names its sources. gnatprove's own summary counts every file of the
-object folders that it knows, so a number from there depends on what ran before; the numbers
-here are those of the folders given.
+Each analysed unit has a `.spark` file (JSON) with its checks and its parts in SPARK, and an
+`.ali` file that names its sources. gnatprove's own summary counts every file of the object
+folders that it knows, so its numbers depend on earlier runs. The numbers here are those of the
+given folders.
 
 The older age of gnatprove (`ages`) writes each entity where it is meant; the younger one writes a
 number, and a table `entities` for the unit.
@@ -59,7 +59,7 @@ class Results:
     checks: int
     justified: int
     open: tuple[Open, ...]
-    """What is not proved, in the order of the places."""
+    """The checks that are not proved, in the order of their locations."""
     assumed: int
     """Statements `pragma Assume`."""
     outside: tuple[Outside, ...]
@@ -142,9 +142,9 @@ def _checks(unit: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def _outside(unit: dict[str, Any]) -> Iterator[Outside]:
-    """What is not wholly in SPARK, or skipped by an annotation.
+    """The entities that are not wholly in SPARK, or skipped by an annotation.
 
-    Of the modes "spec" is without the body, "no" with nothing of it.
+    The mode "spec" means in SPARK without the body, "no" means not in SPARK.
     """
     for key in (*unit.get("skip_flow_proof", ()), *unit.get("skip_proof", ())):
         yield _not_proved(entity_of(unit, key))

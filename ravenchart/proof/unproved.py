@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What gnatprove could not prove, in the words of the user who must change something.
+"""Checks that gnatprove could not prove, in the words of the user who must change something.
 
-gnatprove names a place in Ada and a check. The user wrote a model and bodies: so each finding has
-the line of the body, or of the generated unit, the values for which the check fails where the
-prover found some, the element of the model that the code belongs to, and what usually helps.
+gnatprove names a location in Ada and a check, but the user wrote a model and bodies. So each
+finding has the line of the body or generated unit, and the element of the model that the code
+belongs to. It also has values for which the check fails, where the prover found some, and a
+change that usually helps.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ class UnprovedCheck:
     line: int
     column: int
     check: str
-    """What gnatprove says of it."""
+    """The check, in the words of gnatprove."""
     source: str
     """The line of the file."""
     example: str

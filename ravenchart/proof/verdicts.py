@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Verdicts of provers, kept by the text of the formula, so that only what changed is proved again.
+"""Verdicts of provers, kept by the text of the formula: only changed formulas are proved again.
 
 gnatprove asks a server of the memcached text protocol (its switch ``--memcached-server``) before
 it starts a prover. `served` is such a server for the time of one run. It keeps verdicts in a
 file of the cache folder, and asks a memcached for those that it has not, where one is given. A
-memcached that fails makes the proof slower. Whoever can write into either can lie: ASM-016.
+memcached that fails makes the proof slower. The verdicts of both are trusted: ASM-016.
 
 Only proofs are kept: no time limit that a prover ran into, so another run may still find one.
 """

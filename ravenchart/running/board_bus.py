@@ -144,7 +144,7 @@ class BoardPeer(Peer):
         return self._looks * LOOK
 
     def sleep(self, seconds: float) -> None:
-        """Let the boards go on; what comes meanwhile nobody hears."""
+        """Let the boards go on; frames that come meanwhile are dropped."""
         deadline = self.clock() + seconds
         while self._is_before(deadline):
             self._look()
@@ -183,7 +183,7 @@ class BoardPeer(Peer):
         self._take()
 
     def _take(self) -> None:
-        """What the boards say, to all others: each its frames in order, urgent ones first."""
+        """Pass the frames of each board to all others: in the order of the board, urgent first."""
         said = {link: deque(link.take()) for link in self._links if link.is_open}
         if not any(link.is_open for link in self._links):
             raise BenchError("the controller left the bus")

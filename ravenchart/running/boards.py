@@ -60,7 +60,7 @@ def run_board(board: Board, request: runs.RunRequest, progress: Progress) -> Run
 
 
 def _home(request: runs.RunRequest, controller: runs.Controller) -> Path:
-    """What the board of a node writes: a folder of its own where there are several."""
+    """The folder that the board of a node writes to: its own where there are several."""
     several = len(request.controllers) > 1
     folder = request.folder.absolute() / controller.node if several else request.folder.absolute()
     folder.mkdir(parents=True, exist_ok=True)
@@ -137,7 +137,7 @@ def _concluded(
     ended: Ended,
     problems: list[str],
 ) -> RunOutcome:
-    """What a run showed by the serial lines of its reports."""
+    """The outcome of a run by its reports on the serial lines."""
     parts: dict[str, Observation] = {}
     for one in request.controllers:
         several = len(request.controllers) > 1
@@ -159,7 +159,7 @@ def _concluded(
 
 
 def write_trace(serial: Path, trace: Path, *, together: bool) -> tuple[str, ...]:
-    """Write the trace of a board from its serial line; what the controller said besides.
+    """Write the trace of a board from its serial line; the other lines of the controller.
 
     ``together``: with other boards. Their looks begin together, whatever the clock of each says.
     """

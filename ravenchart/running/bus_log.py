@@ -48,7 +48,7 @@ def written(path: Path) -> Iterator[int]:
 
 @contextmanager
 def recorded(path: Path | None, bus: str) -> Iterator[OnFrame]:
-    """What takes the frames of a bus for a log, if there is to be one; raises as `written`."""
+    """A function that adds the frames of a bus to the log, if there is one; raises as `written`."""
     if path is None:
         yield unrecorded
         return

@@ -3,8 +3,8 @@
 
 """A scenario played to a controller that runs already, at the other end of any bus.
 
-Only frames are seen there: no trace, no times of the controller, no count of its faults. What a
-scenario expects of these is neither passed nor failed.
+Only frames are seen there: no trace, no times of the controller, no count of its faults. An
+expectation of a scenario about these neither passes nor fails.
 """
 
 from __future__ import annotations
@@ -69,6 +69,6 @@ def _silence(vocabulary: BusVocabulary, interface: BusEnd, played: ScenarioResul
 
 
 def _unjudged(plan: Scenario) -> Iterator[str]:
-    """What the scenario expects, and nobody saw."""
+    """Expectations of the scenario that frames do not show."""
     yield from (f"not judged: {check}" for check in plan.trace_checks)
     yield from (f"not judged: {one.limit} {one.name}" for one in plan.expected)

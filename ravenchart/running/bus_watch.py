@@ -4,7 +4,7 @@
 """A bus while controllers use it: its load, and its messages with their last values.
 
 The watch sends nothing: it is one more node, which only receives. An adapter that takes part
-in the bus still acknowledges frames, unless its driver was told to listen only.
+in the bus still acknowledges frames, unless its driver is set to listen only.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class WatchedBus(Described):
 
 @dataclass(slots=True)
 class _Seen:
-    """What is known of a message."""
+    """The counts and the last values of a message."""
 
     frames: int = 0
     last: float | None = None

@@ -29,7 +29,7 @@ class NamedChart:
 
 
 def traced_chart(instance: str, region: str, lane: Lane) -> str:
-    """The name in traces of a lane of a region."""
+    """The name in traces of a top-level or orthogonal region."""
     inside = "" if lane.owner is None else f".{lane.name}"
     return f"{instance}.{region}{inside}"
 
@@ -47,7 +47,7 @@ def charts_of(system: System) -> dict[str, NamedChart]:
 
 
 def _states(region: Region, lane: Lane) -> Iterator[tuple[str, frozenset[str]]]:
-    """Each state of a lane with its leaves there: an orthogonal state is one of them."""
+    """Each state of a region with its leaves there: an orthogonal state is one of them."""
     own = [state for state in region.states if region.lane(state.name) == lane]
     leaves = [state.name for state in own if len(state.regions) != 1]
     for state in own:

@@ -1,13 +1,12 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What runs of the program in virtual time execute of its sources, as gcov counts it.
+"""The coverage of a program's sources by its runs in virtual time, as gcov counts it.
 
-The program is compiled without optimisation, without checks and without contracts, so that what
-is counted is what the release executes. A function of a spec counts once it was called: the
-declared form of a chart has functions that the body executes, such as `Enabled` and `Target`, and
-others that only contracts name. A body that should call one and does not has a line that was not
-executed.
+The program is compiled without optimisation, without checks and without contracts, so the counted
+code is that of the release. A function of a spec counts once it was called. The declared form of
+a chart has functions that the body executes, such as `Enabled` and `Target`, and others that only
+contracts name. A body that should call a function and does not has a line that was not executed.
 """
 
 from __future__ import annotations
@@ -82,7 +81,7 @@ def forget(home: Path) -> None:
 
 
 def measured(home: Path, user: Sequence[Path]) -> list[SourceCoverage]:
-    """What all runs since `forget` executed of the sources; ``user``: the user's folders.
+    """The coverage of the sources by all runs since `forget`; ``user``: the user's folders.
 
     ToolMissing without gcov, ToolFailed where it cannot read what the compiler left.
     """
@@ -98,7 +97,7 @@ def measured(home: Path, user: Sequence[Path]) -> list[SourceCoverage]:
 
 
 def read(said: str, places: Mapping[Path, SourceOwner]) -> list[SourceCoverage]:
-    """What gcov says of the sources in some folders, in order of place and name.
+    """The output of gcov for the sources in some folders, in the order of folder and name.
 
     A line of a generic counts for all of its instances together.
     """

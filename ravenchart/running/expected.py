@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a run lost, missed or overran, held against what its scenario expects.
+"""The losses, misses and overruns of a run, compared with the expectations of its scenario.
 
-Nothing that was counted may go unsaid: of each count the scenario says how often it may be,
-and why, or the run fails. Excused is only what the host demonstrably did.
+The scenario must expect each count, with a reason, or the run fails. Only delays that the host
+demonstrably caused are excused.
 """
 
 from __future__ import annotations
@@ -82,10 +82,10 @@ def counted(
 
 
 def judged(plan: Scenario | None, system: System | None, found: dict[Key, int]) -> Iterator[str]:
-    """Why a run fails by what it counted.
+    """The reasons why a run fails by its counts.
 
-    Where nobody plays a scenario nobody need be on the bus: then what is lost there, and the
-    faults that follow, are no failure.
+    Without a scenario the bus may have no other node: then losses there, and the faults that
+    follow, are no failure.
     """
     if plan is None:
         alone = system is not None and bool(system.buses)
@@ -112,7 +112,7 @@ def _differences(expected: Sequence[Expected], found: dict[Key, int]) -> Iterato
 
 
 def told(plan: Scenario | None, found: dict[Key, int]) -> Iterator[str]:
-    """What was lost, and each fault, with the cause that the scenario gives."""
+    """The losses and each fault, with the cause that the scenario gives."""
     causes = {
         (_kind(one), one.name.lower()): one.because for one in (plan.expected if plan else ())
     }

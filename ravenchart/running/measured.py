@@ -42,7 +42,7 @@ class MeasuredRow(Described):
 
     @property
     def words(self) -> list[str]:
-        """What is wrong: each bound that the figures refute."""
+        """The problems: each bound that the figures refute."""
         seen, found = self.measured or 0, []
         if seen > self.wcet:
             found.append("measured above `wcet`")
@@ -70,13 +70,13 @@ class Measurement(Described):
     """Execution times of one run: measurements, no bounds."""
 
     target: str
-    """What it ran on."""
+    """The target of the run."""
     clock: str
-    """What the times are."""
+    """The meaning of the times."""
     run: str
-    """What was run."""
+    """The title of the scenario, or the length of a run without one."""
     margin: int
-    """In percent: what `proposed` has in addition to `measured`."""
+    """In percent: the difference between `proposed` and `measured`."""
     rows: list[MeasuredRow]
     """In the order of the model."""
     coverage: list[Coverage]
@@ -94,7 +94,7 @@ def measured(
     margin: int,
     bounds: Mapping[str, Bound],
 ) -> Measurement:
-    """What a run showed, with a margin in percent."""
+    """The execution times of a run, with a margin in percent."""
     rows = []
     for slot in system.slots:
         longest = seen.executions.get(slot.element) or None  # 0: it was not executed
@@ -125,7 +125,7 @@ def _slot(system: System, row: str) -> Slot:
 
 
 def origin_of(system: System, row: str) -> Origin:
-    """Where the WCET of a row stands in the model, or the component or bus of it."""
+    """The location of a row's WCET in the model, or of its component or bus."""
     slot = _slot(system, row)
     if slot.of_bus:
         return next(bus.origin for bus in system.buses if bus.name == slot.owner)

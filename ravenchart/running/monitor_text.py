@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a monitor shows, as text: tables in 80 columns, or lines for a pipe."""
+"""The output of a monitor as text: tables in 80 columns, or lines for a pipe."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .monitored import Overlooked, WatchedEvent, WatchedNode, WatchedProcessor, 
 from .summary import columns
 
 LATE = 1.0
-"""A snapshot that is older, in s, is said to be."""
+"""The age of an older snapshot is shown; in s."""
 
 
 def tables(

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a monitor shows of a running controller: a snapshot beside the model and its bounds."""
+"""The view that a monitor has of a running controller: a snapshot beside model and bounds."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ NOT_FROM_START = (
     "what was before the monitor began: the controller ran already; a state is shown from the next "
     "record of its chart on"
 )
-"""What is said of a controller that ran already."""
+"""Facts that are not seen of a controller that ran already."""
 
 NO_COUNTS = (
     "processors, and queues of charts: they are reported by a program that `ravenchart build` has "
     "linked"
 )
-"""What is said where a snapshot has none."""
+"""Facts that are not seen where a snapshot has no counts."""
 
 OLDER_PROGRAM = (
     "the last response of a processor, and queues of charts: an older Ravenchart has generated the "
     "program"
 )
-"""What is said where a snapshot has counts without these."""
+"""Facts that are not seen where the counts of a snapshot lack them."""
 
 
 @dataclass(slots=True)
@@ -113,7 +113,7 @@ class WatchedEvent(Described):
 
 @dataclass(slots=True)
 class WatchedTraffic(Described):
-    """What came to or left a port, event, message or controller of a bus."""
+    """The traffic of a port, event, message or controller of a bus."""
 
     name: str
     """Its name."""
@@ -148,7 +148,7 @@ class WatchedQueue(Described):
 
 @dataclass(slots=True)
 class WatchedValue(Described):
-    """What a port or data item was worth last, where the model records it."""
+    """The last value of a port or data item, where the model records it."""
 
     name: str
     """Its name; of a record that of one field."""
@@ -195,15 +195,15 @@ class WatchedNode(Described):
     queues: list[WatchedQueue]
     """Those of queued ports, then those of charts."""
     values: list[WatchedValue]
-    """What the model records, in its order."""
+    """The recorded values, in the order of the model."""
     faults: dict[str, int]
     """How many faults of each kind there were."""
     lost: dict[str, int]
-    """What was lost: trace records, frames, and what found no room in the snapshot."""
+    """The losses: trace records, frames, and records without room in the snapshot."""
     not_seen: list[str]
-    """What a monitor cannot see of this controller."""
+    """The facts that a monitor cannot see of this controller."""
     said: list[str] = field(default_factory=list)
-    """What the controller of a board said besides: why it ended, for example."""
+    """Other lines of the controller of a board: why it ended, for example."""
 
 
 @dataclass(slots=True)
@@ -237,7 +237,7 @@ class NodeMonitor:
         self._processors = {p.name.lower(): p for p in self._system.processors}
 
     def shown(self, snapshot: Snapshot, process: int | None) -> WatchedNode:
-        """What a snapshot says, of a controller whose process is that."""
+        """The controller of a ``process``, as a snapshot shows it."""
         seen = snapshot.seen
         now = seen.now or 0
         events, unlisted = self._new(snapshot)

@@ -49,7 +49,7 @@ def found(checked: Checked, note: Callable[[str], None]) -> list[NodeFile]:
 
 
 def none_runs(checked: Checked) -> str:
-    """What is said where nothing is found."""
+    """The message where no controller is found."""
     name = checked.system.name
     return f"no controller of {name} runs that `ravenchart run`, `shell` or `measure` has started"
 

@@ -164,7 +164,7 @@ def _bands(panel: Axes, spans: Sequence[Stay], colours: Mapping[str, str], end: 
 
 
 def _label_marks(panel: Axes, marks: Sequence[OperatorMark]) -> None:
-    """What the operator did, above the first panel."""
+    """Write the operator's actions above the first panel."""
     for mark in marks:
         panel.text(
             mark.at,

@@ -73,8 +73,8 @@ def _stolen_ticks(core: int) -> int:
 def stolen_time(before: int, after: int) -> int:
     """Time in ns that was stolen at the most between two counts of whole ticks.
 
-    A count is up to a tick behind, so it may have been a tick more than their difference. Where
-    the count has always been 0 there is nobody who steals.
+    A count is up to a tick behind, so it may have been a tick more than their difference. A count
+    of 0 means that no time was ever stolen.
     """
     ticks = after - before + 1 if after else 0
     return ticks * (10**9 // os.sysconf("SC_CLK_TCK"))
@@ -86,8 +86,8 @@ class ControllerProcess:
     def __init__(self, executable: Path, trace: Path, core: int, **environment: str) -> None:
         """Start ``executable`` on ``core``, writing its trace to ``trace``. StartError.
 
-        ``environment`` is what it is told besides: by whom the bus is reached. For the time of
-        the process a file with its snapshots is beside it, which a monitor finds.
+        ``environment`` has further variables, such as the address of the bus server. While the
+        process runs, a monitor finds the file of its snapshots beside the executable.
         """
         told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace), **environment}
         given = snapshots.VARIABLE in told
@@ -127,7 +127,7 @@ class ControllerProcess:
         return self._wait_for(_PORT)
 
     def wait_until_joined(self) -> None:
-        """Until it is a node of the bus that it was told of; StartError when it does not say so."""
+        """Until it reports that it is a node of its bus; StartError when it does not."""
         self._wait_for(_JOINED)
 
     def _wait_for(self, said: re.Pattern[str]) -> int:
@@ -196,7 +196,7 @@ class ControllerProcess:
             self.snapshots.unlink(missing_ok=True)
 
     def _early_end(self) -> str:
-        """What happened when the output ended before the port was known."""
+        """The reason why the output ended before the port was known."""
         code = self._process.poll()
         said = f": {self._warnings[-1]}" if self._warnings else ""
         if code is None:

@@ -47,7 +47,7 @@ from .vocabulary import BusVocabulary, WordError, hint_of
 from .watched import WatchedController
 
 PATIENCE = 10.0
-"""How long an answer is waited for unless it is said, in s."""
+"""The longest wait for an answer unless another is given, in s."""
 
 LOOKS = 0.02
 """Seconds between two looks for the state of a chart; a controller reports each 0.1 s."""

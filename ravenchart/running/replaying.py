@@ -3,9 +3,9 @@
 
 """A recorded run shown again: the snapshot that its controllers would have given at any instant.
 
-An instant is a time in ns from the first start of all controllers. What is shown there follows
-from the trace up to it, and from nothing that was shown before. So it does not matter on which
-way the instant was reached.
+An instant is a time in ns from the first start of all controllers. The snapshot there follows
+from the trace up to the instant, and from nothing that was shown before. So the way to an instant
+does not matter.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from .traces.files import NodeTrace
 from .traces.values import Point, Quantity, extremes
 
 SIMULATED = "times and faults, messages and queues: a simulation has none"
-"""What no simulation shows."""
+"""The facts that no simulation shows."""
 
 MOST_POINTS = 480
 """Of more points of a value some are left out."""
@@ -44,7 +44,7 @@ MOST_KEPT = 100_000
 """So many times are kept of which the extremes are known."""
 
 STEPS: Mapping[str, tuple[str, ...]] = {"event": LISTED, "value": (VALUE,), "record": KINDS}
-"""What a step can lead to, and the kinds of records that it stands for."""
+"""The targets of a step, each with the kinds of records that it stands for."""
 
 _time = attrgetter("time")
 
@@ -99,7 +99,7 @@ class ReplayedController:
         return self._seen.complete
 
     def node(self, at: int) -> WatchedNode:
-        """What a monitor shows at an instant. Its counts are those of the last report before."""
+        """The node as a monitor shows it at an instant, with the counts of the last report."""
         now = Ns(max(NO_TIME, at - self.late))
         number = bisect_right(self._reports, now, key=lambda one: one.at)
         snapshot = self._snapshot(now, number)
@@ -121,7 +121,7 @@ class ReplayedController:
         return self._reports[number - 1].at if number else None
 
     def _snapshot(self, now: Ns, number: int) -> Snapshot:
-        """What the controller had to report: records until now, and the counts before them."""
+        """The snapshot of a time: the records until then, and the counts of the report before."""
         listed = bisect_right(self._listed, now, key=_time)
         counts = self._reports[number - 1].seen if number else self._before_reports()
         seen = replace(
@@ -145,7 +145,7 @@ class ReplayedController:
         return Observation(self._seen.map, counts=lost)
 
     def records(self, at: int) -> Iterator[tuple[str, str, str]]:
-        """The records of an instant: kind, element, and what is said of it."""
+        """The records of an instant: kind, element, and text."""
         records, now = self._steps["record"], at - self.late
         first, end = bisect_left(records, now, key=_time), bisect_right(records, now, key=_time)
         for one in records[first:end]:
@@ -176,9 +176,9 @@ class ReplayedController:
                     yield LostRecords(*times, what, count)
 
     def points(self, value: str, first: Ns, last: Ns) -> tuple[Quantity, Sequence[Point], int]:
-        """What a value was in a time, with the point before it that holds on into it.
+        """The points of a value in a time, with the point before, which still holds then.
 
-        Of very many points there are those that show their extremes; the number is that of all.
+        Of very many points only those with the extremes remain; the number counts all.
         """
         element = self._seen.map.named(value, VALUE)
         quantity = Quantity.of(element.literals, element.unit)
@@ -215,7 +215,7 @@ def _report(trace: Observation, lines: Sequence[str]) -> _Report:
 
 
 def _said(record: TraceRecord) -> str:
-    """What a record says, in its unit."""
+    """The value of a record in its unit, or its transition or fault."""
     if record.kind == VALUE:
         quantity = Quantity.of(record.element.literals, record.element.unit)
         return f"{quantity.text(record.value)} {quantity.unit}".rstrip()

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What came out of one run, and the rows and pictures that are made of it."""
+"""The outcome of one run, and the rows and pictures that are made of it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .process import ERROR, Ended
 
 @dataclass(frozen=True, slots=True)
 class RunOutcome:
-    """What came out of one run; ``failures`` is empty exactly when it passed.
+    """The outcome of one run; ``failures`` is empty exactly when it passed.
 
     ``observation`` is None when there is no readable trace, ``scenario_result``
     when no scenario was asked for or it could not begin. ``clock_offset`` turns a
@@ -44,7 +44,7 @@ class RunOutcome:
     not_judged: str | None = None
     """Why the timing was not judged, where it was not."""
     unseen: tuple[str, ...] = ()
-    """What else was not judged, for the same reason."""
+    """Other parts that were not judged, for the same reason."""
 
     @property
     def passed(self) -> bool:
@@ -60,7 +60,7 @@ class RunOutcome:
 
     @property
     def gaps(self) -> str:
-        """What was not judged, and why; nothing where all was."""
+        """The parts that were not judged, and why; empty where all were."""
         what = ", ".join(("timing", *self.unseen))
         return f"{what} not judged: {self.not_judged}" if self.not_judged else ""
 
@@ -72,7 +72,7 @@ def notes(
     executed: Sequence[Execution],
     compared: Sequence[Comparison],
 ) -> Iterator[str]:
-    """What a reader should know, although it is no failure."""
+    """Remarks for the reader that are no failures."""
     for row in executed:
         if row.exceeded:
             longest, wcet = spoken(row.observed), spoken(row.wcet)
@@ -127,7 +127,7 @@ def spans(result: RunOutcome) -> Mapping[str, tuple[Stay, ...]]:
 
 
 def marks(result: ScenarioResult) -> tuple[OperatorMark, ...]:
-    """What the operator did, as marks in the picture."""
+    """The operator's actions, as marks in the picture."""
     found = [
         OperatorMark(s.at, next((v for v in s.values.values() if isinstance(v, str)), s.message))
         for s in result.sendings

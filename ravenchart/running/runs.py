@@ -44,7 +44,7 @@ from .process import ControllerProcess, Ended, StartError, separate_cores
 from .result import RunOutcome
 
 DEFAULT_GRACE = 1.0
-"""Grace of a controller whose model is not at hand, in s."""
+"""Grace of a controller without a model, in s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,9 +171,9 @@ def run_controller(
     """Run ``executable`` through ``scenario``, for at most ``duration`` seconds.
 
     The controller gets one core for itself where there are two; its trace stays in
-    ``out_dir``. With ``analysis`` what was seen is held against the bounds. Raises
+    ``out_dir``. With ``analysis`` the observation is compared with the bounds. Raises
     ScenarioError, BenchError and TraceError for inputs that cannot be used, before
-    anything runs; whatever goes wrong later is a failure in the result.
+    anything runs; a later error is a failure in the result.
     """
     plan = load_scenario(scenario)
     if plan.bus_events:
@@ -202,7 +202,7 @@ def run_alone(
     *,
     analysis: Analysis | None = None,
 ) -> RunOutcome:
-    """Run ``executable`` for that long with nobody on its bus."""
+    """Run ``executable`` for that long with no other node on its bus."""
 
     def play(process: ControllerProcess, grace: float) -> None:
         if not process.runs_for(seconds):
@@ -255,7 +255,7 @@ def write_report(
 
 
 def _passed(outcome: RunOutcome) -> str:
-    """What stands beside PASS."""
+    """The text beside PASS."""
     return f"nothing failed; {outcome.gaps}" if outcome.gaps else "nothing failed"
 
 
@@ -466,10 +466,10 @@ def joining(
 def bus_words(
     analysis: Analysis, controllers: Sequence[Controller], plan: Scenario | None
 ) -> list[str]:
-    """What the bus server is told: its bit rates, and what happens on the bus when.
+    """The settings of the bus server: its bit rates, and the events on the bus with their times.
 
-    Raises BenchError where it cannot have such a rate, and ScenarioError where the scenario
-    cuts off a node that there is not.
+    Raises BenchError for a rate that the server cannot have, and ScenarioError where the scenario
+    cuts off a node that does not exist.
     """
     line = analysis.system.buses[0]
     data_rate = (line.data_rate or line.bit_rate) if line.takes_fd else 0

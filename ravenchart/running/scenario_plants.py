@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The plants of a scenario held against its model, and against the class or unit that each is."""
+"""The plants of a scenario compared with its model, and with the class or unit of each."""
 
 from __future__ import annotations
 

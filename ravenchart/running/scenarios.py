@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""A scenario held against its model, before anything is built.
+"""A scenario compared with its model, before anything is built.
 
-Messages and fields are those of the bus's CAN database, which is what the bench speaks;
-regions, states and ports are those of the model.
+Messages and fields are those of the bus's CAN database, which the bench uses; regions, states and
+ports are those of the model.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from .scenario_plants import check_plants
 from .vocabulary import BusVocabulary
 
 LOSSES = ("lost_out", "lost_in", "rejected_lines")
-"""What the controller of a bus counts as lost."""
+"""The losses that the controller of a bus counts."""
 VALUE = "RV-1305"
 """A value that the field of a message does not have."""
 
@@ -61,7 +61,7 @@ def checked(path: Path, system: System, *, simulated: bool = True) -> Scenario:
 
 
 def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
-    """What a scenario names that the model does not have, and values that do not fit."""
+    """Errors of a scenario: names that the model does not have, and values that do not fit."""
     source = scenario.source
     assert source is not None
     if not system.buses:
@@ -86,7 +86,7 @@ def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
 
 
 class _Check:
-    """What a scenario may name."""
+    """Checks the names and values of a scenario; errors go to its source."""
 
     def __init__(self, source: Source, system: System, vocabulary: BusVocabulary) -> None:
         self.source = source
@@ -213,7 +213,7 @@ class _Check:
                 self.port(port, (*path, key))
 
     def state(self, region: Region, shown: str, name: str, path: FormPath) -> None:
-        """A state that a trace can tell of: one without states inside."""
+        """A state that a trace can show: one without states inside."""
         leaves = [state.name for state in region.states if state.is_leaf]
         if name not in leaves:
             known = any(state.name == name for state in region.states)

@@ -53,7 +53,7 @@ class Shell:
 
     @property
     def words(self) -> BusVocabulary:
-        """What can be said on the bus."""
+        """The messages of the bus, with their fields and values."""
         return self.robot.vocabulary
 
     def do(self, line: str) -> bool:
@@ -212,7 +212,7 @@ class Shell:
     # --- completion
 
     def completions(self, before: str, begun: str) -> list[str]:
-        """What the word ``begun`` may become, after the text ``before`` it on the line."""
+        """The words that ``begun`` may become, after the text ``before`` it on the line."""
         verb, *told = before.replace("=", " = ").split() or [""]
         if not verb:
             found: Iterable[str] = USAGES

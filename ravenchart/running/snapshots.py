@@ -53,7 +53,7 @@ PAUSE = 0.002
 """Seconds between two tries."""
 
 ABANDONED = 60.0
-"""A file that nobody has locked for so long, in s, is left over."""
+"""A file without a lock for so long, in s, is left over."""
 
 _LOCK = "hhqqi"
 """`struct flock` of Linux on 64 bits: type, whence, start, length, process."""
@@ -69,11 +69,11 @@ class Tally:
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """What a controller had to report at one time.
+    """The report of a controller at one time.
 
-    The records of ``seen`` are the last transitions and faults. It is ``complete`` in the last
-    snapshot of a controller that ended in order. ``partial``: the controller ran already when what
-    it says was first read, so records are missing.
+    The records of ``seen`` are the last transitions and faults. ``seen`` is complete in the last
+    snapshot of a controller that ended in order. ``partial``: the controller ran already when its
+    records were first read, so earlier ones are missing.
     """
 
     sequence: int

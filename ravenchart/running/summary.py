@@ -20,7 +20,7 @@ from .measured import WARNING, Measurement
 
 
 def print_steps(console: Console, steps: Sequence[StepRow]) -> None:
-    """What was done, and how it went."""
+    """The steps, and how each went."""
     table = columns("at s>", "step", "outcome")
     for step in steps:
         outcome = step.outcome if step.passed else f"FAILED: {step.outcome}"

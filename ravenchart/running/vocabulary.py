@@ -1,11 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What is said on the bus of a model: its messages, their fields and values, by the model's names.
+"""The words of a model's bus: its messages, their fields and values, by the model's names.
 
 With them are the charts, whose states snapshots show. Scenarios, the shell and `RemoteSystem` look
-their words up here. The messages are those of the bus's CAN database, which is what the bench
-speaks.
+their words up here. The messages are those of the bus's CAN database, which the bench uses, too.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ class BusVocabulary:
     partial: frozenset[tuple[str, str]]
     """Fields, by message, that have values without a name; these are numbers."""
     commands: Mapping[str, tuple[str, str]] = field(default_factory=dict)
-    """Literals that tell what to do: each is a value of one field, of one message from outside."""
+    """Literals that are commands: each is a value of one field, of one message from outside."""
     charts: Mapping[str, NamedChart] = field(default_factory=dict)
     """The charts of all instances, by `instance.Region`."""
 
@@ -197,7 +196,7 @@ class BusVocabulary:
     ) -> str | None:
         """Why a field has no such value: it is none of its names, or no number in its range.
 
-        What arrives is told ``by_name`` where values have names.
+        Values that arrive are given ``by_name``, where they have names.
         """
         low, high = signal.minimum, signal.maximum
         assert low is not None and high is not None
@@ -238,7 +237,7 @@ def _commands(messages: Iterable[DbcMessage]) -> Iterator[tuple[str, tuple[str, 
 
 
 def hint_of(name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
-    """What may be meant by a name that is not known; ``more`` are names that are not listed."""
+    """The hint for a name that is not known; ``more`` are names that are not listed."""
     names = [*known]
     every = [*names, *more]
     near = get_close_matches(name, every, 1) or [n for n in every if n.lower() == name.lower()]

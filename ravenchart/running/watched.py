@@ -67,7 +67,7 @@ class WatchedController(ABC):
     @property
     @abstractmethod
     def end_in_words(self) -> str:
-        """What is said where it is gone without its report."""
+        """The text for a controller that is gone without its report."""
 
     @abstractmethod
     def look(self) -> bool:
@@ -81,7 +81,7 @@ class WatchedController(ABC):
         """Watch it no longer."""
 
     def show(self, snapshot: Snapshot, process: int | None) -> None:
-        """What is shown from now on."""
+        """Show a snapshot from now on."""
         self.node = self._monitor.shown(snapshot, process)
         self.overlooked.add(self.node, new=self.is_new)
         self.last.extend(self.node.events)

@@ -3,9 +3,9 @@
 
 """The controller of a board while it runs, by what it writes on its serial line.
 
-A board writes each record of its trace at once. What a snapshot of a controller on this machine
-says is counted here, from the start of the board on, or from the next line that names its model: a
-board repeats that line each second. Nothing is shown before it.
+A board writes each record of its trace at once. So this module makes the counts that a controller
+on this machine has in its snapshots. They begin with the start of the board, or with the next line
+that names its model. A board repeats that line each second. Nothing is shown before it.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ RATE = 115_200
 """Bits in a second, where a line is named without them."""
 
 MOST_WAITING = 200_000
-"""Lines that are kept while nobody looks."""
+"""The most lines that are kept between two looks."""
 
 LINE_BYTES = 4_096
 """A longer line is no line."""
@@ -56,7 +56,7 @@ LOOK = 0.2
 """Seconds in which the end of the watching is noticed."""
 
 UNREADABLE = f"serial line.{TRACE}"
-"""What lines are called that were lost, or could not be read."""
+"""The name of the count of lines that were lost, or could not be read."""
 
 NOT_NAMED = (
     "all of it until the board names its model, as it does when it starts and each second; reset "
@@ -164,7 +164,7 @@ class _Reader:
 
 @dataclass(slots=True)
 class _Counted:
-    """What a board has said since its start, or since it was first read."""
+    """The counts of a board since its start, or since it was first read."""
 
     map: TraceMap
     partial: bool

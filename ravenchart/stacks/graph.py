@@ -16,11 +16,11 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 INDIRECT = "__indirect_call"
-"""What GCC calls the target of a call through a pointer."""
+"""GCC's name for the target of a call through a pointer."""
 
 
 class StackFrame(Enum):
-    """What the compiler knows of the size of a frame, in the words of ``-fstack-usage``."""
+    """The kinds of frame sizes, in the words of ``-fstack-usage``."""
 
     STATIC = "static"
     BOUNDED = "dynamic,bounded"

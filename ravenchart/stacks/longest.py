@@ -15,7 +15,7 @@ from .graph import INDIRECT, Function, Graph, StackFrame, plain_symbol
 
 @dataclass(frozen=True, slots=True)
 class StackBound:
-    """What a function takes at most although the call graph does not say it, and why."""
+    """A limit of a function's stack that the call graph does not give, and why it holds."""
 
     extra: int
     """Bytes of a frame beyond the part that has a size."""
@@ -26,7 +26,7 @@ class StackBound:
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """What is known of a program beside its call graph."""
+    """Facts about a program beside its call graph."""
 
     library: int | None = None
     """Bytes for any call of what is not in the graph; None: all must be in it."""
@@ -104,7 +104,7 @@ class _Best(NamedTuple):
 class Depths:
     """Longest paths in one graph; each function is looked at once.
 
-    What an ending calls is looked at again, apart: there, a call of an ending is left out.
+    The callees of an ending are walked once more, apart: there, a call of an ending is left out.
     """
 
     def __init__(self, graph: Graph, rules: Rules) -> None:
@@ -162,12 +162,12 @@ class Depths:
                 best[title] = _Best(self._size(title) + rest, deepest)
 
     def _below(self, title: str, *, inside: bool) -> list[str]:
-        """What is called, but for an ending from inside of one."""
+        """The callees of a function; ``inside`` an ending without the endings."""
         found = self._callees(title)
         return [one for one in found if one not in self._endings] if inside else found
 
     def _callees(self, title: str) -> list[str]:
-        """What a function calls, pointers resolved and the library folded."""
+        """The callees of a function, pointers resolved and the library folded."""
         function = self.graph.get(title)
         if function is None:
             return []

@@ -3,8 +3,8 @@
 
 """Frames and calls of the run-time library of a board, as its code in the image has them.
 
-Of a function the sum of all that its instructions take of the stack is at least its frame: parts
-of a prologue that exclude each other count twice. A size that stands in a register has no bound.
+The sum of all that the instructions of a function take of the stack is at least its frame: parts
+of a prologue that exclude each other count twice. A size in a register has no bound.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def _function(name: str, lines: list[tuple[str, str]]) -> Function:
 
 
 def _taken(mnemonic: str, operands: str) -> int | None:
-    """Bytes that an instruction takes of the stack; None where that stands in a register."""
+    """Bytes that an instruction takes of the stack; None where a register has the number."""
     pushed = _PUSH.search(operands) or _POST.search(operands)
     if pushed:
         return int(pushed[1])

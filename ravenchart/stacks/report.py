@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What is found of a program's stacks and memory, as `--json` and the record of a build have it."""
+"""The stacks and the memory of a program, as `--json` and the record of a build have them."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Memory(Described):
     node: str
     """The name of the node."""
     target: str
-    """What it is built for."""
+    """The target of the program."""
     mode: str
     """`checks` or `release`."""
     library: int | None
@@ -100,7 +100,7 @@ class Memory(Described):
 def memory_of(entry: Any) -> Memory:
     """The `Memory` that `asdict` has made such an entry of; KeyError or TypeError where none has.
 
-    What `building.stacks` reads may come from elsewhere: there every value is looked at.
+    `building.stacks` reads entries that may come from elsewhere, and validates every value.
     """
     stacks = [
         Stack(**one | {"path": [PathStep(**step) for step in one["path"]]})

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a linked program holds, by the words of ``nm -S``, and the values of its constants."""
+"""The symbols of a linked program, by ``nm -S``, and the values of its constants."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ _guards: list[subprocess.Popen[bytes]] = []
 def popen(
     words: Sequence[str | Path], *, core: int | None = None, **options: Any
 ) -> subprocess.Popen[Any]:
-    """Start a program, on one ``core`` if that is said; other options as for `Popen`."""
+    """Start a program, on one ``core`` if given; other options as for `Popen`."""
     prepare = _nothing if core is None else _on_core(core)
     return subprocess.Popen(words, start_new_session=True, preexec_fn=prepare, **options)
 

@@ -52,7 +52,7 @@ def left(enrolled: dict[int, str]) -> set[int]:
 
 
 def main() -> None:
-    """Listen until nobody writes any more, then end what is left."""
+    """Listen until the input ends, then end the processes that are left."""
     for request in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(request, signal.SIG_IGN)
     enrolled: dict[int, str] = {}

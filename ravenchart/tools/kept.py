@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Results kept by the content that they speak of, in folders of ``$XDG_CACHE_HOME/ravenchart``.
+"""Results kept by the content that they are about, in folders of ``$XDG_CACHE_HOME/ravenchart``.
 
 ``~/.cache`` stands for that variable where it is not set. An entry that cannot be read is none.
-Whoever can write there can lie.
+The entries are trusted, so others must not be able to write there.
 """
 
 from __future__ import annotations

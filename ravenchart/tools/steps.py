@@ -18,13 +18,13 @@ OF_GNATPROVE = "--ide-progress-bar"
 """The switches with which they print such lines."""
 COMPILING = ("compiled",)
 PROVING = ("read", "proved")
-"""What is done with a unit in each phase."""
+"""The action on a unit in each phase."""
 _DONE = re.compile(r"completed (\d+) out of (\d+) \(\d+%\)\.\.\.\s*")
 
 
 class Announced:
-    """Tells after each unit how many are done, and how long the others of the last phase take at
-    that pace.
+    """Reports after each unit how many are done, and how long the others of the last phase take
+    at that pace.
     """
 
     def __init__(

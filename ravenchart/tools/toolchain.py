@@ -47,8 +47,8 @@ def run(
 ) -> str:
     """Run a tool with scenario variables set; its output, or ToolMissing or ToolFailed.
 
-    Lines of the output that ``taken`` takes are no part of what is returned or raised. What the
-    tool leaves among the temporary files is deleted.
+    The result and the text of ToolFailed have no line of the output that ``taken`` takes. The
+    temporary files of the tool are deleted.
     """
     if not have(tool):
         raise ToolMissing(tool)
@@ -85,7 +85,7 @@ def _alone(tool: str, scenario: Mapping[str, str]) -> Iterator[None]:
 
 
 def filtered(tool: str, arguments: Sequence[str], text: str) -> str:
-    """What a tool makes of a text; ToolMissing, or ToolFailed with what it printed."""
+    """The output of a tool for a text; ToolMissing, or ToolFailed with its error output."""
     if not have(tool):
         raise ToolMissing(tool)
     done = children.run([tool, *arguments], text, encoding="utf-8")

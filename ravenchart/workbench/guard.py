@@ -32,7 +32,7 @@ HEADERS = {
     "referrer-policy": "no-referrer",
     "x-content-type-options": "nosniff",
 }
-"""Of every answer: nothing from elsewhere, in no frame, and no address told to others."""
+"""Of every answer: no content from elsewhere, no frame around it, and no referrer to others."""
 
 
 def token() -> str:
@@ -56,7 +56,7 @@ class Guard:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request, or refuse it."""
         if scope["type"] != "http":
-            return  # no WebSocket and no lifespan: the server is told so
+            return  # no WebSocket and no lifespan: the settings of the server exclude them
         refusal = self._refusal(scope)
         if refusal is not None:
             status, text = refusal

@@ -89,7 +89,7 @@ class Hub(Publisher):
             self._tables.stop()
 
     async def ask(self, about: Callable[[Session], T]) -> T:
-        """What a function finds in the session, while no change is under way."""
+        """The result of a function of the session, while no change is under way."""
         return await self._run(lambda: about(self.session))
 
     # --- Changes

@@ -29,7 +29,7 @@ PAUSE = 1.0
 
 
 class LiveView:
-    """What pages see of the controllers and of the bus; any thread may look."""
+    """The controllers and the bus as pages see them; any thread may look."""
 
     def __init__(
         self, path: Path, bus: tuple[str, str] | None = None, files: Sequence[str] = ()
@@ -47,7 +47,7 @@ class LiveView:
         self._next_join = self._next_look = 0.0
         self._text = ""
         self._other = ""
-        """What was said of a program of another model, while nothing else is heard."""
+        """The message about a program of another model, while no other program is seen."""
         self._lock = Lock()
         self._checked: Checked | None = None
         self._digest: str | None = None

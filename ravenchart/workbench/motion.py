@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a page draws of a controller: its charts with what is active, its values over time."""
+"""The data from which a page draws a controller: charts with active states, values over time."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _plot(quantity: Quantity, points: Sequence[Point], recorded: int) -> Json:
 
 
 class LastValues:
-    """What was looked at of the values of a running controller, in the time of a plot.
+    """The values of a running controller that were looked at, in the time of a plot.
 
     A snapshot has the last value only: those between two snapshots are counted.
     """

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What every page's server has: the files of the page, the state as a stream, and messages."""
+"""The common part of every page's server: files, the state as a stream, and messages."""
 
 from __future__ import annotations
 
@@ -53,11 +53,11 @@ class Pages:
         raise NotImplementedError
 
     def own_routes(self) -> list[Route]:
-        """What there is beside that of every page."""
+        """The routes beside those of every page."""
         raise NotImplementedError
 
     def guarded(self, token: str, port: int) -> ASGIApp:
-        """What answers to requests at a port of this machine."""
+        """The application that answers requests at a port of this machine."""
         return Guard(self.routed(), token, (f"127.0.0.1:{port}", f"localhost:{port}"))
 
     def routed(self) -> Starlette:

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Where what the drawings of a model show stands in its files.
+"""The locations in a model's files of the elements that its drawings show.
 
-Graphviz names each group of an SVG drawing in its ``title``: by that name, or by the name and a
-text inside the group, the page finds the location of what is clicked.
+Graphviz names each group of an SVG drawing in its ``title``. By that name, or by the name and a
+text inside the group, the page finds the location of the clicked element.
 """
 
 from __future__ import annotations

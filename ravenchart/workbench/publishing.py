@@ -18,7 +18,7 @@ from .requests import PageRequest
 T = TypeVar("T")
 
 BEAT = 15.0
-"""Seconds after which a page hears that the server lives."""
+"""Seconds after which a page gets a sign that the server lives."""
 
 MOST_DRAWINGS = 100
 """Drawings that are kept."""
@@ -34,10 +34,10 @@ class OldError(Exception):
 
 
 class RefusedRequestError(Exception):
-    """What a page asks for cannot be done; the text says why, and what to do."""
+    """A request of a page cannot be carried out; the text says why, and what to do."""
 
     def more(self) -> dict[str, Any]:
-        """What the page gets beside the text."""
+        """The further facts that the page gets beside the text."""
         return {}
 
 
@@ -51,7 +51,7 @@ class Numbered(Protocol):
 
 
 class Publisher:
-    """What pages ask goes to a session one after the other, and comes back to all of them."""
+    """Carries out the requests of pages one after the other; all pages get the new state."""
 
     def __init__(self, session: Numbered) -> None:
         """To be made before the event loop runs."""
@@ -65,7 +65,7 @@ class Publisher:
         self._tasks: set[asyncio.Task[None]] = set()
         self.state = self._dumped()
 
-    # --- What a session is
+    # --- Defined for each kind of session
 
     def _dumped(self) -> bytes:
         """The state as JSON."""
@@ -173,7 +173,7 @@ class Publisher:
         return told | {"svg": await loop.run_in_executor(self._artist, lambda: self._svg(dot))}
 
     def _svg(self, dot: str) -> str:
-        """What Graphviz makes of it; the last drawings are kept."""
+        """The drawing that Graphviz makes of a text; the last drawings are kept."""
         found = self._drawn.pop(dot, None) or drawings.svg(dot)
         self._drawn[dot] = found
         if len(self._drawn) > MOST_DRAWINGS:

@@ -26,11 +26,11 @@ from .requests import PlayOrPause, ReplayRequest, Seek, SetSpeed, StepTo
 Json = dict[str, Any]
 
 NAMES = {"event": "transition or fault", "value": "recorded value", "record": "record"}
-"""What a step leads to, in words."""
+"""The targets of a step, in words."""
 
 
 class ReplayView:
-    """What pages see of the replay; any thread may look or act."""
+    """The replay as pages see it; any thread may look or act."""
 
     def __init__(self, path: Path, traces: Sequence[Path]) -> None:
         """For the model at ``path``. Refused where a trace is not of it, or cannot be read."""

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the page asks for: each message in one form, and nothing else is accepted."""
+"""The requests of the page: each message has one form, and nothing else is accepted."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def read(body: bytes) -> AnyRequest:
 
 
 def validated(reader: TypeAdapter[R], body: bytes) -> R:
-    """What a reader makes of a message, or `MalformedError`."""
+    """The message that a reader makes of a body, or `MalformedError`."""
     try:
         return reader.validate_json(body)
     except ValidationError as problem:

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What takes longer than a change may: advice, how far a WCET may grow, tables. A process.
+"""A process for longer work than a change may take: advice, growth of a WCET, tables.
 
-It reads one question a line on standard input and writes one answer a line, both JSON; an answer
-with ``more`` is the best so far, and another follows. The process that asks ends it where the
-question is no longer of use.
+It reads one question a line on standard input and writes one answer a line, both JSON. An answer
+with ``more`` is the best so far, and another follows. The process that asks ends this one where
+the question is no longer of use.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ class Search:
     """Why the search ended before it was at its end."""
 
     def told(self, session: Session) -> dict[str, Any]:
-        """What the page gets; ``old``: the model has changed since the search began."""
+        """The search for the page; ``old``: the model has changed since the search began."""
         return {
             "strategy": self.strategy,
             "running": self.running,

@@ -32,7 +32,7 @@ class WorkbenchPages(Pages):
         return requests.read(body)
 
     def own_routes(self) -> list[Route]:
-        """What the workbench has beside."""
+        """The routes of the workbench beside those of every page."""
         return [
             Route("/diff", self.diff),
             Route("/source", self.source),
@@ -46,7 +46,7 @@ class WorkbenchPages(Pages):
         return JSONResponse(await asyncio.to_thread(self.hub.live.look, digest))
 
     async def diff(self, request: Request) -> Response:
-        """What a save would change."""
+        """The changes that a save would make."""
         found = await self.hub.ask(lambda session: (session.number, session.diff()))
         return JSONResponse({"number": found[0], "diff": found[1]})
 

@@ -73,7 +73,7 @@ class _Disk:
     pending: dict[str, Stamp] = field(default_factory=dict)
     """Of the look before, where a file may still be written to."""
     outside: dict[str, bytes] = field(default_factory=dict)
-    """What files hold now that have changed outside and are not taken over; b"" of one gone."""
+    """The text of files that have changed outside and are not taken over; b"" of one gone."""
 
 
 class Session:
@@ -120,7 +120,7 @@ class Session:
         return self._states[self._at + 1].label if self._at + 1 < len(self._states) else None
 
     def diff(self) -> str:
-        """What `save` would change, as a unified diff."""
+        """The changes that `save` would make, as a unified diff."""
         return "".join(
             line
             for name, new in self.now.texts.items()
@@ -138,7 +138,7 @@ class Session:
         return True
 
     def adopt(self, tables: Sequence[WantedTable], bounds: Bounds, label: str) -> None:
-        """Make these tables a change, which must come to the bounds that were found for them."""
+        """Make these tables a change, which must have the bounds that were found for them."""
         try:
             made = evaluate(self.path, rearranged(self.path, self.now, tables))
         except LayoutError as problem:
@@ -296,7 +296,7 @@ def _diff(name: str, old: bytes, new: bytes) -> Iterator[str]:
 
 
 def _read(name: str) -> bytes:
-    """What a file holds; nothing where it cannot be read."""
+    """The content of a file; empty where it cannot be read."""
     try:
         return read_file(Path(name), LARGEST + 1)
     except (OSError, ValueError):

@@ -3,8 +3,8 @@
 
 """The state of a session as the page gets it: one JSON object, complete each time.
 
-Times are in ns beside a text for people. What is in the files comes from their text, so it is
-there also while the model has errors. All that is reckoned is then that of the last good state.
+Times are in ns beside a text for people. Declarations come from the text of the files, so they
+are there also while the model has errors. The figures are then those of the last good state.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ def _components(where: _Where) -> Iterator[Json]:
 
 
 def _declared(where: _Where, row: DeclaredRow) -> Json:
-    """What is declared of a row: its kind and its times, as they are written."""
+    """The declaration of a row: its kind and its times, as they are written."""
     return {
         "name": row.name,
         "owner": row.owner,

@@ -134,7 +134,7 @@ def _is_named(item: Expr) -> bool:
 
 
 def _among(choices: ChoiceList) -> Doc:
-    """What stands behind ``in``."""
+    """The choices behind ``in``."""
     match choices.choices:
         case (DottedName() as only,):
             return _dotted(only)

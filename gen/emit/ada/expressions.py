@@ -264,10 +264,10 @@ class ForSome:
 
 
 Holder = DottedName | Selected | Indexed | Attribute | Call
-"""What stands before a dot, an index or an attribute."""
+"""The prefix of a dot, an index or an attribute."""
 Callee = DottedName | Attribute
 Domain = DottedName | Attribute | Range | RangeConstrained
-"""What a variable goes through."""
+"""The values that a variable goes through."""
 Choice = DottedName | IntegerLiteral | Prefix | Range | Others
 Choices = ChoiceList | Choice | str
 """Several choices, one, or the text of a name."""
@@ -336,12 +336,12 @@ def select(prefix: Holder | str, *selectors: Named) -> DottedName | Selected:
 
 
 def old(name: Holder | str) -> Attribute:
-    """What a name stood for before the call."""
+    """The value of a name before the call."""
     return Attribute(name, "Old")
 
 
 def result(function: str) -> Attribute:
-    """What a function gives."""
+    """The result of a function."""
     return Attribute(function, "Result")
 
 

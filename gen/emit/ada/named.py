@@ -24,22 +24,22 @@ class DottedName:
 
     @property
     def first(self) -> str:
-        """What must be visible where the name stands."""
+        """The identifier that must be visible where the name stands."""
         return self.parts[0]
 
     @property
     def last(self) -> str:
-        """What is named, without what it is in."""
+        """The last identifier, without the units or records around it."""
         return self.parts[-1]
 
     @property
     def parent(self) -> DottedName:
-        """What it is in; of a child unit, its parent."""
+        """The name before the last dot; of a child unit, its parent."""
         return DottedName(self.parts[:-1])
 
     @property
     def file_stem(self) -> str:
-        """GNAT's name for the files of a unit of this name, without what stands behind a dot."""
+        """GNAT's name for the files of a unit of this name, without an extension."""
         return "-".join(self.parts).lower()
 
     def __lt__(self, other: DottedName) -> bool:
@@ -48,7 +48,7 @@ class DottedName:
 
 
 Named = DottedName | str
-"""A name, or the text of one: what constructors take wherever a name is meant."""
+"""A name, or the text of one: constructors take both wherever a name is meant."""
 
 
 def ref(*parts: Named) -> DottedName:
@@ -75,7 +75,7 @@ def identifier(text: str) -> str:
 
 
 def word(text: str) -> str:
-    """The text, which must have the form of an identifier: `Range` is an attribute as well."""
+    """The text, which must have the form of an identifier. It may be a reserved word: `X'Range`."""
     has_form = text.isascii() and text.isidentifier() and "__" not in f"_{text}_"
     assert has_form, f"no identifier of Ada: {text!r}"
     return text

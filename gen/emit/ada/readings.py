@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the units of a program declare, read for names that bar each other.
+"""The declarations of a program's units, read for names that bar each other.
 
 Units are read in their order: a child after its parent, a body after its spec.
 """
@@ -32,7 +32,7 @@ from .walking import names_in
 
 
 class _Name(NamedTuple):
-    """One declaration; ``profile`` tells overloaded ones apart, None where there are none."""
+    """One declaration; overloaded ones differ by ``profile``, which is None of all others."""
 
     text: str
     profile: tuple[object, ...] | None = None
@@ -63,7 +63,7 @@ def _by_key(names: Sequence[_Name]) -> _Known:
 
 
 def _names(item: Decl) -> Iterator[_Name]:
-    """What one declaration declares in its scope."""
+    """The names that one declaration puts into its scope."""
     match item:
         case EnumType(name, literals):
             yield _Name(name)
@@ -133,7 +133,7 @@ class _Unit:
         return names
 
     def record(self, components: Sequence[RecordComponent]) -> None:
-        """A component hides what the types after it begin with, and other components."""
+        """A component hides the first names of the types after it, and other components."""
         seen: set[str] = set()
         for one in components:
             if one.name.lower() in seen:
@@ -169,7 +169,7 @@ def _of_item(unit: _Unit, outer: Sequence[_Name]) -> list[_Name]:
 
 @dataclass(frozen=True, slots=True)
 class UnitReading:
-    """What is left of a unit that was read."""
+    """The result of reading a unit."""
 
     name: DottedName
     is_body: bool
@@ -212,6 +212,6 @@ def _hidden(unit: Unit, declared: Sequence[_Name], root: str) -> Iterator[str]:
 
 
 def _below(name: DottedName, root: str) -> str:
-    """What a unit is called where the units below the root are seen."""
+    """The name of a unit where the units below the root are seen."""
     own = name.parts[1:] if name.first == root else ()
     return (*own, name.first)[0]

@@ -25,7 +25,7 @@ from .expressions import (
 from .named import DottedName, Named, identifier, ref
 
 Target = DottedName | Indexed
-"""What a value can be assigned to."""
+"""The left side of an assignment."""
 
 
 @built

@@ -205,7 +205,7 @@ def _params(params: Sequence[Param]) -> Doc:
 
 
 def _formal(param: Param) -> str:
-    """What stands behind the colon."""
+    """The mode, type and default of a parameter, as they stand behind the colon."""
     mode = "" if param.mode == "in" else f"{param.mode} "
     default = "" if param.default is None else f" := {flat(param.default)}"
     return f"{mode}{flat(param.type)}{default}"
@@ -353,7 +353,7 @@ def _is(head: str, pieces: Sequence[str], aspects: Sequence[Aspect] = ()) -> Doc
 
 _TYPES = (TypeDeclaration, SubtypeDeclaration)
 _TIGHT = (_TYPES, Object, UseType, Pragma)
-"""What stands together where one of these comes behind another."""
+"""No blank line separates two declarations of one of these kinds."""
 
 
 def _alike(item: Decl, before: Decl | None) -> bool:
@@ -367,7 +367,7 @@ def _alike(item: Decl, before: Decl | None) -> bool:
 def _items(items: Sequence[Decl]) -> list[Doc]:
     """Declarations, set apart by blank lines.
 
-    A comment belongs to the subprogram before it, or else to what follows;
+    A comment belongs to the subprogram before it, or else to the declaration that follows;
     one-line neighbours of a kind stand together.
     """
     docs: list[Doc] = []
@@ -409,7 +409,7 @@ class PrintedItem:
 
 
 _NEWER = Pragma("Ada_2022")
-"""What the language of the other units does not have."""
+"""For constructs that Ada 2012, the language of the other units, does not have."""
 _OF_ARRAYS = Pragma("Warnings", (ref("Off"), StringLiteral("*array aggregate using*")))
 
 

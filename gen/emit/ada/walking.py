@@ -15,13 +15,13 @@ from .statements import Comment
 
 T = TypeVar("T")
 _PLAIN = (str, int, type(None))
-"""What is no node."""
+"""The types that are no nodes."""
 _WHOLE = (DottedName, IntegerLiteral, Comment)
 """Nodes without others in them."""
 
 
 def parts_of(construct: object) -> Sequence[object]:
-    """What a node or a tuple consists of."""
+    """The parts of a node, or the items of a tuple."""
     if isinstance(construct, tuple):
         return construct
     return [getattr(construct, name) for name in getattr(construct, "__slots__", ())]
@@ -40,13 +40,14 @@ def nodes_in(construct: object) -> Iterator[object]:
 def names_in(construct: object) -> Iterator[DottedName]:
     """Each name in it: types, generics and called ones as well, and its own where it is a unit.
 
-    What a declaration introduces is none of them, nor what a selector or an association selects.
+    The identifier that a declaration introduces is none of them. Nor is that which a selector or
+    an association selects.
     """
     return (node for node in nodes_in(construct) if isinstance(node, DottedName))
 
 
 def rewritten(construct: T, change: Callable[[object], object]) -> T:
-    """A node with what ``change`` makes of it or of the nodes in it; None: it stays."""
+    """A node with ``change`` applied to it or to the nodes in it; None keeps a node."""
     changed = change(construct)
     if changed is None and not isinstance(construct, DottedName | str):
         parts = parts_of(construct)
@@ -58,7 +59,7 @@ def rewritten(construct: T, change: Callable[[object], object]) -> T:
 
 
 def named_units(unit: Unit) -> set[DottedName]:
-    """The names in a unit and what stands before their dots: each unit that it needs is there."""
+    """The names in a unit and their prefixes: each unit that it needs is there."""
     found: set[tuple[str, ...]] = set()
     for name in set(names_in(unit.item)):
         found.update(name.parts[:length] for length in range(1, len(name.parts) + 1))

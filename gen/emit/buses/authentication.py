@@ -188,7 +188,7 @@ def states_of_senders(sent: Sequence[Message]) -> tuple[Decl, ...]:
 
 
 def variables(*, taken: bool) -> tuple[Decl, ...]:
-    """What sending or receiving an authenticated message needs."""
+    """The variables that sending or receiving an authenticated message needs."""
     last: Decl = Object("Verdict", ref(AUTHENTICATION, "Status"))
     if taken:
         last = Object("Taken", "Boolean")
@@ -239,7 +239,7 @@ def sealed(
 
 
 def receiver_of(message: Message) -> tuple[Decl, ...]:
-    """What is known of an authenticated message; the second one is for its assertion."""
+    """The receiver's state of an authenticated message, twice; the second is for its assertion."""
     if message.authentication is None:
         return ()
     return (Object(checking_state(message), STATE.name), Object(state_before(message), STATE.name))

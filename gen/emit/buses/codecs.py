@@ -3,11 +3,11 @@
 
 """Frame codecs: a Pack and an Unpack for each layout that travels on a bus.
 
-A frame of up to 8 bytes is one 64-bit word, a longer one several: byte 0 is the lowest
-of the first. Unpack refuses raw values outside the type, and of a multiplexed message
-looks at the signals of its page alone: the others are then the type's defaults. The
-contracts of both say by the layout table, and so without the codec's own functions, what
-the frame holds. A ghost lemma shows that what is packed is what is unpacked.
+A frame of up to 8 bytes is one 64-bit word, a longer one several: byte 0 is the lowest of the
+first. Unpack refuses raw values outside the type. Of a multiplexed message it looks at the
+signals of the page alone: the others are then the type's defaults. The contracts of both state
+the frame's content by the layout table, and so without the codec's own functions. A ghost lemma
+shows that Unpack gives back the packed value.
 """
 
 from __future__ import annotations
@@ -245,11 +245,11 @@ class _Codec:
         return items
 
     def _by_reference(self) -> list[Aspect]:
-        """What has Unpack write its record in place.
+        """The aspect by which Unpack writes its record in place.
 
-        GNAT hands a record of up to 16 bytes back by copy, and the processor waits until
-        all fields are in memory before it reads them as one: three times as long in all.
-        Records are passed by reference under convention C (Ada RM B.3, 69).
+        GNAT hands a record of up to 16 bytes back by copy. The processor then waits until all
+        fields are in memory before it reads them as one: three times as long in all. Records
+        are passed by reference under convention C (Ada RM B.3, 69).
         """
         return [Aspect("Convention", ref("C"))] if isinstance(self.type, RecordType) else []
 
@@ -365,7 +365,7 @@ class _Codec:
         )
 
     def _as_numbers(self, signal: Signal, shown: Expr) -> tuple[Stmt, ...]:
-        """What the row counts, case by case: provers take the step to numbers here alone."""
+        """The number of the row, case by case: provers take the step to numbers here alone."""
         counted: Expr = call(NUMBER, ref("Raw"))
         if signal.signed:
             below = OperatorChain("<=", (ref("Raw"), bits((1 << signal.width - 1) - 1)))
@@ -381,7 +381,7 @@ class _Codec:
         return tuple(Pragma("Assert", (step,)) for step in steps)
 
     def _by_table(self, signal: Signal, frame: str) -> list[Stmt]:
-        """What tells provers that the table says the same of a frame."""
+        """The lemmas by which provers see that the table says the same of a frame."""
         name = ada_case(signal.name)
         return [
             do(f"Lemma_Bits_{name}", ref(frame)),

@@ -3,7 +3,7 @@
 
 """How scalars become the bits of a signal and back: the step from values to bits.
 
-Provers take integers and bits apart, so each step between them is a function of its own,
+Provers treat integers and bits apart, so each step between them is a function of its own,
 proved by itself. Scalars that are coded alike share one, which is named after their
 type; those with a coding given in the model have their own.
 """
@@ -78,11 +78,11 @@ def is_plain(signal: Signal) -> bool:
 
 
 class Coding:
-    """What is emitted for one signal's coding.
+    """The functions for one signal's coding.
 
-    What bits stand for is an expression function. Its inverse is stated by it. A coding
-    of a type stands in the package of the codecs, one of a signal in that of its codec: a
-    fixed word and one name of the model make each name, so no two are the same.
+    The value of given bits is an expression function, by which its inverse is stated. The
+    coding of a type stands in the package of the codecs, that of a signal in its codec's
+    package. A fixed word and one name of the model make each name, so no two are the same.
     """
 
     def __init__(self, system: System, signal: Signal) -> None:
@@ -125,7 +125,7 @@ class Coding:
         return member(raw, between(0, high), between(full + low, full - 1))
 
     def spec(self) -> Subprogram:
-        """What bits stand for."""
+        """The function that gives the value of bits."""
         raw, valid = ref("Raw"), self.valid(ref("Raw"))
         return Subprogram(
             self.value_of,

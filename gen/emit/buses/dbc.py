@@ -118,7 +118,7 @@ def _with(attributes: Attributes) -> DbcSpecifics | None:
 
 
 def _flexible(bus: Bus) -> DbcSpecifics:
-    """What makes a database one of CAN FD: cantools then tells the format of each frame."""
+    """The attributes of a CAN FD database: with these cantools gives the format of each frame."""
     kind = DbcAttributeDefinition[str]("BusType", "CAN", None, "STRING")
     switched = "0" if bus.data_rate is None else "1"
     switch = DbcAttributeDefinition[str]("CANFD_BRS", switched, "BO_", "ENUM", choices=["0", "1"])

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The layout table of a message in Ada, its frame, and what contracts say by them.
+"""The layout table of a message in Ada, its frame, and the contracts that name them.
 
-A row is what the model says of a signal, number by number; `Ravenchart.Can.Layouts` gives it
-its meaning. Nothing here is shared with `coding`, which makes the bodies of the codecs: an
-error on one side is a contract that cannot be proved.
+A row has the numbers of a signal as the model gives them; `Ravenchart.Can.Layouts` gives the row
+its meaning. Nothing here is shared with `coding`, which makes the bodies of the codecs: an error
+on one side is a contract that cannot be proved.
 """
 
 from __future__ import annotations
@@ -46,10 +46,10 @@ from ravenchart.gen.model.signals import ByteOrder, Signal
 from ravenchart.gen.model.system import System
 
 LAYOUTS = ref("Ravenchart.Can.Layouts")
-"""What the rows of layout tables mean."""
+"""The meaning of the rows of layout tables."""
 
 LEMMAS = ref("Ravenchart.Can.Layout_Lemmas")
-"""What the bits of a signal of a longer frame are, by words."""
+"""Lemmas on the bits of a signal of a longer frame, by words."""
 
 
 FD = ref("Ravenchart.Can.Fd_Frames")
@@ -153,8 +153,8 @@ class LayoutTable:
     def lemmas_of_bits(self, signal: Signal, frame: Holder) -> tuple[Expr, tuple[Do, ...]]:
         """By words what `bits_in` of a longer frame is, and the lemmas that say so.
 
-        Provers reckon a row and a frame at once very slowly. What is wrong here is a
-        precondition that fails.
+        Provers reckon a row and a frame at once very slowly. An error here is a precondition
+        that fails.
         """
         upwards = signal.order is ByteOrder.INTEL
         byte, bit = divmod(signal.start, 8)

@@ -289,7 +289,7 @@ def _task_of_sending(message: Message) -> str:
 
 
 def _segmented_spec(system: System, message: Message) -> list[Decl]:
-    """What a value in several frames needs at this end of it."""
+    """The declarations that a value in several frames needs at this end of it."""
     if message.transport is None:
         return []
     if message.source is not None:
@@ -333,7 +333,7 @@ def _handed(system: System, message: Message) -> tuple[tuple[Stmt, ...], tuple[S
 
 
 def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
-    """What a row calls to send a message, and at its end where the message has a mode."""
+    """The procedure that a row calls to send a message; with a mode, one for the row's end too."""
     frame = call(_frame_name(message), ref("Item"))
     handed, lost = _handed(system, message)
     full = OperatorChain("/=", (ref("Status"), ref("Ravenchart.Can.Queued")))
@@ -475,7 +475,7 @@ def _matches(message: Message) -> Expr:
 
 
 def _refused(system: System, message: Message) -> tuple[Stmt, ...]:
-    """What comes of a frame that is not used: it is counted, and raises its events."""
+    """The statements for a frame that is not used: it is counted, and raises its events."""
     if message.check is None:
         return ()
     events = message.check.on_error

@@ -74,7 +74,7 @@ def protecting(message: Message) -> tuple[Stmt, ...]:
 
 
 def receiver_of(message: Message) -> tuple[Decl, ...]:
-    """What is known of the frames of a protected message; the second one is for its assertion."""
+    """The receiver's state of a protected message, twice; the second is for its assertion."""
     if message.protection is None:
         return ()
     kind = ref(PROTECTION, "Receiver")

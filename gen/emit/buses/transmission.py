@@ -56,7 +56,7 @@ def mode_of(message: Message) -> list[Decl]:
 
 
 def transmit_spec(message: Message) -> list[Decl]:
-    """What a row calls last; nothing for a message that is periodic."""
+    """The procedure that a row calls last; none for a message that is periodic."""
     if message.transmission is None:
         return []
     return [

@@ -5,8 +5,8 @@
 
 The sender's row makes a segment at the end of an execution, and looks at flow control, which
 the reception has put on a board. The reception of the receiver puts segments together in an
-object that it shares with the port region of the receiver: at the end of an execution this one
-sends the flow control that is due, and gives up a transfer that has fallen silent.
+object that it shares with the port region of the receiver. At the end of an execution the port
+region sends the flow control that is due, and gives up a transfer that has fallen silent.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def _board(system: System, message: str, bus: str) -> GenericInstance:
 
 
 def sender_spec(system: System, message: Message, transport: Transport) -> list[Decl]:
-    """What rows and reception call, and how values are cut."""
+    """The procedures that rows and reception call, and how values are cut."""
     name = ada_case(message.name)
     columns: dict[str, Expr] = {
         "Length": number(transport.length),
@@ -324,7 +324,7 @@ def receiver_bodies(
 def taken(
     message: Message, unpacked: tuple[Stmt, ...], refused: tuple[Stmt, ...]
 ) -> tuple[Stmt, ...]:
-    """What the reception does with a segment."""
+    """The statements by which the reception takes a segment."""
     store = _own("Reassembly", message.name)
     frame = (call(ref(ANY, "Payload"), ref("Frame")), ref("Frame.Plain.Length"))
     complete = equal(ref("Outcome"), ref(RECEIVERS, "Complete"))
@@ -358,7 +358,7 @@ def received_value() -> Expr:
 
 
 def noticed(flow: Message) -> tuple[Stmt, ...]:
-    """What the reception does with flow control."""
+    """The statements by which the reception takes flow control."""
     name = ada_case(flow.controls)
     found = call(
         ref(ISO_TP, "Decoded"), call(ref(ANY, "Payload"), ref("Frame")), ref("Frame.Plain.Length")
@@ -372,7 +372,7 @@ def noticed(flow: Message) -> tuple[Stmt, ...]:
 
 
 def reception_declarations(received: tuple[Message, ...]) -> list[Decl]:
-    """What the reception needs for segments."""
+    """The declarations of the reception for segments."""
     found: list[Decl] = []
     if any(not is_plain(m) for m in received):
         found.append(UseType(ref(ANY, "Frame_Family")))

@@ -3,12 +3,11 @@
 
 """The messages of a bus in the timing certificate, and the reception's queue.
 
-A frame waits for the longest one that goes behind it and has begun, for what goes
-before it, and for errors; a bit later than it could begin, arbitration is over. All
-instances of the busy period count. Frames that a node sends share a first-in
-first-out queue, unless its buffers are by priority; of a queue the driver may hand over
-one by one: any frame may go before each of them, and to others it is as late as it may
-have waited.
+A frame waits for the longest one that goes behind it and has begun, for those that go before it,
+and for errors. Arbitration is over a bit later than the frame could begin. All instances of a busy
+period count. Frames that a node sends share a first-in first-out queue, unless its buffers are by
+priority. The driver may hand the frames of a queue over one by one. So any frame may go before
+each of them, and to others a frame is as late as it may have waited.
 """
 
 from __future__ import annotations
@@ -65,7 +64,7 @@ def _of(system: System, bus: Bus) -> list[Message]:
 
 
 def bus_terms(system: System, bus: Bus) -> list[Decl]:
-    """What is known of a bus and its messages."""
+    """The numbers of a bus and its messages."""
     own = ada_case(bus.name)
     words = (
         f"[{bus.name}] bits in a second, and one bit in nanoseconds, rounded up. A message waits "
@@ -104,7 +103,7 @@ def _rank(message: Message) -> Expr:
 
 
 def _terms(message: Message, bus: Bus) -> list[Decl]:
-    """What is known of a message."""
+    """The numbers of a message."""
     own = name_of(message.element)
     width = 29 if message.extended else 11
     sender = "outside" if message.source is None else str(message.source)
@@ -140,7 +139,7 @@ def _terms(message: Message, bus: Bus) -> list[Decl]:
 
 @dataclass(frozen=True, slots=True)
 class _Level:
-    """What goes before a message, itself included, and what can go behind."""
+    """The messages that go before a message, itself included, and those that can go behind."""
 
     bus: Bus
     message: Message
@@ -172,8 +171,8 @@ class _Level:
 def _ladders(system: System, bus: Bus, order: list[Message], claims: Claims) -> dict[str, Ladder]:
     """The messages of a bus as those see them that wait in each queue, or in none ("").
 
-    Of a queue the frames delay each other, whatever their identifiers. To others a frame of a
-    queue is late by what it may have waited there, as a rule R - C.
+    Frames of one queue delay each other, whatever their identifiers. To others a frame of a
+    queue is late by the time that it may have waited there, as a rule R - C.
     """
     found: dict[str, Ladder] = {}
     queues = {system.queue(m): m for m in order}
@@ -202,7 +201,7 @@ def _sent(own: str, late: Expr) -> Expr:
 
 
 def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> list[Decl]:
-    """The instances of each message, and what they show of its response; then those handed over."""
+    """The instances of each message, with its response that they show; then those handed over."""
     order = _of(system, bus)
     items = _waits(system, bus, order, claims)
     ladders = _ladders(system, bus, order, claims)
@@ -221,7 +220,7 @@ def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> li
 
 
 def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> list[Decl]:
-    """What waits no longer than the bus is ever busy, whatever the order."""
+    """The messages that wait no longer than the bus is ever busy, whatever the order."""
     if bus.name not in claims.busiest:
         return []
     line = ada_case(bus.name)

@@ -3,8 +3,8 @@
 
 """The code takes its facts from the timing certificate, and a build fails where it does not.
 
-An instance of the runtime shows what it was given. Scalars are compared by the compiler,
-tables and settings by gnatprove.
+An instance of the runtime shows its parameters. The compiler compares scalars, gnatprove compares
+tables and settings.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def fact(element: str, what: str) -> DottedName:
 
 
 def driver_element(bus: str) -> str:
-    """What has the priority of a bus's driver."""
+    """The element with the priority of a bus's driver."""
     return f"{bus}.driver"
 
 

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The chains of a model in the timing certificate: sums of what tasks and messages claim.
+"""The chains of a model in the timing certificate: sums of the claimed bounds of their steps.
 
-Which sums, the model says (`certificate_hops`); claims are numbers only.
+The model decides which sums (`hops`); claims are numbers only.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from .hops import ClaimedHop, hops_of
 from .terms import assured, exact, name_of, named_number, plus, refuse, stated, times
 
 SUFFIX = {"row": "Done", "item": "R", "handed": "Handed", "transfer": "Transfer"}
-"""What the response of a step is called."""
+"""The endings of the names that steps have for their responses."""
 
 
 def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
     """The reaction time and the age of a chain as sums.
 
-    What is released by the step before it counts from the same event, so of such
-    steps the last one stands for all. An output is renewed as often as the rows that
-    make it run, at the least: where a queue is filled, and where a sampled row begins
-    what is sampled next. What repeats the values of a queue renews nothing.
+    A step that the one before releases counts from the same event. So of such steps the last
+    one stands for all. An output is renewed at least as often as the rows that make it run:
+    where a queue is filled, and where a sampled row begins the next part. A step that repeats
+    the values of a queue renews nothing.
     """
     own = f"Chain_{ada_case(chain.name)}"
     hops = hops_of(system, chain)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a window must hold: the work of a task, of all that can delay it, and the platform's."""
+"""The demand in a window: the work of a task, its interference, and the platform's work."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ def sums(task: Task) -> dict[str, Expr]:
 
 
 def work_of_jobs(task: Task, jobs: int) -> Expr:
-    """What so many jobs in a row execute, from one that executes all rows on."""
+    """The work of so many jobs in a row, from one that executes all rows on."""
     return plus(*(times(number(-(-jobs // n)), ref(c)) for n, c in costs(task).items()))
 
 
 def demand(system: System, task: Task, window: Expr, own: Expr) -> Expr:
-    """What ``own`` work of a task needs within a window, with all that can delay it."""
+    """The demand of the work ``own`` of a task within a window, with blocking and interference."""
     name = name_of(task.element)
     others = of_tasks(system, system.node(task.node)).others(name, window)
     return plus(own, ref(f"{name}_B"), *others)

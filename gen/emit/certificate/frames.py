@@ -3,9 +3,9 @@
 
 """How long the frames of a message are, in the timing certificate.
 
-From the start of the frame to the next one, with as many stuff bits as there can be. A CAN
-FD frame has a part at the nominal rate, which ends behind the bit that switches and goes on
-behind the CRC, and a body in between, at the data rate where the bus has one (ISO 11898-1).
+A length counts from the start of the frame to the next one, with as many stuff bits as there can
+be. A CAN FD frame begins at the nominal rate, up to the bit that switches, and ends at that rate,
+behind the CRC. The body in between is at the data rate where the bus has one (ISO 11898-1).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ besides the data."""
 
 
 def explained(bus: Bus) -> str:
-    """What the numbers of a message's length mean."""
+    """The meaning of the numbers of a message's length."""
     text = (
         "Stuffed: bits that stuffing can lengthen by a quarter; Bits: the longest frame, with 10 "
         "bits that are not stuffed and 3 to the next frame; Time_Of: how long that takes."

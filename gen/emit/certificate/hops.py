@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a chain's values wait for, read from the model: the steps that its claims are about.
+"""The steps of a chain that its claims are about, read from the model.
 
-A row later in the same table, run as often, follows at once; any other row samples at
-its own times, and the handler of a queued port takes one value in a job. The driver
-and the frame follow what sends, and a reception hands over what arrives.
+A row later in the same table, run as often, follows at once. Any other row samples at its own
+times, and the handler of a queued port takes one value in a job. The driver and the frame follow
+the sender, and a reception hands arrivals over.
 """
 
 from __future__ import annotations
@@ -75,8 +75,8 @@ def hops_of(system: System, chain: Chain) -> tuple[ClaimedHop, ...]:
 def _irregular(system: System, chain: Chain, hops: list[ClaimedHop]) -> list[ClaimedHop]:
     """The steps, the first not sure where it is a sporadic message that something samples.
 
-    What it releases runs as seldom as it comes; what samples it may find the same value
-    any number of times.
+    A step that it releases runs as seldom as it comes. A step that samples it may find the
+    same value any number of times.
     """
     rare = any(m.sporadic and chain.way[:1] == (Carried(m.name),) for m in system.messages)
     if rare and any(hop.how != "released" for hop in hops[1:]):

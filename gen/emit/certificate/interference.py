@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What can delay a task or a message within a window, as static functions of the certificate.
+"""The interference of a task or a message within a window, as static functions.
 
-Each of those that go before each other adds what it asks for to the function of the one before
-it. So the certificate grows with their number, not with its square.
+Each step adds its demand to the function of the one before it. So the certificate grows with the
+number of steps, not with its square.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ W = ref("W")
 
 
 def demand_within(window: Expr, jitter: Expr, period: Expr, cost: Expr) -> Expr:
-    """What releases within a window execute, the first as late as can be."""
+    """The demand of the releases within a window, the first as late as can be."""
     return call("Demand", window, jitter, period, cost)
 
 
 @dataclass(frozen=True, slots=True)
 class Interferer:
-    """One of those that delay others: its name, and what it asks for within W."""
+    """A task or message that delays others: its name, and its demand within W."""
 
     name: str
     terms: tuple[Expr, ...]
@@ -48,8 +48,8 @@ class Interferer:
 class Ladder:
     """Steps, the most urgent first, and their functions.
 
-    ``up`` is how the function of a step and of all before it is called, ``rest`` that of a step
-    and of those behind it on its level. ``base`` delays all of them.
+    The function of a step and of all before it is called ``up``, that of a step and of those
+    behind it on its level ``rest``. ``base`` delays all of them.
     """
 
     steps: tuple[Interferer, ...]
@@ -65,7 +65,7 @@ class Ladder:
         return [call(found, window)] if found else []
 
     def others(self, name: str, window: Expr) -> list[Expr]:
-        """What can delay a step within a window."""
+        """The interference of a step within a window."""
         place = self._place(name)
         behind = self.steps[place + 1 : place + 2]
         alike = [s.name for s in behind if s.level == self.steps[place].level]
@@ -75,7 +75,7 @@ class Ladder:
         ]
 
     def whole(self, name: str, window: Expr) -> list[Expr]:
-        """The same, and what the step itself asks for."""
+        """The same, with the demand of the step itself."""
         level = self.steps[self._place(name)].level
         last = max(n for n, step in enumerate(self.steps) if step.level == level)
         return self._before(last + 1, window)
@@ -97,7 +97,7 @@ class Ladder:
 
 
 def _function(name: str, terms: Sequence[Expr], more: Sequence[Expr] = ()) -> Decl:
-    """The sum of the demands and of what is asked for besides: each takes the rest with it."""
+    """The sum of the demands and of the other terms: each takes the rest with it."""
     *others, value = [*terms, *more]
     for term in reversed(others):
         assert isinstance(term, Call)
@@ -110,7 +110,7 @@ def _function(name: str, terms: Sequence[Expr], more: Sequence[Expr] = ()) -> De
 
 
 def costs(task: Task) -> dict[int, str]:
-    """How the work of a task is called: of what every release executes, and of every n-th."""
+    """The names of a task's work: of the rows that every release executes, and every n-th."""
     own = name_of(task.element)
     divisors = sorted({1, *(slot.divisor for slot in task.slots)})
     return {n: f"{own}_C" if n == 1 else f"{own}_C_{n}" for n in divisors}
@@ -129,7 +129,7 @@ def by_priority(system: System, node: Node) -> list[Task]:
 def platform(
     system: System, node: Node, window: Expr, term: Callable[[Task, int, Expr], Expr]
 ) -> list[Expr]:
-    """What a node's clock and the releases of its tasks take, of which ``term`` counts some."""
+    """The time of a node's clock and of its tasks' releases, of which ``term`` counts some."""
     own = ada_case(node.name)
     found: list[Expr] = []
     if node.release:
@@ -156,7 +156,7 @@ def of_tasks(system: System, node: Node) -> Ladder:
 
 
 def task_functions(system: System, node: Node) -> list[Decl]:
-    """The functions of a node: what its platform takes, and its tasks."""
+    """The functions of a node: those of its platform, and those of its tasks."""
     ladder = of_tasks(system, node)
     own = [_function(ladder.base, platform(system, node, W, _released))] if ladder.base else []
     return [*own, *ladder.functions(last=False)]

@@ -3,12 +3,12 @@
 
 """Deadlines that a processor keeps by its offset: every instant at which releases meet.
 
-Its claimed response is that for any offsets, and above the deadline. A busy period in which
-it suffers begins at an instant at which a processor of its level is released, late by its
-jitter; jobs that arrive earlier than that jitter before it are done (Tindell 1994). So of
-processors the releases due in [instant - J, instant + W) count, and no others. That no instant
-is left out is shown as well: between a listed one and the next there is none within the reach,
-and after the last of a cycle comes the first once more.
+The claimed bound holds for any offsets, and is above the deadline. A busy period that delays the
+processor begins at an instant at which a processor of its level is released, late by its jitter.
+Jobs that arrive earlier than that jitter before it are done (Tindell 1994). So of processors the
+releases due in [instant - J, instant + W) count, and no others. The certificate also shows that
+no instant is left out. Between a listed one and the next there is none within the reach, and
+after the last of a cycle comes the first once more.
 """
 
 from __future__ import annotations
@@ -133,7 +133,7 @@ def _all_between(
 
 
 def _delay(system: System, task: Task, at: Expr, window: Expr) -> list[Expr]:
-    """What delays a job: of processors the releases due in the window, the most of all others."""
+    """The delay of a job: of processors the releases due in the window, the most of all others."""
     node = system.node(task.node)
     known = {other.element for other in phased(system, task)}
     terms: list[Expr] = [ref(f"{name_of(task.element)}_B")]

@@ -3,12 +3,12 @@
 
 """The timing certificate: named numbers and static functions, every claim checked by the compiler.
 
-Both are exact and known before anything runs; what is too much for a function is longer than
-any window. Each claim is a time within which something must be done, and
-beside it stands the demand that can arise within that time; the least time that
-holds its demand bounds the response, so a claim that holds its demand is no less.
-The recurrences are those of Joseph and Pandya 1986, Audsley et al. 1993 (tasks),
-Lehoczky 1990 (several jobs) and Davis, Burns, Bril, Lukkien 2007 (frames).
+Both are exact and known before anything runs; a sum too large for a function is longer than any
+window. A claimed bound is a time within which a job must be done. Beside it stands the demand that
+can arise within that time. The least time that holds its demand bounds the response, so a claimed
+bound that holds its demand is no less. The recurrences are those of Joseph and Pandya 1986,
+Audsley et al. 1993 (tasks), Lehoczky 1990 (several jobs) and Davis, Burns, Bril, Lukkien 2007
+(frames).
 """
 
 from __future__ import annotations
@@ -196,7 +196,7 @@ def _silences(system: System, node: Node) -> list[Decl]:
 
 
 def _terms(system: System, task: Task) -> list[Decl]:
-    """What is known of a task."""
+    """The numbers of a task."""
     own = name_of(task.element)
     held = blocker(system, task)
     blocking = _section(system, held[0]) if held else number(0)
@@ -218,7 +218,7 @@ def _terms(system: System, task: Task) -> list[Decl]:
 
 
 def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) -> str:
-    """What the numbers of a task are."""
+    """The meaning of the numbers of a task."""
     if task.released_by is not None:
         what = f"the driver, released by {task.released_by}"
     elif task.sporadic:
@@ -237,7 +237,7 @@ def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) ->
 
 
 def _jitter(system: System, task: Task) -> Expr:
-    """The latest release after the event: the tick, and the response of what releases it."""
+    """The latest release after the event: the tick, and the response of the releaser."""
     terms: list[Expr] = []
     if task.jitter or task.released_by is None:
         terms.append(number(task.jitter))
@@ -253,7 +253,7 @@ def _jitter(system: System, task: Task) -> Expr:
 
 
 def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[Decl]:
-    """The jobs of a task, one after the other, and what they show of it and of these rows."""
+    """The jobs of a task, one after the other, with its response and those of ``rows``."""
     own, label = name_of(task.element), task.element
     windows = claims.of(label).windows
     jitter, period, bound = (ref(f"{own}_{letter}") for letter in "JTR")

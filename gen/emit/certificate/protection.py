@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What end-to-end protection finds, in the timing certificate: how surely, and how soon.
+"""End-to-end protection in the timing certificate: how surely and how soon it finds an error.
 
-The residual error probability is that of IEC 61784-3 for a black channel: the bits of a frame
-are wrong independently of each other, each with probability 1/100, and a CRC of r bits does not
-find 2**-r of what it does not always find. All of it is exact: named numbers are integers
+The residual error probability is that of IEC 61784-3 for a black channel. The bits of a frame are
+wrong independently of each other, each with probability 1/100. A CRC of r bits does not find
+2**-r of the errors that it does not always find. All of it is exact: named numbers are integers
 without a largest value.
 """
 

@@ -32,7 +32,7 @@ LATE = "can miss its deadline"
 OVERLAP = "can be released before it completes"
 
 RESPONSE = "response time"
-"""What most elements claim."""
+"""The subject of most claims."""
 
 LONG = 69
 """A message of more columns is broken behind the name of its element."""

@@ -3,8 +3,8 @@
 
 """Values that travel in several frames in the timing certificate (ISO-TP).
 
-A round trip ends with the first release of the sender's row behind the delivery of a segment,
-an execution of the port region that sends flow control, and the delivery of that.
+A round trip holds the delivery of a segment, an execution of the port region that sends flow
+control, and the delivery of that. It ends with the next release of the sender's row.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
 
 """A region's package spec: its types, and the chart as declared.
 
-`Enabled`, `In_Source` and `Target` are to be read against the model, a line for
-each transition; `Is_Selection` says what is chosen. All proofs are about them.
+`Enabled`, `In_Source` and `Target` are to be read against the model, a line for each transition.
+`Is_Selection` tells which transition is selected. All proofs are about these functions.
 """
 
 from __future__ import annotations
@@ -79,8 +79,8 @@ def _spec(shape: RegionShape) -> tuple[Decl, ...]:
 
 
 MANY_LANES = 4
-"""Above this a step, which asks each lane for its source, calls In_Source: inlined there, it made
-the program grow with the square of the chart."""
+"""In charts with more busy regions a step calls In_Source. Inlined there, once for each region,
+the function made the program grow with the square of the chart."""
 
 
 def _declared(shape: RegionShape) -> list[Decl]:

@@ -3,8 +3,8 @@
 
 """Deferral: which of the events that are kept come next.
 
-A kept event is due when no active state defers it, and also from the exit of a state that
-defers it: PSSM 8.5.5 gives it back to the pool then, though the state may be entered again.
+A kept event is due when no active state defers it, and also from the exit of a state that defers
+it. PSSM 8.5.5 gives the event back to the pool then, though the state may be entered again.
 `Ravenchart.Deferrals` keeps the events; the chart declares which states defer which.
 """
 
@@ -48,7 +48,7 @@ def kept_events(shape: RegionShape) -> list[str]:
 
 
 def deferral_types(shape: RegionShape, spans: Mapping[str, Expr]) -> list[Decl]:
-    """What is deferred and what is freed, and the package that keeps it.
+    """Which events are deferred and which are freed, and the package that keeps them.
 
     ``spans`` holds for each state the test whether a domain spans it.
     """
@@ -98,13 +98,13 @@ def deferral_types(shape: RegionShape, spans: Mapping[str, Expr]) -> list[Decl]:
 
 
 def change(chosen: Named, domain: Expr, before: Named) -> Stmt:
-    """What a firing does to the events that are kept."""
+    """The effect of a transition on the kept events."""
     is_deferral = call("Is_Deferral", ref(chosen))
     return do("Deferrals.Change", KEPT, is_deferral, _ITEM, domain, ref(before))
 
 
 def is_changed(shape: RegionShape, chosen: Named, domain: Expr) -> Expr:
-    """The claim that a firing has done that, and nothing else to them."""
+    """The claim that a transition has had this effect on them, and no other."""
     is_deferral = call("Is_Deferral", ref(chosen))
     held = old(shape.held)
     return call("Deferrals.Is_Changed", old(KEPT), KEPT, is_deferral, _ITEM, domain, held)

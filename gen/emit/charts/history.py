@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Histories: what they restore, as declared and as code.
+"""Histories: the states that they restore, as declared and as code.
 
-The memory of a region is the last leaf left in it. Deep history enters that leaf
-again, with the remembered leaves of the lanes below it; shallow history enters the
-state directly in the region that holds it, by default inside.
+The memory of a region is the last leaf left in it. Deep history enters that leaf again, with the
+remembered leaves of the orthogonal regions below it. Shallow history enters the state directly in
+the region that holds the leaf, by default inside.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def _wanted(shape: RegionShape) -> list[tuple[HistoryMemory, bool]]:
                     for m in below
                     if own in shape.compounds.places(m.place.owner or "")
                 }
-    #  inner lanes first: a function is declared before its use
+    #  inner regions first: a function is declared before its use
     return sorted(found, key=lambda k: -len(shape.compounds.places(k[0].place.owner or "")))
 
 
@@ -128,7 +128,7 @@ def restored_place(shape: RegionShape, history: str) -> Expr:
 
 
 def _lane_again(shape: RegionShape, memory: HistoryMemory, lane: Lane, deep: bool) -> Expr:
-    """The leaf of a lane below: remembered, by default, or as it was when not entered."""
+    """The leaf of a region below: remembered, by default, or as it was when not entered."""
     assert lane.owner is not None
     default = shape.literal(shape.default_leaf(lane))
     kept = shape.at(shape.place, lane)
@@ -164,7 +164,7 @@ def _all_remembered(shape: RegionShape, memory: HistoryMemory, lane: Lane) -> Ex
 
 
 class Restoring:
-    """The statements that enter what a history restores."""
+    """The statements that enter the states that a history restores."""
 
     def __init__(
         self, shape: RegionShape, run: Callable[[tuple[EntryStep, ...]], tuple[Stmt, ...]]

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""A step that can fire more than one: a transition in each lane, each with its segments.
+"""Steps that can take several transitions: one in each orthogonal region, with its segments.
 
-`Follows` is the contract: what a step fires is what was chosen for the lanes, in
-their order, and a choice is dropped only when one that conflicts with it has fired. Where
-ways go on from choices and histories it says less: when an earlier lane has fired.
+`Follows` is the contract: a step takes the transitions selected for the regions, in the order of
+these. A transition is dropped only when one that conflicts with it has been taken. Where ways go
+on from choices and histories the contract is weaker: when an earlier region has taken one.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def fire(moves: Moves, chosen: str) -> Do:
 
 
 def firing_list(shape: RegionShape) -> list[Decl]:
-    """The list of what one step fires, with the segments that it may hold."""
+    """The list of the transitions that one step takes, with the segments that it may hold."""
     names = [f.literal for f in shape.firings if is_segment(shape, f)]
     none = equal(ref("T"), ref("None"))
     chosen = Param("T", "in", "Selection")
@@ -97,7 +97,7 @@ def firing_list(shape: RegionShape) -> list[Decl]:
 
 
 def declared_lanes(shape: RegionShape) -> list[Decl]:
-    """Choose, and what a step may fire of a choice."""
+    """Choose, and the transitions of a choice that a step may take."""
     if shape.single:
         return []
     fired = Param("Fired", "in", LIST)
@@ -124,7 +124,7 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
 
 
 def _of_choice(shape: RegionShape) -> Expr:
-    """Each is chosen for a lane, or goes on from a choice or history."""
+    """Each is selected for a region, or goes on from a choice or history."""
     chosen = (ref("C", shape.lane_name(n)) for n in shape.busy_lanes)
     due: Expr = both(OperatorChain("<=", (_ITEM, ref("Last"))), member(_ITEM, *chosen))
     if shape.passes:
@@ -138,10 +138,10 @@ def _is_of(shape: RegionShape, lane: Lane) -> Expr:
 
 
 BEFORE = "Place_Before"
-"""The configuration before anything has fired."""
+"""The configuration before any transition is taken."""
 
 LIST = ref("Firings.List")
-"""The type of the list of what a step fires."""
+"""The type of the list of transitions that a step takes."""
 
 _IS_OF = "Is_Of_Choice"
 _FIRED = ref("Fired")
@@ -157,7 +157,7 @@ _DROPPED = "of two that conflict, as one leaves a state in which the other fires
 
 
 def is_only(chosen: Expr) -> Expr:
-    """That is fired, with the segments of its way, and nothing else."""
+    """That one is taken, with the segments of its way, and nothing else."""
     return call("Firings.Is_Only", _FIRED, chosen)
 
 
@@ -177,14 +177,14 @@ def _follows(shape: RegionShape) -> Expr:
 
 
 def _deferring(shape: RegionShape) -> list[Expr]:
-    """What is chosen for the lanes that have deferrals."""
+    """The selections for the regions that have deferrals."""
     lanes = {f.lane for f in shape.firings if f.kind is FiringKind.DEFERRAL}
     return [_choice(shape, n) for n in shape.busy_lanes if n in lanes]
 
 
 def _asked(shape: RegionShape, lanes: Sequence[Lane]) -> list[Expr]:
-    """What is chosen for these lanes is fired, but for what conflicts with an earlier lane; where
-    ways go on from choices and histories, what is chosen for the first lane that asks."""
+    """That each transition selected for these regions is taken, unless it conflicts with an
+    earlier one. Where ways go on from choices and histories, only the first selected one is."""
     if not shape.passes:
         return [fact for n in lanes for fact in (_has(shape, n), *_apart(shape, n))]
     rows = (
@@ -194,7 +194,7 @@ def _asked(shape: RegionShape, lanes: Sequence[Lane]) -> list[Expr]:
 
 
 def _has(shape: RegionShape, lane: Lane) -> Expr:
-    """What is chosen for a lane is fired, unless what conflicts with it was."""
+    """That the transition selected for a region is taken, unless one in conflict with it was."""
     asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), ref("None")))]
     before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
     asked += [Prefix("not", clash) for clash in _clashes(shape, lane, before)]
@@ -206,7 +206,7 @@ def _fired(shape: RegionShape, lane: Lane) -> Expr:
 
 
 def _clashes(shape: RegionShape, lane: Lane, others: Sequence[Lane]) -> Iterator[Expr]:
-    """For each of the others: it has fired, and one of both leaves a state around the other."""
+    """For each of the others: it was taken, and one of both leaves a state around the other."""
     for other in others:
         leaving = [
             call(f"Leaves_{ada_case(state)}", _choice(shape, one))
@@ -219,15 +219,15 @@ def _clashes(shape: RegionShape, lane: Lane, others: Sequence[Lane]) -> Iterator
 
 
 def _apart(shape: RegionShape, lane: Lane) -> Iterator[Expr]:
-    """What is fired for a lane conflicts with nothing that is fired for an earlier one."""
+    """That the transition taken for a region conflicts with none taken for an earlier one."""
     before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
     for clash in _clashes(shape, lane, before):
         yield Prefix("not", both(_fired(shape, lane), clash))
 
 
 def _unmoved(shape: RegionShape, done: Sequence[Lane]) -> Iterator[Expr]:
-    """Where something is chosen for a lane still to come, and no state around it has been
-    left, it is as it was: of a lane with one leaf the compiler knows that."""
+    """That a region still to come is as it was, if it has a selection and no state around it was
+    left. Of a region with one leaf the compiler knows that."""
     for lane in () if shape.passes else shape.busy_lanes[len(done) :]:
         around = [ada_case(s) for s in shape.watched if lane in shape.lanes_in(s)]
         moving = [n for n in shape.lanes_around(lane) if len(shape.literals(n)) > 1]
@@ -239,13 +239,14 @@ def _unmoved(shape: RegionShape, done: Sequence[Lane]) -> Iterator[Expr]:
 
 
 def _overtaken(shape: RegionShape, lane: Lane) -> bool:
-    """Can what earlier lanes fire disable what was chosen for this one? Where they go on from
-    choices and histories this is asked rather than proved."""
+    """Can the transitions of earlier regions disable that selected for this one?
+
+    Where they go on from choices and histories this is tested rather than proved."""
     return shape.passes or any(lane in shape.lanes_in(s) for s in shape.watched)
 
 
 def followed(shape: RegionShape) -> Expr:
-    """What Step says of all that it has fired."""
+    """The postcondition of Step on the transitions that it has taken."""
     begun = equal(ref("Now"), ref("Start_Of_Region"))
     choice = Call("Choose", shape.situation_args(Self=old("Self")))
     only = is_only(ref(START))
@@ -261,7 +262,7 @@ def followed(shape: RegionShape) -> Expr:
 
 
 def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
-    """Every lane's transition in order; what conflicts with an earlier one is dropped."""
+    """Every region's transition in order; one that conflicts with an earlier one is dropped."""
     work: tuple[Stmt, ...] = (
         *moves.safety.alone(),
         *(s for lane in shape.busy_lanes for s in (_lane(shape, lane), *_so_far(shape, lane))),
@@ -292,7 +293,7 @@ def _step(
     declared: Sequence[Decl],
     work: tuple[Stmt, ...],
 ) -> Subprogram:
-    """At the start of the region its initial entry; later ``work``, with what it declares."""
+    """At the start of the region its initial entry; later ``work``, with its declarations."""
     begun = equal(ref("Now"), ref("Start_Of_Region"))
     return Subprogram(
         "Step",
@@ -306,8 +307,8 @@ def _step(
 
 
 def _lane(shape: RegionShape, lane: Lane) -> Stmt:
-    """Fire the transition of a lane, unless an earlier one left its state, or it would leave
-    a state in which an earlier one fired: one that was dropped is no obstacle."""
+    """Take the transition of a region, unless an earlier one left its state, or it would leave a
+    state in which an earlier one was taken. One that was dropped is no obstacle."""
     chosen = _choice(shape, lane)
     free: list[Expr] = [OperatorChain("/=", (chosen, ref("None")))]
     around = [s for s in shape.watched if lane in shape.lanes_in(s)]
@@ -327,7 +328,7 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
 
 
 def _so_far(shape: RegionShape, lane: Lane) -> tuple[Pragma, ...]:
-    """What has been fired of the lanes up to this one; types bound it when it is the last.
+    """The transitions taken for the regions up to this one; types bound them when it is the last.
 
     After the last one provers need it only where transitions conflict.
     """
@@ -342,7 +343,7 @@ def _so_far(shape: RegionShape, lane: Lane) -> tuple[Pragma, ...]:
 
 
 def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
-    """A transition with the segments that its way passes, and note what fired."""
+    """Take a transition with the segments that its way passes, and note each of them."""
     held = shape.held
     safe = moves.safety.holds()
     most = shape.most_segments
@@ -387,5 +388,5 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
 
 
 def _note(fired: str) -> Stmt:
-    """It is the last that has fired."""
+    """Note a transition as the last one taken."""
     return do("Firings.Add", _FIRED, ref(fired))

@@ -1,14 +1,13 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What outlasts a firing: time-outs, the memory of histories, and what is deferred.
+"""Time-outs, the memory of histories, and deferred events: they outlast a transition.
 
 The *domain* of a transition is the innermost region that holds all it leaves and
 enters (the "transition domain" of SCXML 3.13). Everything active inside it is left,
-and what is active inside it afterwards was entered. From the domain and the
-configurations before and after follow the time-outs that are cancelled and started,
-and the leaves that histories remember; `Timers_After` and `Remembered` declare it,
-and each firing does it by them.
+and everything active inside it afterwards was entered. The domain and the configurations
+before and after decide the time-outs that are cancelled and started, and the leaves that
+histories remember. `Timers_After` and `Remembered` declare this, and each transition calls them.
 """
 
 from __future__ import annotations
@@ -51,7 +50,7 @@ _TIMERS, _PAST = ref("Self.Timers"), ref("Self.Past")
 
 
 def in_one_word(fact: Subprogram, told: str) -> list[Decl]:
-    """A function that provers see as what it stands for."""
+    """A function that provers see as its expression."""
     inlined = ref("GNATprove"), ref("Inline_For_Proof"), ref(fact.name)
     return [fact, Comment(told), Pragma("Annotate", inlined)]
 
@@ -74,7 +73,7 @@ def of_before(fact: Expr) -> Expr:
 
 
 def has_domains(shape: RegionShape) -> bool:
-    """Does anything outlast a firing that depends on what was left and entered?"""
+    """Does anything outlast a transition that depends on the states left and entered?"""
     return bool(shape.timers or shape.memories or shape.deferring)
 
 
@@ -97,7 +96,7 @@ def _domain(shape: RegionShape, firing: Firing) -> str:
 
 
 def domain_types(shape: RegionShape) -> list[Decl]:
-    """Domain and Domain_Of, where something outlasts a firing."""
+    """Domain and Domain_Of, where something outlasts a transition."""
     if not has_domains(shape):
         return []
     rows = tuple((f.literal, ref(_domain(shape, f))) for f in shape.firings)
@@ -237,18 +236,18 @@ def _active(shape: RegionShape, memory: HistoryMemory) -> Expr:
     return both(*conjuncts([shape.in_state(shape.place, memory.place.owner), *not_left]))
 
 
-# --- The contract of firings --------------------------------------------------
+# --- The contract of transitions ----------------------------------------------
 
 
 class Lasting:
-    """What outlasts the firings of one region."""
+    """The time-outs, memory and deferred events of one region."""
 
     def __init__(self, shape: RegionShape) -> None:
         self.shape = shape
         self.region = shape.region
 
     def moved(self, chosen: str, before: str) -> list[Stmt]:
-        """What a firing does to them; ``before`` holds the configuration that it leaves."""
+        """The effect of a transition on them; ``before`` holds the configuration that it leaves."""
         shape = self.shape
         domain, left = call("Domain_Of", ref(chosen)), ref(before)
         done: list[Stmt] = []
@@ -262,7 +261,7 @@ class Lasting:
         return done
 
     def fired(self, chosen: str) -> list[Expr]:
-        """After a firing: what is declared; ``chosen`` names the transition."""
+        """The declared effect, after a transition that ``chosen`` names."""
         facts: list[Expr] = []
         held = self.shape.held
         domain = call("Domain_Of", ref(chosen))

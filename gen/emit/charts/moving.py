@@ -33,7 +33,7 @@ from .nodes import Nodes, as_one_move
 from .shape import RegionShape
 
 BEFORE = "Before"
-"""The configuration before a firing."""
+"""The configuration before a transition."""
 
 
 def _leave_name(place: Place) -> str:
@@ -84,7 +84,7 @@ class Moving:
         return do(_leave_name(place))
 
     def _is_silent(self, place: Place) -> bool:
-        """Whether nothing is done there however it is left, and no lane ends there."""
+        """Whether nothing is done there however it is left, and no orthogonal region ends there."""
         states = self.region.children(place.owner, place.region)
         return (
             place.owner is not None
@@ -127,7 +127,7 @@ class Moving:
         return () if self.region.state(state).final else self.shape.note(f"{state}.{what}")
 
     def _work_of_exit(self, state: str) -> tuple[Stmt, ...]:
-        """What the exit of a state does: actions, and that its completion is over."""
+        """The work of a state's exit: its actions, and the end of its completion."""
         completed = Assign(ref("Self", self.shape.completed(state)), FALSE)
         undone = (completed,) if state in self.shape.completing else ()
         return (*emit_flow(self.scope, self.region.state(state).exit), *undone)
@@ -141,7 +141,7 @@ class Moving:
         )
 
     def _work_of_entry(self, state: str) -> tuple[tuple[Stmt, ...], tuple[Stmt, ...]]:
-        """What the entry of a state does: another visit; its action and completion."""
+        """The work of a state's entry: another visit; its action and completion."""
         action = emit_flow(self.scope, self.region.state(state).entry)
         return self._begin_work(state), (*action, *self._complete(state))
 
@@ -156,7 +156,7 @@ class Moving:
         )
 
     def _complete(self, vertex: str) -> tuple[Stmt, ...]:
-        """What has completed by an entry: the leaf itself, or the state around a final one."""
+        """The completion by an entry: of the leaf itself, or of the state around a final one."""
         state = self.region.state(vertex)
         shape = self.shape
         if vertex in shape.completing and state.is_leaf and vertex not in shape.working:

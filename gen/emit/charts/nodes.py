@@ -3,13 +3,12 @@
 
 """The ghost of the states that are active: when one may be exited or entered.
 
-In each lane the active states are a path, from the outermost to the innermost, so the
-innermost one says which they are; it may be a pseudostate that is passed. To exit a
-state, it must be the innermost; to enter one, the state around it must be, or nothing
-where it stands outermost in its lane. What is active in other lanes below an orthogonal
-state is left before it and entered after it. What is exited or entered otherwise brings
-disorder, and nothing leads out of that: where a configuration is claimed afterwards,
-everything before it was in order.
+In each top-level or orthogonal region the active states are a path, so the innermost one tells
+which they are; it may be a pseudostate that is passed. To exit a state, it must be the innermost.
+To enter one, the state around it must be the innermost, or nothing where it stands outermost in
+such a region. States of the regions of an orthogonal state are left before it and entered after
+it. Any other exit or entry brings disorder, and nothing leads out of that. So where a
+configuration is claimed afterwards, everything before it was in order.
 """
 
 from __future__ import annotations
@@ -54,7 +53,7 @@ from .shape import RegionShape
 CHART = "Chart"
 NODE = ref(CHART, "Node")
 NODES = ref(CHART, "Nodes")
-"""Of charts with several lanes: a node for each."""
+"""Of charts with orthogonal regions: a node for each, and one for the top."""
 _GHOST = Aspect("Ghost")
 _NOWHERE = "Nowhere"
 _DISORDER = "Disorder"
@@ -70,7 +69,7 @@ _IN_ORDER = "In_Order"
 def as_one_move(statements: Sequence[Stmt]) -> tuple[Stmt, ...]:
     """Exits, entries and claims that do nothing, one after the other, as one move.
 
-    What one of them asks for is about other lanes, which the others do not change.
+    The precondition of each is about other regions, which the rest of them do not change.
     """
     found: list[Stmt] = []
     for statement in statements:
@@ -93,7 +92,7 @@ def node(state: str) -> DottedName:
 
 
 class Nodes:
-    """The innermost active states of one region: a ghost variable with a part for each lane."""
+    """The innermost active states of a chart: a ghost variable with a part for each region."""
 
     def __init__(self, shape: RegionShape) -> None:
         self.shape = shape
@@ -101,7 +100,7 @@ class Nodes:
         self._moves = self._asks = self._leaves = False
 
     def chart(self, fire: Subprogram) -> Package:
-        """The ghost package: the innermost active vertex of each lane of a configuration.
+        """The ghost package: the innermost active vertex in each region of a configuration.
 
         It has all leaves, and the composites that ``fire`` needs: joined moves pass by the
         others.
@@ -119,7 +118,7 @@ class Nodes:
         return Package(CHART, (*items, self._innermost()), (_GHOST,))
 
     def moved(self) -> tuple[Subprogram, ...]:
-        """What an exit or entry does, which none does before the region has started.
+        """The effect of an exit or entry; none runs before the region has started.
 
         As it reads the region, nothing that is set before it counts as unused: an entry may set
         again what an exit has set.
@@ -155,7 +154,7 @@ class Nodes:
         return Subprogram("Innermost", params, "Nodes", expression=Aggregate(tuple(rows)))
 
     def _around(self, vertex: str) -> DottedName:
-        """The state around a vertex in its lane, if there is one."""
+        """The state around a vertex, unless an orthogonal region begins between them."""
         place = self.shape.compounds.place(vertex)
         if place.owner is None or self.region.state(place.owner).is_orthogonal:
             return _NONE_ACTIVE
@@ -167,11 +166,11 @@ class Nodes:
         return nodes if self.shape.single else ref(nodes, self.shape.lane_name(lane))
 
     def active(self, lane: Lane) -> DottedName:
-        """The innermost active state of a lane."""
+        """The innermost active state of a top-level or orthogonal region."""
         return self._part(_ACTIVE, lane)
 
     def variables(self) -> list[Decl]:
-        """What is active, and where something leaves a lane at once, what was at first."""
+        """The active vertices; where a region is left at once, also those at first."""
         of_type = NODE if self.shape.single else NODES
         ghost = (_GHOST,)
         found: list[Decl] = [Object(_ACTIVE, of_type, self.innermost("Self"), aspects=ghost)]
@@ -184,7 +183,7 @@ class Nodes:
         return call(ref(CHART, "Innermost"), ref(region))
 
     def agreed(self, region: str = "Self") -> Expr:
-        """What is active is as the configuration of a region says."""
+        """That the active vertices are those of a chart's configuration."""
         return equal(_ACTIVE, self.innermost(region))
 
     def begun(self, region: str) -> list[Expr]:
@@ -206,7 +205,7 @@ class Nodes:
         return self._moved(vertex, (self._around(vertex), node(vertex)), others)
 
     def leave(self, place: Place, before: str) -> Assign:
-        """The exits of what was active ``before`` in a region of one lane, all at once."""
+        """The exits of all that was active ``before`` in a region, all at once."""
         assert place.owner is not None
         self._moves = self._asks = self._leaves = True
         active = self.active(self.shape.lane_of(place))
@@ -215,7 +214,7 @@ class Nodes:
         return Assign(active, call(_MOVED, active, start, self._inside(place), within))
 
     def stands(self, vertex: str) -> Assign:
-        """The claim that a vertex is the innermost active one of its lane."""
+        """The claim that a vertex is the innermost active one of its region."""
         return self._moved(vertex, (node(vertex), node(vertex)), ())
 
     def empty(self, place: Place) -> Assign:
@@ -237,11 +236,11 @@ class Nodes:
         return Assign(active, call(_MOVED, active, *way, *asked))
 
     def _of(self, vertex: str) -> DottedName:
-        """The variable of the lane that a vertex stands in."""
+        """The variable of the top-level or orthogonal region that a vertex stands in."""
         return self.active(self.shape.lane_of(self.shape.compounds.place(vertex)))
 
     def stopped(self, end_of_all: str) -> list[Assign]:
-        """The region has come to its end, a leaf of the top lane: no other lane is active."""
+        """The end of the chart, a leaf of the top-level region: no orthogonal region is active."""
         found = []
         for lane in self.shape.lanes:
             active = self.active(lane)
@@ -250,7 +249,7 @@ class Nodes:
         return found
 
     def _inside(self, place: Place) -> DottedName:
-        """The state around a region, in the lane whose leaves it holds."""
+        """The state around a region; none where the region is orthogonal or the top."""
         owner = place.owner if self.shape.lane_of(place).owner != place.owner else None
         return _NONE_ACTIVE if owner is None else node(owner)
 
@@ -258,7 +257,7 @@ class Nodes:
         return [equal(self.active(n), _NONE_ACTIVE) for n in lanes]
 
     def lanes_inside(self, place: Place) -> list[Lane]:
-        """The lanes of the orthogonal states inside a region."""
+        """The regions of the orthogonal states inside a region."""
         return [
             n
             for n in self.shape.lanes

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a region offers to its instances, with the contracts that are proved.
+"""The operations that a region offers to its instances, with the contracts that are proved.
 
 All contracts are in terms of the chart as declared.
 """
@@ -148,7 +148,7 @@ def _released(shape: RegionShape) -> tuple[Expr, Expr]:
 
 
 def _taken(shape: RegionShape) -> list[Expr]:
-    """What is taken is gone, and nothing else."""
+    """That the taken occurrence is gone, and nothing else."""
     facts: list[Expr] = []
     for state in shape.completing:
         flag = ref("Self", shape.completed(state))
@@ -168,7 +168,7 @@ def _taken(shape: RegionShape) -> list[Expr]:
 
 
 def _stepped(shape: RegionShape) -> list[Expr]:
-    """What a step achieves, in terms of the chart as declared."""
+    """The postcondition of a step, in terms of the chart as declared."""
     held = shape.held
     kept = equal(held, old(held))
     begun = equal(ref("Now"), ref("Start_Of_Region"))

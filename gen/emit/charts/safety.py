@@ -58,7 +58,7 @@ _KEPT = "Is_Kept"
 
 
 class Safety:
-    """What one region's code says of the invariants; nothing where it has none."""
+    """The contracts of one region's code for its invariants; none where it has no invariant."""
 
     def __init__(self, shape: RegionShape) -> None:
         self.shape = shape
@@ -181,7 +181,7 @@ class Safety:
         return bool(firing.effects) and firing.effects[0].name in self.safe.alone
 
     def alone(self) -> tuple[Pragma, ...]:
-        """Which transitions are selected only where no lane before theirs selects one."""
+        """That `alone` transitions are selected only where no region before theirs selects one."""
         if self.safe is None:
             return ()
         said: list[Expr] = []
@@ -229,10 +229,10 @@ class Safety:
         said += [fact.condition(self.shape.component) for fact in self.safe.facts]
         return {name for expression in said for name in operators_in(expression)}
 
-    # --- the contracts of firings and steps
+    # --- the contracts of transitions and steps
 
     def ready(self, chosen: str) -> tuple[list[Expr], list[Expr]]:
-        """What a firing may rely on: at the start of the region, and later."""
+        """The preconditions of a transition: at the start of the region, and later."""
         if self.safe is None:
             return [], []
         first: list[Expr] = []

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Selection: the first transition of a lane that is enabled, as the chart declares it.
+"""Selection: the first enabled transition of a top-level or orthogonal region, as declared.
 
 One loop goes over the transitions in the declared order and ends at the first that `Enabled`
-holds for. `Enabled` looks at the source first, so a transition of another state costs one
+holds for. `Enabled` looks at the source first, so a transition of another state needs one
 comparison.
 """
 
@@ -60,7 +60,7 @@ def enabled(shape: RegionShape, chosen: Expr, **replaced: Expr) -> Call:
 
 
 def is_selection(shape: RegionShape) -> Subprogram:
-    """What it means that a transition is the first one enabled."""
+    """The condition that a transition is the first enabled one."""
     among = ref(_ALL) if shape.single else Range(ref("First"), ref("Last"))
     one, chosen = ref("T"), ref("Chosen")
     none = equal(chosen, ref("None"))
@@ -78,13 +78,13 @@ def is_selection(shape: RegionShape) -> Subprogram:
 
 
 def is_selected(shape: RegionShape, chosen: Expr, lane: Lane, **replaced: Expr) -> Call:
-    """A call of that function over the transitions of a lane."""
+    """A call of that function over the transitions of a region."""
     args = (Arg(None, chosen), *_bounds(shape, shape.transitions_of(lane)))
     return Call("Is_Selection", (*args, *shape.situation_args(**replaced)))
 
 
 def _bounds(shape: RegionShape, among: str) -> tuple[Arg, ...]:
-    """The first and the last of the transitions, where there are lanes."""
+    """The first and the last of the transitions, where there are orthogonal regions."""
     ends = () if shape.single else ("First", "Last")
     return tuple(Arg(None, Attribute(among, end)) for end in ends)
 
@@ -93,12 +93,12 @@ def _bounds(shape: RegionShape, among: str) -> tuple[Arg, ...]:
 
 
 def selectors(shape: RegionShape) -> list[Decl]:
-    """The selection among transitions, of segments, and for all lanes."""
+    """The selection among transitions, of segments, and for all orthogonal regions."""
     return [_selected(shape), *_segments(shape), *([] if shape.single else [_choose(shape)])]
 
 
 def whole(shape: RegionShape, lane: Lane) -> Call:
-    """The selection of a lane."""
+    """The selection of a top-level or orthogonal region."""
     bounds = _bounds(shape, shape.transitions_of(lane))
     return Call(_SELECTED, (*bounds, *shape.situation_args()))
 
@@ -162,7 +162,7 @@ def _segments(shape: RegionShape) -> list[Decl]:
 
 
 def _choose(shape: RegionShape) -> Subprogram:
-    """All lanes; one around another selects only when the inner one does not."""
+    """All regions; one around another selects only when the inner one does not."""
     steps: list[Stmt] = []
     for lane in shape.busy_lanes:
         take = Assign(ref("C", shape.lane_name(lane)), whole(shape, lane))

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a region's package consists of: its occurrences, its memory, who reads what."""
+"""The types of a region's package: its occurrences, its memory, and the names that it reads."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ TYPES = frozenset(
         *("firings", "deferrals", "done_states", "time_outs"),
     )
 )
-"""What hides an event of the same name inside a region's package."""
+"""Names that hide an event of the same name inside a region's package."""
 
 SELF = Param("Self", "in", "Region")
 """The region's own state, read."""
@@ -80,7 +80,7 @@ ITEM = Param("Item", "in", "Event")
 
 @dataclass(frozen=True, slots=True)
 class HistoryMemory:
-    """What a history needs to know: the last leaf left in a region."""
+    """The memory of a history: the last leaf left in a region."""
 
     place: Place
     label: str
@@ -127,11 +127,11 @@ class RegionShape(Places):
             return self.after(firing.entries[:-1]) | {self.lanes[-1]: firing.goal}
         return self.after(firing.entries)
 
-    # --- lanes
+    # --- top-level and orthogonal regions
 
     @cached_property
     def busy_lanes(self) -> tuple[Lane, ...]:
-        """The lanes with transitions, in the order in which they fire; the top one if none has."""
+        """The regions with transitions, in the order of a step; the top-level one if none has."""
         busy = tuple(n for n in self.lanes if any(f.lane == n for f in self.firings))
         return busy or self.lanes[-1:]
 
@@ -140,11 +140,11 @@ class RegionShape(Places):
         return "Top" if lane.owner is None else lane_name(lane.name)
 
     def transitions_of(self, lane: Lane) -> str:
-        """The subtype of a lane's transitions, where there are several lanes."""
+        """The subtype of a region's transitions, where there are orthogonal regions."""
         return f"{self.lane_name(lane)}_Transition"
 
     def lane_of(self, place: Place) -> Lane:
-        """The lane whose leaves a region holds."""
+        """The region itself if it is orthogonal or top-level, or else the one around it that is."""
         if place.owner is None:
             return self.lanes[-1]
         if self.region.state(place.owner).is_orthogonal:
@@ -152,11 +152,11 @@ class RegionShape(Places):
         return self.region.lane(place.owner)
 
     def inner_lanes(self, lane: Lane) -> tuple[Lane, ...]:
-        """The busy lanes inside a lane."""
+        """The busy regions inside a top-level or orthogonal region."""
         return tuple(n for n in self.busy_lanes if n != lane and lane in self.lanes_around(n))
 
     def lanes_around(self, lane: Lane) -> list[Lane]:
-        """The lane, the one that it is inside, and so on to the top."""
+        """The region, the orthogonal one that it is inside, and so on to the top."""
         found = [lane]
         while found[-1].owner is not None:
             found.append(self.region.lane(found[-1].owner))
@@ -170,11 +170,11 @@ class RegionShape(Places):
 
     @cached_property
     def watched(self) -> tuple[str, ...]:
-        """The orthogonal states in which firings can conflict."""
+        """The orthogonal states in which transitions of one step can conflict."""
         return tuple(s for s in self.left_states if len(self.lanes_in(s)) > 1)
 
     def lanes_in(self, state: str) -> tuple[Lane, ...]:
-        """The busy lanes inside an orthogonal state, in the order in which they fire."""
+        """The busy regions inside an orthogonal state, in the order of a step."""
         inside = self.region.ancestors
         return tuple(n for n in self.busy_lanes if n.owner and state in inside(n.owner))
 
@@ -192,12 +192,12 @@ class RegionShape(Places):
 
     @cached_property
     def listed(self) -> bool:
-        """Can one step fire more than one transition?"""
+        """Can one step take more than one transition?"""
         return self.passes or not self.single
 
     @cached_property
     def most_firings(self) -> int:
-        """The most that one step fires."""
+        """The most transitions and segments that one step takes."""
         return max(1, len(self.busy_lanes)) * (1 + self.most_segments)
 
     @cached_property
@@ -353,7 +353,7 @@ class RegionShape(Places):
         return (*found, "Conditions")
 
     def triggers(self, firing: Firing) -> tuple[str, ...]:
-        """The occurrences that a firing is made for."""
+        """The occurrences that a line is for."""
         found: list[str] = []
         for trigger in firing.triggers:
             match trigger:
@@ -372,7 +372,7 @@ class RegionShape(Places):
 
     @cached_property
     def enabled_when(self) -> dict[str, Expr]:
-        """For each firing its trigger and guard; where it has several sources, that all are
+        """For each line its trigger and guard; where it has several sources, that all are
         complete."""
         return {firing.literal: self._enabled_when(firing) for firing in self.firings}
 
@@ -401,7 +401,7 @@ class RegionShape(Places):
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """What it copies in: everything read that it does not itself write."""
+        """The names that it copies in: everything read that it does not itself write."""
         return tuple(n for n in self.region.reads if n not in self.region.writes)
 
     @property
@@ -424,8 +424,8 @@ class RegionShape(Places):
 
     @cached_property
     def situation(self) -> tuple[Param, ...]:
-        """What decides whether a transition is enabled: the region, the occurrence, and what
-        guards read besides."""
+        """The parameters that decide whether a transition is enabled: the region, the occurrence,
+        and the inputs and event of guards."""
         named = {name for guard in guards_of(self.region) for name in names_read(guard)}
         params = [SELF, Param("Now", "in", "Occurrence")]
         if named & set(self.inputs):

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The body of a region's package: selection, occurrences, firing, and the step that joins them."""
+"""The body of a region's package: selection, occurrences, Fire, and the step that joins them."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Do activities that complete their state: what a region knows of them, and how it is told.
+"""Do activities that complete their state: the visits of the state, and the notice of `done`.
 
-A region counts the visits of such a state and publishes them. Its do activity names
-the visit that it works for when it raises `done`, so that one that comes late, after
-the state has been left, completes nothing, be the state entered again or not.
+A region counts the visits of such a state and publishes them. The do activity names the visit that
+it works for when it raises `done`. A `done` that comes late, after the state has been left,
+completes nothing, whether the state was entered again or not.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def work_fields(shape: RegionShape) -> list[RecordComponent]:
 
 
 def notices(shape: RegionShape, kept: Expr) -> list[Decl]:
-    """The procedures by which the region is told; ``kept`` is what they do not change."""
+    """The procedures that notify the region of `done`; they leave ``kept`` unchanged."""
     items: list[Decl] = []
     for state in shape.working:
         name = f"Notice_{ada_case(state)}"
@@ -62,7 +62,7 @@ def notices(shape: RegionShape, kept: Expr) -> list[Decl]:
 
 
 def notice_bodies(shape: RegionShape) -> list[Decl]:
-    """What they do: the state completes, when its regions have ended too."""
+    """Their bodies: the state completes, when its regions have ended too."""
     items: list[Decl] = []
     for state in shape.working:
         done = ref("Self", shape.done(state))

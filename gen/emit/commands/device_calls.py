@@ -167,7 +167,7 @@ def _queued(
 def _request(
     system: System, server: Server, need: Need, caller: Expr, item: Expr | None
 ) -> Aggregate:
-    """What waits in the queue of an interface: the command, who asks, and the argument."""
+    """An item in the queue of an interface: the command, its caller, and the argument."""
     owner = ada_case(system.instance(server.instance).component.name)
     package = ref(owner, requests_package(server.interface))
     rows = [Arg("Name", ref(package, f"{ada_case(need.name)}_Asked"))]
@@ -298,7 +298,7 @@ def request_types(system: System, component: Component) -> Iterator[Decl]:
 
 
 def serving_params(system: System, component: Component, activity: str) -> Iterator[Param]:
-    """What the activity that serves an interface gets besides: a request, and room for replies."""
+    """More parameters of the activity that serves an interface: a request, and room for replies."""
     provided = component.served_by(activity)
     if provided is not None:
         package = ref(component_name(component), requests_package(provided))
@@ -328,7 +328,7 @@ def put_body(instance: Instance, provided: Provided, lost: tuple[Stmt, ...]) -> 
 
 
 def request_objects(system: System, instance: Instance, provided: Provided) -> list[Decl]:
-    """What the row that serves an interface declares: a request, and room for replies."""
+    """The variables of the row that serves an interface: a request, and room for replies."""
     package = ref(component_name(instance.component), requests_package(provided))
     found: list[Decl] = [
         Object("Asked", ref(package, "Request")),
@@ -341,7 +341,7 @@ def request_objects(system: System, instance: Instance, provided: Provided) -> l
 
 
 def asked_args(system: System, instance: Instance, provided: Provided) -> list[Arg]:
-    """What the activity that serves an interface is given besides; see `serving_params`."""
+    """The arguments for the parameters that `serving_params` adds."""
     rooms = _rooms(system, instance, provided)
     given = (Arg(parameter, ref(room)) for parameter, room, _ in rooms)
     return [Arg(request_param(provided), ref("Asked")), *given]

@@ -142,7 +142,7 @@ def _operations(system: System, kind: DeviceType) -> Iterator[tuple[Subprogram, 
 
 
 def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Unit, Unit]:
-    """What a simulated device remembers, and a body that gives it back: a starting point."""
+    """The state of a simulated device, and a body that gives its values back: a starting point."""
     kept = [RecordComponent("Calls", "Call_Count", number(0))]
     bodies: list[Decl] = []
     given = {ada_case(one.name): one for one in kind.provides}
@@ -323,7 +323,7 @@ def _cut(command: DriverCommand, first: int, axes: int) -> Expr:
 
 
 def _fields(part: str, of_type: Type, first: int, axes: int) -> list[Arg]:
-    """What a member's reply is in the whole."""
+    """The axes of a member's reply in the reply of the array."""
     if not isinstance(of_type, RecordType):
         return [Arg(f"Axis_{first}", ref(part))]
     return [Arg(f"Axis_{first + n - 1}", ref(part, f"Axis_{n}")) for n in range(1, axes + 1)]

@@ -126,7 +126,7 @@ def emit_lifecycle(system: System, header: str) -> list[Unit]:
 
 
 def lifecycle_specs(device: Device) -> tuple[Decl, ...]:
-    """What a device's package has besides its commands."""
+    """The operations of a device's package besides its commands: start and end."""
     if device.type is None or not device.type.lifecycle.given:
         return ()
     life = device.type.lifecycle

@@ -54,7 +54,7 @@ _OF_ADDRESSES = (
     "writing to * is assumed to have no effects on other*",
     "address specification on * is imprecisely supported*",
 )
-"""What gnatprove warns of an object at an address, in the words of each of its ages."""
+"""The warnings of gnatprove about an object at an address, in the words of its versions."""
 
 
 def types_with_registers(system: System) -> tuple[DeviceType, ...]:

@@ -3,8 +3,8 @@
 
 """Commands between nodes: how an instance sends and hears calls, and replies to them.
 
-The caller numbers its calls, and gives one up when its limit has passed; the provider
-queues each call that it hears as one of its own callers would, with the number in it.
+The caller numbers its calls, and gives one up when its limit has passed. The provider queues each
+call that it hears like those of its own callers, with the number in it.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ STATUS = ref("Ravenchart.Queueing.Put_Status")
 
 
 def remotes(system: System, instance: Instance) -> tuple[Remote, ...]:
-    """What an instance calls on other nodes."""
+    """The commands that an instance calls on other nodes."""
     own = (b.provider for b in system.bindings if b.instance == instance.name)
     return tuple(provider for provider in own if isinstance(provider, Remote))
 
@@ -149,7 +149,7 @@ def watch_body(need: Need, kept: str, passed: tuple[Stmt, ...]) -> Subprogram:
 
 
 def watched(system: System, instance: Instance, row: Region | Activity) -> Iterator[Stmt]:
-    """What a row that calls or reads on other nodes does first."""
+    """The first statements of a row that calls or reads on other nodes: its watches."""
     for binding in system.bindings:
         made, name = binding.provider, binding.need.name
         calls = isinstance(made, Remote) and made.reply is not None and name in row.sends
@@ -159,7 +159,7 @@ def watched(system: System, instance: Instance, row: Region | Activity) -> Itera
 
 
 def answers(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subprogram]]:
-    """For each reply from another node, spec and body of what takes it."""
+    """For each reply from another node, spec and body of the procedure that takes it."""
     for remote in remotes(system, instance):
         message = next((m for m in system.messages if m.name == remote.reply), None)
         if message is None or remote.need.reply is None:
@@ -194,7 +194,7 @@ def heard_objects(system: System, instance: Instance) -> Iterator[Decl]:
 def asked_from_afar(
     system: System, message: Message, request: Expr, put: str
 ) -> tuple[Subprogram, Subprogram]:
-    """Spec and body of what hears a call: it puts the ``request`` into the queue, once."""
+    """Spec and body of the procedure that puts the ``request`` of a call into the queue, once."""
     spec = _receiving(system, message)
     kept = ref(f"{ada_case(message.name)}_Heard")
     first = equal(ref("Hearing"), ref(CALLS, "Heard_First"))
@@ -238,7 +238,7 @@ def replies(
 
 
 def reply_to(system: System, message: Message) -> Message | None:
-    """The message with the replies to the calls of another; None where nobody waits for them."""
+    """The message with the replies to the calls of another; None where no caller waits for them."""
     return next((m for m in system.messages if m.call == message.call and m.is_reply), None)
 
 
@@ -255,13 +255,13 @@ def _receiving(system: System, message: Message) -> Subprogram:
 
 
 def _number(message: Message) -> DottedName:
-    """The number of a call in what is received."""
+    """The number of a call in a received value."""
     assert isinstance(message.type, RecordType)
     return ref("Item", ada_case(message.type.fields[0].name))
 
 
 def value_of(system: System, message: Message, carried: Type) -> Expr:
-    """What is carried with the number in what is received."""
+    """The argument or reply beside the number in a received value."""
     assert isinstance(message.type, RecordType)
     names = [ada_case(field.name) for field in message.type.fields[1:]]
     if not isinstance(carried, RecordType):
@@ -271,7 +271,7 @@ def value_of(system: System, message: Message, carried: Type) -> Expr:
 
 
 def _framed(message: Message, called: Expr, item: DottedName, carried: Type | None) -> Expr:
-    """The number of a call, and what is carried with it."""
+    """The number of a call, with its argument or reply."""
     assert isinstance(message.type, RecordType)
     first, *others = (ada_case(field.name) for field in message.type.fields)
     of_record = isinstance(carried, RecordType)

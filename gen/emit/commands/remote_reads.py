@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Read commands between nodes: how an instance publishes, and what its readers keep of it."""
+"""Read commands between nodes: how an instance publishes, and the copies of its readers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .remote_calls import CALLS
 
 
 def copies(system: System, instance: Instance) -> tuple[RemoteRead, ...]:
-    """What an instance reads of other nodes."""
+    """The read commands that an instance has from other nodes."""
     own = (b.provider for b in system.bindings if b.instance == instance.name)
     return tuple(provider for provider in own if isinstance(provider, RemoteRead))
 
@@ -49,7 +49,7 @@ def read_units(system: System, instance: Instance) -> Iterator[DottedName]:
 
 
 def copy_name(need: Need) -> str:
-    """What keeps the value that came last."""
+    """The object that keeps the value that came last."""
     return f"{ada_case(need.name)}_Copy"
 
 
@@ -77,7 +77,7 @@ def _left(message: Message) -> str:
 
 
 def kept(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subprogram]]:
-    """For each value that comes from another node, spec and body of what keeps it."""
+    """For each value that comes from another node, spec and body of the procedure that keeps it."""
     for read in copies(system, instance):
         assert read.need.reply is not None
         params = (Param("Item", "in", type_name(system, read.need.reply)),)
@@ -89,7 +89,7 @@ def kept(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subpr
 def publishes(
     system: System, instance: Instance, row: Region | Activity, declarations: list[Decl]
 ) -> Iterator[Stmt]:
-    """What a row that writes published data does last: it sends them, whenever it is their turn."""
+    """The last statements of a row that writes published data: it sends those whose turn it is."""
     for message in publications(system, instance.name, row):
         assert message.source is not None
         item = ada_case(message.source.port)

@@ -1,4 +1,4 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What all instances of a component share."""
+"""The Ada units that all instances of a component share."""

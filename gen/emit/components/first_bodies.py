@@ -31,7 +31,7 @@ def first_bodies(system: System, component: Component, header: str) -> Iterator[
 
 
 def _body(system: System, component: Component, activity: Activity) -> Subprogram:
-    """What it writes keeps its value or gets its first one, and nothing is raised."""
+    """Written items keep their values or get their first ones, and no event is raised."""
     params = activity_params(system, component, activity)
     starts = _starts(system, component, activity)
     idle = tuple(ref(p.name) for p in params if p.mode != "out")

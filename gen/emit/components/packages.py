@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What all instances of a component share: events, states, port views, activities."""
+"""The packages that all instances of a component share: events, states, port views, activities."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ def has_flag(activity: Activity, port: Port) -> bool:
 
 
 def activity_params(system: System, component: Component, activity: Activity) -> tuple[Param, ...]:
-    """The profile of an activity: what it reads, what it writes, what it raises."""
+    """The profile of an activity: the items that it reads and writes, the events that it raises."""
     params = list(serving_params(system, component, activity.name))
     params += [
         Param(ada_case(name), "in", reading_type(system, component, name))
@@ -189,7 +189,7 @@ def activity_params(system: System, component: Component, activity: Activity) ->
 
 
 def stand_ins(component: Component) -> set[str]:
-    """The activities that stand in for a command, where nothing provides it."""
+    """The activities that are the fallback of a command, where nothing provides it."""
     return {need.stand_in.activity for need in component.needs if need.stand_in is not None}
 
 
@@ -202,7 +202,7 @@ ACTIVITIES = "Activities"
 def activity_package(component: Component, activity: Activity) -> str:
     """The child of the component's package that holds an activity.
 
-    A stand-in by the user has one of its own, for its body is left out where nobody needs it.
+    A fallback by the user has a package of its own: its body is left out where it is idle.
     """
     if activity.flow is not None:
         return FLOWS

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What puts values and events into the queues of an instance, and reports what these lose."""
+"""Procedures that put values and events into an instance's queues, and report losses."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ OFFERS, ANSWERED = ref("Ravenchart.Offers"), ref("Ravenchart.Answered_Offers")
 
 
 def offers_of_port(site: Site, port: Port, of_type: DottedName) -> GenericInstance:
-    """What puts values into the queue of a port."""
+    """The procedures that put values into the queue of a port."""
     element = ref("Elements", element_constant(_element(site, port.name), "port"))
     return _offering(port.name, "Mailbox", of_type, port.overflow, element)
 
 
 def offers_of_region(site: Site, region: Region, event: DottedName) -> list[Decl]:
-    """What puts events into the queue of a region, and answers what it loses."""
+    """The procedures that put events into the queue of a region, and answer a loss."""
     element = ref("Elements", element_constant(_element(site, region.name), "region"))
     given = region.name, "Queue", event, region.overflow, element
     offering = _offering(*given)
@@ -100,7 +100,7 @@ def _enqueue(region: Region, event: Event, item: Expr, by: DottedName) -> Stmt:
 
 
 def overflowed(component: Component) -> Iterator[Decl]:
-    """Raise the event that tells of a loss; what is lost by that is only reported."""
+    """Raise the event of a loss; a loss that this causes is only reported."""
     for region in component.regions:
         name = region.on_overflow
         if name is not None and region.events() and _answers(component, region):
@@ -111,7 +111,7 @@ def overflowed(component: Component) -> Iterator[Decl]:
 
 
 def _answers(component: Component, region: Region) -> bool:
-    """Is there an event that tells of a loss, and a region that it is for?"""
+    """Is there an event of a loss, and a region that it is for?"""
     return region.on_overflow is not None and bool(_heard(component, region.on_overflow))
 
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a queued port has besides that releases a processor: where that waits for a value."""
+"""The operation of a queued port by which the processor that it releases waits for a value."""
 
 from __future__ import annotations
 

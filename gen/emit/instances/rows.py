@@ -216,7 +216,7 @@ class Rows(Site):
         return do(ref(f"{ada_case(name)}_Board", "Read"), ref(target))
 
     def _read_command(self, binding: Binding, target: Named) -> Stmt:
-        """Read what a required command gives: of a device or task, or what stands in."""
+        """Read the reply of a required command: of a device, of a task, or of the fallback."""
         need, provider = binding.need, binding.provider
         if need.stand_in is not None and provider is None:
             return self._copy_in(need.stand_in.item, target)
@@ -314,7 +314,7 @@ class Rows(Site):
         return [Loop(each, (report,)) if shape.listed else report]
 
     def _report_leaves(self, shape: RegionShape) -> list[Stmt]:
-        """The leaf of each lane; that of a lane inside a state only while that is active."""
+        """The leaf of each region; that of an orthogonal region only while its state is active."""
         found: list[Stmt] = []
         held = ref(f"{ada_case(shape.region.name)}_Region", shape.place)
         for lane in reversed(shape.lanes):
@@ -446,7 +446,7 @@ def _times(count: int) -> ForLoop:
 
 
 def _told(activity: Activity) -> dict[str, str]:
-    """What the test of a do activity's state has read, where the contract requires that state."""
+    """The state that the test of a do activity has read, where the contract requires it."""
     if activity.while_in is None:
         return {}
     region = activity.while_in.region

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the emitters of an instance ask about it."""
+"""The facts about an instance that its emitters share."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ravenchart.gen.model.system import Slot, System
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """One instance in its system, and what is known of it there."""
+    """One instance in its system, with its connections and objects there."""
 
     system: System
     instance: Instance
@@ -60,7 +60,7 @@ class Site:
         return ports, [m.name for m in messages]
 
     def _is_idle(self, port: Port) -> bool:
-        """Whether nothing takes what is sent there: a command that nothing stands in for."""
+        """Whether nothing takes a value sent there: a command that is not provided."""
         return port.is_command and self.system.bound[self.instance.name, port.name].provider is None
 
     def _connected_inputs(self) -> tuple[Port, ...]:

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a row does last for the messages with a transmission mode that it sends."""
+"""The last statements of a row that sends messages with a transmission mode, or segments."""
 
 from __future__ import annotations
 

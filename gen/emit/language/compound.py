@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Compound transitions: what each way through the chart leaves, does and enters.
+"""Compound transitions: the states that each way through the chart leaves and enters.
 
-A *firing* is one line of the declared chart: a transition of a state, together
-with the junctions, forks and joins it passes; a segment that leaves a choice or a
-history; or a deferral. Choices, histories and terminates are leaves that a step
-passes through (terminate: stays in). UML 2.5.1, 14.2.3.8 and 14.2.3.9.
+A `Firing` is one line of the declared chart. It is a transition of a state, together with the
+junctions, forks and joins it passes; a segment that leaves a choice or a history; or a deferral.
+Choices, histories and terminates are leaves that a step passes through (terminate: stays in).
+UML 2.5.1, 14.2.3.8 and 14.2.3.9.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ PASSED = (PseudoKind.CHOICE, PseudoKind.HISTORY, PseudoKind.DEEP_HISTORY)
 
 
 class FiringKind(Enum):
-    """What a firing is."""
+    """The kind of a line of the declared chart."""
 
     MOVE = "move"
     INTERNAL = "internal"
@@ -77,7 +77,7 @@ class Firing:
     lane: Lane
     sources: tuple[str, ...]
     triggers: tuple[Trigger | str, ...]
-    """What it is made for; a string is an event that is deferred."""
+    """The occurrences that it is for; a string is an event that is deferred."""
     guards: tuple[Expression, ...]
     domain: Place | None
     """The innermost region that holds all it leaves and enters; None: it moves nothing."""
@@ -98,12 +98,12 @@ class Firing:
 
 @lru_cache(maxsize=4096)
 def compounds_of(region: Region) -> Compounds:
-    """What is known of a region; kept, for many emitters ask."""
+    """The lines of a region's declared chart; kept, for many emitters ask."""
     return Compounds(region)
 
 
 class Compounds:
-    """All firings of a region, and the geometry they need; made by `compounds_of`."""
+    """All lines of a region's chart, and the geometry they need; made by `compounds_of`."""
 
     def __init__(self, region: Region) -> None:
         self.region = region
@@ -138,7 +138,7 @@ class Compounds:
         return path[::-1]
 
     def passed(self, place: Place) -> tuple[str, ...]:
-        """The pseudostates of a region that are leaves of its lane."""
+        """The pseudostates of a region that a step passes as leaves."""
         return tuple(
             p.name
             for p in self.region.pseudostates
@@ -181,11 +181,11 @@ class Compounds:
         before = (effects[here[0]],) if here[0] in effects else ()
         return (*before, *self.into(place, here))
 
-    # --- firings
+    # --- the lines of the declared chart
 
     @cached_property
     def firings(self) -> tuple[Firing, ...]:
-        """All lines of the chart, lane by lane, in each in order of precedence."""
+        """All lines of the chart by region, inner ones first, in each in order of precedence."""
         found: list[Firing] = []
         for lane in self.region.lanes():
             lines = self._lines(lane)
@@ -345,7 +345,7 @@ class Compounds:
     # --- conflicts
 
     def left(self, firing: Firing) -> tuple[str, ...]:
-        """The orthogonal states that a firing leaves from inside, innermost first."""
+        """The orthogonal states that a line leaves from inside, innermost first."""
         if firing.domain is None:
             return ()
         around = self.places(firing.sources[0])

@@ -55,7 +55,7 @@ def event_types(system: System, component: Component) -> list[Decl]:
 
 
 def null_event(component: Component) -> Expr:
-    """What stands where there is no event."""
+    """The value that means no event."""
     name = "No_Event" if carries(component) else event_literal(component.events[0].name)
     return ref(component_name(component), name)
 

@@ -38,7 +38,7 @@ IN_EVENTS = frozenset((_EVERYWHERE + _EVENTS).split())
 """Those of a component's package, and of units below it, that stand beside its events."""
 
 IN_LANES = frozenset(("node", "none", "selection", "top"))
-"""Those that records with a field for each lane need to see beside their fields."""
+"""Those that records with a field for each orthogonal region need to see beside their fields."""
 
 
 def transition_literal(name: str) -> str:

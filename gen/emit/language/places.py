@@ -3,9 +3,9 @@
 
 """Configurations in Ada: the types of the leaves, and the test for a state.
 
-The leaves of a lane are one enumeration in tree order, and a composite is the
-subtype of its leaves. A chart of one lane keeps its active leaf in one value; one
-of more keeps a record, its *configuration*, with a component for each lane.
+The leaves of a top-level or orthogonal region are one enumeration in tree order, and a composite
+is the subtype of its leaves. A chart without orthogonal regions keeps its active leaf in one
+value. Any other keeps a record, its *configuration*, with a component for each such region.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ from .own_names import state_literal
 
 
 class Places:
-    """How the configurations of one region are held and asked."""
+    """The configurations of one chart, as they are held and tested."""
 
     def __init__(self, region: Region) -> None:
         self.compounds = compounds_of(region)
-        self.region = self.compounds.region  # triggers are told apart by identity
+        self.region = self.compounds.region  # triggers are compared by identity
         self.lanes = region.lanes()
 
     @property
@@ -57,7 +57,7 @@ class Places:
 
     @property
     def single(self) -> bool:
-        """Only one lane: a leaf is the whole configuration."""
+        """No orthogonal regions: a leaf is the whole configuration."""
         return len(self.lanes) == 1
 
     @property
@@ -76,7 +76,7 @@ class Places:
         return pseudo is not None and pseudo.kind is PseudoKind.TERMINATE
 
     def lane(self, vertex: str) -> Lane:
-        """The lane among whose leaves a vertex is."""
+        """The top-level or orthogonal region among whose leaves a vertex is."""
         return self.lanes[-1] if self.is_end(vertex) else self.region.lane(vertex)
 
     def ancestors(self, leaf: str) -> tuple[str, ...]:
@@ -84,7 +84,7 @@ class Places:
         return (leaf,) if self.is_end(leaf) else self.region.ancestors(leaf)
 
     def lane_type(self, lane: Lane) -> str:
-        """The enumeration of a lane's leaves, as its package names it."""
+        """The enumeration of a region's leaves, as its package names it."""
         return "Leaf" if lane.owner is None else f"{ada_case(lane.name)}_Leaf"
 
     def lane_field(self, lane: Lane) -> str:
@@ -92,16 +92,16 @@ class Places:
         return "Top" if lane.owner is None else f"In_{ada_case(lane.name)}"
 
     def at(self, holder: Named, lane: Lane) -> DottedName:
-        """The leaf of a lane in the configuration that ``holder`` names."""
+        """The leaf of a region in the configuration that ``holder`` names."""
         return ref(holder) if self.single else ref(holder, self.lane_field(lane))
 
     def literals(self, lane: Lane) -> tuple[str, ...]:
-        """The leaves of a lane in tree order, passed pseudostates behind their siblings."""
+        """The leaves of a region in tree order, passed pseudostates behind their siblings."""
         own = Place(None, "") if lane.owner is None else Place(lane.owner, lane.name)
         return tuple(self.literals_in(own))
 
     def literals_in(self, place: Place) -> Iterator[str]:
-        """The leaves of one lane inside a region."""
+        """The leaves inside a region, without those of orthogonal states inside."""
         for state in self.region.children(place.owner, place.region):
             if len(state.regions) == 1:
                 yield from self.literals_in(Place(state.name, state.regions[0].name))
@@ -110,7 +110,7 @@ class Places:
         yield from self.compounds.passed(place)
 
     def is_literal(self, vertex: str) -> bool:
-        """Is it a leaf of its lane, rather than a range of leaves?"""
+        """Is it a leaf of its region, rather than a range of leaves?"""
         return (
             self.region.pseudostate(vertex) is not None
             or len(self.region.state(vertex).regions) != 1
@@ -131,7 +131,7 @@ class Places:
         return both(*conjuncts([self.in_state(holder, lane.owner, component), here]))
 
     def traced(self, lane: Lane) -> str:
-        """The name under which traces know a lane."""
+        """The name of a top-level or orthogonal region in traces."""
         return self.region.name if lane.owner is None else f"{self.region.name}.{lane.name}"
 
     def compared_types(self, state: str) -> tuple[str, ...]:
@@ -146,9 +146,9 @@ class Places:
         return tuple(found)
 
     def package_of_states(self, model: Origin) -> Package:
-        """The enumerations, the composites, and the configuration where there are lanes.
+        """The enumerations, the composites, and the configuration of orthogonal regions.
 
-        Each state with the place where it stands, as seen from ``model``.
+        Each state has its location in the model, as seen from ``model``.
         """
         items: list[Decl] = []
         for lane in reversed(self.lanes):
@@ -187,15 +187,15 @@ class Places:
         return state_literal(parent)
 
     def default_leaf(self, lane: Lane) -> str:
-        """The leaf that a lane starts with by default."""
+        """The leaf that a top-level or orthogonal region starts with by default."""
         return self.region.default_of(lane.owner, lane.name if lane.owner else "")
 
     def lanes_of(self, state: str) -> tuple[Lane, ...]:
-        """The lanes that begin in an orthogonal state."""
+        """The regions of an orthogonal state."""
         return tuple(n for n in self.lanes if n.owner == state)
 
     def after(self, entries: tuple[EntryStep, ...]) -> dict[Lane, str]:
-        """The leaves that entries lead to, lane by lane; other lanes keep theirs."""
+        """The leaves that entries lead to, by region; other regions keep theirs."""
         found: dict[Lane, str] = {}
         for step in entries:
             if isinstance(step, Enter) and self.is_literal(step.vertex):
@@ -206,7 +206,7 @@ class Places:
     def configuration(
         self, leaves: dict[Lane, str], kept: Named | None, component: str | None = None
     ) -> Expr:
-        """A configuration with these leaves; those of other lanes come from ``kept``."""
+        """A configuration with these leaves; those of other regions come from ``kept``."""
         rows = tuple(
             Arg(self.lane_field(lane), self.literal(leaves[lane], component))
             for lane in reversed(self.lanes)

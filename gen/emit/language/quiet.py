@@ -1,12 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Conditions that the compiler can decide, and what keeps it from saying so.
+"""Conditions that the compiler can decide, and pragmas against its warnings.
 
 A type of one value, a region of one leaf or a guard that ranges decide are sound, and the
-compiler warns of each. Only a unit in which such a condition stands says that these warnings
-are not wanted: what stands in it is read from its constructs, and ranges from the terms of
-the model.
+compiler warns of each. Only a unit that holds such a condition turns these warnings off. The
+tests for states are read from the unit's constructs, and ranges from the terms of the model.
 """
 
 from __future__ import annotations
@@ -31,13 +30,13 @@ from .places import Places
 from .terms import expressions_in
 
 _DECIDED = "can * be"
-"""What it says of a condition that ranges decide, "can only be" or "can never be"."""
+"""The warning on a condition that ranges decide, "can only be" or "can never be"."""
 _MEMBERSHIP = "explicit membership test"
-"""What it says of a state that is always active."""
+"""The warning on the test for a state that is always active."""
 _COMPUTED = "condition is always"
-"""What it says where operators, and not types alone, decide."""
+"""The warning where operators, and not types alone, decide."""
 _IDLE = "formal parameter * is not referenced"
-"""What it says of functions of a chart without transitions: they ask for nothing that occurs."""
+"""The warning on functions of a chart without transitions: they test no occurrence."""
 
 
 class DecidedStates:
@@ -57,7 +56,7 @@ class DecidedStates:
             own.update(places.literal(name, component_name(component)) for name in found)
 
     def words(self, unit: Unit, component: Component | None) -> Iterator[str]:
-        """What the compiler says of the states that a unit asks for."""
+        """The warnings on the states that a unit tests for."""
         if not self._literals and not self._composites:  # most models: no unit is walked
             return
         prefix = () if component is None else (component_name(component),)
@@ -72,7 +71,7 @@ class DecidedStates:
 
 
 def _whole(places: Places, lanes: Sequence[tuple[str, ...]]) -> list[str]:
-    """The composites that hold all the leaves of their lane."""
+    """The composites that hold all the leaves of a top-level or orthogonal region."""
     found = []
     for state in places.region.states:
         if len(state.regions) == 1:
@@ -93,10 +92,10 @@ def quiet(unit: Unit, words: Iterator[str]) -> Unit:
 
 
 def warnings_of(expressions: Iterable[m.Expression], *, by_name: bool = False) -> Iterator[str]:
-    """What the compiler says of these terms of the model.
+    """The warnings on these terms of the model.
 
-    With ``by_name`` the names in them are parameters of their own, of which it knows that
-    `x - 1` is below `x`.
+    With ``by_name`` the names in them are parameters, of which the compiler knows that `x - 1`
+    is below `x`.
     """
     for expression in expressions:
         if isinstance(expression, m.Operation):
@@ -106,7 +105,7 @@ def warnings_of(expressions: Iterable[m.Expression], *, by_name: bool = False) -
 
 
 def warnings_of_idle(region: Region) -> Iterator[str]:
-    """What the compiler says in the spec of a region that never fires."""
+    """The warnings in the spec of a region without transitions."""
     if not Places(region).compounds.firings:
         yield from (_DECIDED, _COMPUTED, _IDLE)
 
@@ -202,9 +201,9 @@ def _tells(operator: str, left: Range, right: Range, *, halves: bool = True) -> 
 
 
 def _range(expression: m.Expression, *, valid: bool) -> Range | None:
-    """What the compiler knows of a number, where it takes those of names for ``valid`` or not.
+    """The range that the compiler knows of a number; ``valid``: it relies on the types of names.
 
-    None: nothing, as of what attributes and conditional expressions give.
+    None: no range, as of attributes and conditional expressions.
     """
     match expression:
         case m.Literal(bool()):

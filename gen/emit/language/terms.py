@@ -56,7 +56,7 @@ class Scope:
 
 
 def unit_of(expression: m.Expression) -> str | None:
-    """What an integer expression counts; None for a bare number."""
+    """The unit of an integer expression; None for a bare number."""
     match expression:
         case m.Operation():
             return expression.unit
@@ -309,7 +309,7 @@ def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
 
 
 def _unit_in(of_type: m.Type, field: str | None) -> str | None:
-    """What a target counts."""
+    """The unit of a target."""
     scalar = of_type.field(field).type if isinstance(of_type, m.RecordType) and field else of_type
     return scalar.unit if isinstance(scalar, m.IntegerType) else None
 

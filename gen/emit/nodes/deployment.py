@@ -93,7 +93,7 @@ def emit_deployment(system: System, header: str) -> tuple[Unit, ...]:
 
 
 def emit_without_tasks(system: System, header: str) -> tuple[Unit, ...]:
-    """What instances need of it in a simulation."""
+    """The units that instances need of it in a simulation."""
     return (_health(system, header), _elements(system, header))
 
 
@@ -252,7 +252,7 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
 
 
 def _wait(processor: Processor) -> DottedName:
-    """What a sporadic processor waits in: the receiver of a bus, or the mailbox of a port."""
+    """The call in which a sporadic processor waits: for a frame of a bus, or a value of a port."""
     end = processor.released_by_port
     if end is not None:
         return ref(ada_case(end.instance), f"Await_{ada_case(end.port)}")
@@ -343,7 +343,7 @@ _EXECUTED = (Param("Item", "in", "Row"), Param("Used", "in", "Ravenchart.Nanosec
 
 
 def _budgets(processor: Processor) -> list[Decl]:
-    """What each row may use, and what compares it with what it used."""
+    """The enforced limit of each row, and the procedure that compares execution times with it."""
     rows = tuple(Arg(ref(row_name(slot)), fact(slot.element, "Budget")) for slot in processor.slots)
     return [
         Subprogram("On_Executed", _EXECUTED),

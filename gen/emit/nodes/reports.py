@@ -60,7 +60,7 @@ POLL_NS = 5_000_000
 
 
 def emit_reports(system: System, header: str) -> list[Unit]:
-    """What is handed to the host: the trace while it runs, statistics at the end."""
+    """The reports to the host: the trace while the program runs, statistics at its end."""
     root = root_package(system)
     name = ref(root, "Reports")
     spec: list[Decl] = []
@@ -161,7 +161,7 @@ TRACE, VALUES = ref("Trace.Buffer"), ref(UNIT, "Values")
 
 
 def _buffers(system: System) -> tuple[tuple[DottedName, str], ...]:
-    """What holds records until the host has them, and what the report calls it."""
+    """The buffers that hold records until the host has them, with their names in the report."""
     values = ((VALUES, "values"),) if recording(system) else ()
     return ((TRACE, "trace"), *values)
 

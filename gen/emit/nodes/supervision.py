@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The liveness supervision of a node, and what makes the node safe before its program ends."""
+"""The liveness supervision of a node, and its safe state before the program ends."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ def supervised(system: System) -> tuple[tuple[Node, Supervision], ...]:
 
 
 def safe_state(system: System) -> tuple[Stmt, ...]:
-    """What makes a node safe when its program ends: behind the grace, before the report.
+    """The statements that make a node safe at its program's end: after the grace, before reports.
 
-    The main program executes it on every way to its end: a request to stop, a task that has
+    The main program executes them on every way to its end: a request to stop, a task that has
     ended, a silent processor. Where it does not come that far, the supervisor does the same.
     """
     if not ends_devices(system):

@@ -19,7 +19,7 @@ from ravenchart.gen.emit.ada.statements import Do, Stmt, do
 from ravenchart.gen.model.system import Processor, System
 
 FAULTS = ref("Health_Counts.Faults")
-"""What counts and traces the faults of a node."""
+"""The package that counts and traces the faults of a node."""
 
 
 def traced(system: System) -> bool:
@@ -42,7 +42,7 @@ def note(
 
 
 def fault_number(kind: str) -> Expr:
-    """What a trace record about a fault says of its kind."""
+    """The kind of a fault in its trace record."""
     return call(Attribute("Ravenchart.Health.Fault_Kind", "Pos"), ref("Ravenchart.Health", kind))
 
 

@@ -3,8 +3,8 @@
 
 """Which states of a chart can be entered at all, and from where which can follow.
 
-Guards are not looked into, and what regions side by side do is not related: what is
-found unreachable is, and what is found reachable may not be.
+Guards are not looked into, and the regions of an orthogonal state are not related. So a state
+found unreachable is, and one found reachable may not be.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Reach:
         return any(self.tree.kind(way.target) in known for way in self.tree.ways(transition))
 
     def fires(self, transition: Transition) -> bool:
-        """Whether a transition can fire as far as its source is concerned."""
+        """Whether a transition can be taken as far as its source is concerned."""
         if transition.source not in self.found:
             return False
         if not isinstance(transition.trigger, Completion):
@@ -79,7 +79,7 @@ class Reach:
         return found
 
     def _by(self, way: Way) -> set[str]:
-        """What one way enters."""
+        """The vertices that one way enters."""
         kind = self.tree.kind(way.target)
         if kind is PseudoKind.JOIN:
             sources = {t.source for t in self.tree.incoming[way.target]}
@@ -98,7 +98,7 @@ class Reach:
         return states | {target for target in targets if target in self.tree.states}
 
     def _restored(self, history: str) -> set[str]:
-        """What a history may enter, beside its default transition."""
+        """The states that a history may enter, beside its default transition."""
         place = self.tree.place(history)
         found: set[str] = set()
         if not self.tree.outgoing.get(history):
@@ -122,7 +122,7 @@ class Reach:
     def before(self) -> Mapping[str, set[str]]:
         """The vertices that can be active, or passed, where a vertex follows.
 
-        A state that stays active beside one that moves can be followed by what that enters.
+        A state that stays active beside one that moves can be followed by the other's targets.
         """
         before: defaultdict[str, set[str]] = defaultdict(set)
         for transition in self.tree.region.transitions:
@@ -138,7 +138,7 @@ class Reach:
         return before
 
     def _beside(self, outer: str, state: str) -> Iterator[str]:
-        """What may be active in the other regions of an orthogonal state."""
+        """The states that may be active in the other regions of an orthogonal state."""
         for place in self.tree.regions(outer):
             if self.tree.child(place, state) is None:
                 yield from (s.name for s in self.tree.content[place] if s.name in self.found)

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What one step of a region sends and raises at most.
+"""The most that one step of a region sends and raises.
 
-One occurrence fires at most one transition in each lane, each with the choices and
-histories behind it. Guards are not looked into, and of what may be active the worst is
-taken: the bounds are safe, not exact.
+For one occurrence a step takes at most one transition in each top-level or orthogonal region, each
+with the choices and histories behind it. Guards are not looked into, and of the states that may
+be active the worst counts: the bounds are safe, not exact.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def either(parts: Iterable[Tally]) -> Tally:
 
 
 def tally(flow: Flow) -> Tally:
-    """What a flow sends and raises."""
+    """The sends and raises of a flow."""
     return then(_of_action(action) for action in flow)
 
 
@@ -102,7 +102,7 @@ class Steps:
             for state in self.tree.content.get(place, ())
         )
 
-    # --- firings
+    # --- transitions
 
     def start(self) -> Tally:
         """The first step."""
@@ -131,7 +131,7 @@ class Steps:
         return then((self._exits(way), *effects, entered, self._onward(target)))
 
     def _exits(self, way: Way) -> Tally:
-        """The worst of what a way leaves."""
+        """The worst of the exits on a way."""
         if way.left is None:
             is_local = way.domain.owner == way.path[0].source
             return self.leaving_place(way.domain) if is_local else {}
@@ -155,7 +155,7 @@ class Steps:
         return self.tree.child(place, vertex) is not None
 
     def _onward(self, target: str) -> Tally:
-        """What follows a choice or history in the same step."""
+        """The sends and raises behind a choice or history in the same step."""
         match self.tree.kind(target):
             case PseudoKind.CHOICE:
                 return self._behind[target]
@@ -175,7 +175,7 @@ class Steps:
     # --- steps
 
     def lost(self, transition: Transition) -> int:
-        """How many orthogonal states around its lane a transition leaves at least."""
+        """How many orthogonal states around its source a transition leaves at least."""
         return min((self._lost(way) for way in self.tree.ways(transition)), default=0)
 
     def _lost(self, way: Way) -> int:
@@ -186,7 +186,7 @@ class Steps:
         return sum(self.tree.is_orthogonal(state) for state in inside)
 
     def together(self, transitions: Sequence[Transition]) -> Tally:
-        """The worst that one occurrence, which enables these, can fire."""
+        """The worst step for one occurrence that enables these transitions."""
         by_lane: dict[Place, list[Transition]] = {}
         for transition in transitions:
             by_lane.setdefault(self._lane(transition.source), []).append(transition)
@@ -197,7 +197,7 @@ class Steps:
         return next(p for p in around if p.owner is None or self.tree.is_orthogonal(p.owner))
 
     def _in_lane(self, lane: Place, by_lane: dict[Place, list[Transition]]) -> dict[int, Tally]:
-        """The worst inside a lane, by the number of orthogonal states around it that are left."""
+        """The worst inside a region, by the number of orthogonal states around it that are left."""
         options: dict[int, list[Tally]] = {}
         for transition in by_lane.get(lane, ()):
             options.setdefault(self.lost(transition), []).append(self.firing(transition))
@@ -212,7 +212,7 @@ class Steps:
 
     @cached_property
     def _orthogonal(self) -> dict[Place, list[str]]:
-        """The orthogonal states that stand in each lane."""
+        """The orthogonal states in each top-level or orthogonal region."""
         found: dict[Place, list[str]] = {Place(None, ""): []}
         for state in self.region.states:
             if state.is_orthogonal:
@@ -222,7 +222,7 @@ class Steps:
         return found
 
     def single(self) -> Iterator[tuple[str, Tally]]:
-        """What the start and each transition by itself send and raise at most."""
+        """The most that the start and each transition by itself send and raise."""
         region = self.region
         yield f"entering {region.name}", self.start()
         for transition in region.transitions:
@@ -230,7 +230,7 @@ class Steps:
                 yield f"the transition {transition.name} of {region.name}", self.firing(transition)
 
     def shared(self) -> Iterator[tuple[str, Tally]]:
-        """What steps send and raise at most in which several lanes can fire."""
+        """The most that steps with transitions in several orthogonal regions send and raise."""
         region = self.region
         if not any(state.is_orthogonal for state in region.states):
             return
@@ -246,7 +246,7 @@ class Steps:
 
 
 class _Behind(dict[str, Tally]):
-    """What follows each choice, worked out once."""
+    """The sends and raises behind each choice, computed once."""
 
     def __init__(self, steps: Steps) -> None:
         super().__init__()

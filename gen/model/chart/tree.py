@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The tree of a chart: what stands where, and what lies between two vertices.
+"""The tree of a chart: the region of each vertex, and the states between two vertices.
 
-A *place* is a region of the chart: the top-level region is ``(None, "")``, a
+A `Place` is a region of the chart: the top-level region is ``(None, "")``, a
 nested one ``(state, name)``. Everything is looked up, nothing is searched for.
 """
 
@@ -61,7 +61,7 @@ class Tree:
         return {pseudo.name: pseudo for pseudo in self.region.pseudostates}
 
     def kind(self, vertex: str) -> PseudoKind | None:
-        """What kind of pseudostate it is; None for a state."""
+        """The kind of a pseudostate; None for a state."""
         return self.pseudostates[vertex].kind if vertex in self.pseudostates else None
 
     def origin(self, vertex: str) -> Origin:
@@ -105,7 +105,7 @@ class Tree:
         return tuple(place.owner for place in self.places(vertex) if place.owner is not None)
 
     def child(self, place: Place, vertex: str) -> str | None:
-        """What stands directly in a region and is the vertex, or holds it; None for neither."""
+        """The vertex directly in a region that is the given one or holds it; None for neither."""
         at: str | None = vertex
         while at is not None:
             here = self.place(at)
@@ -166,7 +166,7 @@ class Tree:
     # --- entries
 
     def entries(self, place: Place, targets: tuple[str, ...]) -> Iterator[EntryFlow]:
-        """What entering a region on the way to ``targets`` runs; with none, by default.
+        """The behaviours on entering a region on the way to ``targets``; with none, by default.
 
         A target that is a pseudostate ends the way in its region.
         """
@@ -196,7 +196,7 @@ class Way:
 
     @property
     def source(self) -> str:
-        """What it leaves: the orthogonal state around the sources, where a join comes first."""
+        """The state that it leaves: that around the sources, where a join comes first."""
         source = self.path[0].source
         if self.tree.kind(source) is not PseudoKind.JOIN:
             return source

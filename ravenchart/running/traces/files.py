@@ -28,7 +28,7 @@ class NodeTrace:
     reports: list[list[str]] = field(default_factory=list)
     """The lines of each report of counts. It begins with an N line, where the trace has one."""
     said: list[str] = field(default_factory=list)
-    """What the controller of a board said besides: why it ended, for example."""
+    """Other lines of the controller of a board: why it ended, for example."""
     simulated: bool = False
     """Whether `ravenchart simulate` printed it: then nothing of it counts."""
 

@@ -63,7 +63,7 @@ FORMATS: Mapping[str, Callable[[Timeline], bytes]] = {
 
 
 def _about(timeline: Timeline) -> dict[str, str]:
-    """What the whole trace is; all that was lost is named."""
+    """Facts about the whole trace; each loss is named."""
     lost = {f"lost {what}": str(number) for what, number in timeline.lost.items()}
     complete = "yes" if timeline.complete else "no: the run did not end by itself"
     return {"system": timeline.system, "complete": complete, **lost}

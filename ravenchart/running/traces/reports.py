@@ -3,8 +3,8 @@
 
 """The report of a controller as a file holds it: written by the controller, or by a terminal.
 
-A terminal program that keeps what comes over the serial line of a board keeps more: what was said
-before the controller started, and why the controller ended. It may stop anywhere in a line.
+A terminal program that keeps the lines of a board keeps more: lines from before the start of the
+controller, and the reason of its end. The file may stop anywhere in a line.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What `ravenchart simulate` printed, as the trace that a run would have of it.
+"""The output of `ravenchart simulate`, as the trace that a run would have of it.
 
 The lines say which states are entered and left, but neither final states nor where a chart
-terminates: these follow from the transitions. A step leaves one record of a state for each lane,
-as the step of a controller does.
+terminates: these follow from the transitions. A step leaves one record of a state for each
+region, as the step of a controller does.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ class FollowedChart:
         return None
 
     def _leave(self, name: str) -> None:
-        """A state is left, and so is a final state in it, of which no line tells."""
+        """A state is left, and so is a final state in it, which no line names."""
         del self._active[self._tree.slots[name]]
         for place in self._tree.regions_of(name):
             self._active.pop(place, None)
@@ -108,7 +108,7 @@ class FollowedChart:
             self._active[self._tree.slots[target]] = target
 
     def leaves(self) -> Iterator[tuple[Lane, str]]:
-        """The active leaf of each lane that has one, the outer lanes first."""
+        """The active leaf of each region that has one, the outer regions first."""
         if self._end is not None:
             yield self._tree.lanes[-1], self._end
             return
@@ -158,7 +158,7 @@ def _map(system: System, charts: Charts) -> TraceMap:
 
 
 def _leaves_of(tree: ChartTree, lane: Lane) -> Iterator[str]:
-    """The states of a lane that are leaves of it; where a chart terminates is one of the top."""
+    """The leaves of a region; a terminate pseudostate is one of the top-level region."""
     for state in tree.states:
         if tree.lane_of[state] == lane and tree.fills_lane(state):
             yield state

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a trace file is of: a run, or a simulation."""
+"""The source of a trace file: a run, or a simulation."""
 
 from __future__ import annotations
 

@@ -128,7 +128,7 @@ def _states(track: Track, slices: Sequence[Slice]) -> Series:
 
 
 def of_run(system: System, parts: dict[str, Observation]) -> Timeline:
-    """What runs of the nodes of a system showed; times count from the first start of all."""
+    """The timeline of runs of a system's nodes; times count from the first start of all."""
     found = Timeline(system.name)
     first = min(part.start for part in parts.values())
     several = len(parts) > 1

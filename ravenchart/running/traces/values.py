@@ -22,12 +22,12 @@ Point = tuple[Ns, int]
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """What the numbers of a recorded value mean."""
+    """The meaning of the numbers of a recorded value."""
 
     literals: tuple[str, ...]
     """Of an enumeration; the number is a position among them."""
     count: Decimal
-    """What one count of an integer is, in the ``unit``."""
+    """The size of one count of an integer, in the ``unit``."""
     unit: str
 
     @staticmethod

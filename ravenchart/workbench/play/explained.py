@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What an observed step says, in words."""
+"""An observed step in words."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def with_value(name: str, value: Value | None) -> str:
 
 
 def occurrence(step: ObservedStep) -> str:
-    """What the step was for."""
+    """The occurrence of the step, in words."""
     match step.occurrence:
         case None if step.started:
             return "the start: the initial state is entered"
@@ -47,7 +47,7 @@ def occurrence(step: ObservedStep) -> str:
 
 
 def reason(verdict: Judgement, period: Ns) -> str:
-    """Why a transition fired or did not; ``period`` is that of its region."""
+    """Why a transition was taken or not; ``period`` is that of its region."""
     names = ", ".join(verdict.because)
     match verdict.reason:
         case FiringReason.FIRED:

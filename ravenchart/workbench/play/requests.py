@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the page of the charts asks for: each message in one form, and nothing else is accepted."""
+"""The requests of the page of the charts: each has one form, and nothing else is accepted."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class PutWish(PageRequest):
 
 
 class AdvanceWish(PageRequest):
-    """Let time go on: by one execution of a chart, until it fires, or until a time-out of it."""
+    """Let time go on: for one execution of a chart, to its next transition, or to a time-out."""
 
     kind: Literal["execution", "firing", "time_out"]
     chart: Name

@@ -128,7 +128,7 @@ class Play:
             yield from state.records
 
     def stimuli(self) -> Stimuli | None:
-        """What came in, up to the last release that was executed; None before the first."""
+        """The stimuli up to the last release that was executed; None before the first."""
         at = self.now.at
         if at is None:
             return None
@@ -295,7 +295,7 @@ class _Executing:
         self.remark = ""
 
     def situation(self, label: str) -> PlayedSituation:
-        """What it has come to."""
+        """The situation that the execution has reached."""
         return PlayedSituation(
             self.machine,
             self.at,

@@ -165,7 +165,7 @@ def _instances(play: Play) -> Iterator[Json]:
 
 
 def _port(run: InstanceRun, name: str) -> Json:
-    """What readers of a port see, and what waits in its mailbox."""
+    """The reading of a port, and the values that wait in its mailbox."""
     reading, box = run.ports[name], run.mailboxes[name]
     waiting: list[Value] = list(box.waiting)
     return {
@@ -177,7 +177,7 @@ def _port(run: InstanceRun, name: str) -> Json:
 
 
 def _type(of: Type | None) -> Json | None:
-    """What a value may be."""
+    """The values that a type allows."""
     if of is None:
         return None
     if isinstance(of, RecordType):
