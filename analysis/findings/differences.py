@@ -72,7 +72,7 @@ class Differences:
 
 @dataclass(frozen=True, slots=True)
 class _Figure:
-    """A figure to compare: ``larger`` is the word for an increase; None is the largest value."""
+    """A figure to compare: ``larger`` is the word for an increase; None is the largest time."""
 
     name: str
     key: str

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""A response against its deadline: a row of a report, with what its bar is made of."""
+"""A response against its deadline: a row of a report, with the parts of its bar."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ravenchart.analysis.findings.deadlines import no_bound_reason
 from .sentences import response_parts
 
 KINDS = ("jitter", "blocking", "own", "interference", "overhead")
-"""What a response is made of, in the order of a bar."""
+"""The parts of a response, in the order of a bar."""
 
 
 def slack_of(found: Holistic, name: str) -> int | None:
@@ -54,8 +54,8 @@ def row_of(network: Network, found: Holistic, name: str) -> dict[str, Any]:
 def _within(kinds: Mapping[str, int], bound: int | None) -> list[tuple[str, int]]:
     """The parts of a bar that is ``bound`` long in all; empty without a bound.
 
-    For a later job of the busy period the periods before its release are taken
-    off its own time first, then off what stands before and after it.
+    For a later job of the busy period the periods before its release are subtracted
+    from its own time first, then from the parts before and after it.
     """
     if bound is None:
         return []

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""All that was found for a model, as one JSON object: that of plain files, and more.
+"""The whole analysis of a model as one JSON object: that of plain files, and more.
 
 Times are whole ns. A response without a bound is null, with the reason.
 """

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the pages of reports have in common: filters, contents, and the one page around them."""
+"""Shared parts of the pages of reports: filters, contents, and the page around them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ravenchart.analysis import units
 from ravenchart.analysis.core.tasks import with_full_jobs
 
 PLACE = "<!-- contents -->"
-"""Where the page has its contents."""
+"""The mark at which the page has its contents."""
 
 HEADING = re.compile(r"<h2>(.*?)</h2>", re.DOTALL)
 """The heading of a section."""
@@ -44,7 +44,7 @@ def page(template: str, context: Mapping[str, Any]) -> str:
 
 
 def both(ns: int) -> Markup:
-    """A time in us and, from 1 ms on, in ms beside it; the exact value is there to sort by."""
+    """A time in us and, from 1 ms on, in ms beside it, with the exact value for sorting."""
     text = units.microseconds(ns)
     beside = Markup("")
     if abs(ns) >= units.MS:
@@ -53,7 +53,7 @@ def both(ns: int) -> Markup:
 
 
 def _with_contents(text: str) -> str:
-    """The page, each section with a name, and a list of them all at the place for it."""
+    """The page, each section with a name, and the list of all sections at `PLACE`."""
     number = count(1)
     entries: list[str] = []
 

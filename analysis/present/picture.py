@@ -18,12 +18,12 @@ ROW = 52
 """Distance between the tops of two boxes, in px."""
 MARGIN = 14
 LEGIBLE = 60
-"""With more boxes than this a picture says nothing."""
+"""With more boxes than this a picture is not legible."""
 
 
 @dataclass(frozen=True, slots=True)
 class NodeBox:
-    """Where a node stands: its left upper corner, in px."""
+    """The left upper corner of a node, in px."""
 
     x: float
     y: float
@@ -78,7 +78,7 @@ def draw(view: nx.DiGraph[str]) -> str | None:
 
 
 def _places(view: nx.DiGraph[str]) -> dict[str, NodeBox]:
-    """Where each node stands: instances by rank, their messages outside of them."""
+    """The position of each node: instances by rank, their messages outside of them."""
     ranks = _ranks(view)
     last = max(ranks.values(), default=0)
     columns: dict[int, list[str]] = {}
@@ -105,7 +105,7 @@ def _places(view: nx.DiGraph[str]) -> dict[str, NodeBox]:
 
 
 def _ranks(view: nx.DiGraph[str]) -> dict[str, int]:
-    """Column of each instance: behind what it is fed by; what closes a circle is left out."""
+    """The column of each instance: behind its sources; edges that close a cycle do not count."""
     forward: nx.DiGraph[str] = nx.DiGraph()
     forward.add_nodes_from(n for n in view if view.nodes[n]["kind"] == "instance")
     for source, target in view.edges:

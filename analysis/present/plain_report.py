@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The report of a plain file: what the report of a model says, as far as the file tells it."""
+"""The report of a plain file: the parts of a model's report that the file determines."""
 
 from __future__ import annotations
 

@@ -20,10 +20,10 @@ from ravenchart.analysis.units import MS
 from .sentences import families
 
 INK = "#1c2128"
-"""Of text and axes; a page replaces it by its own."""
+"""The colour of text and axes; a page replaces it by its own."""
 
 WAITING = "#b08900"
-"""Of waits, as the report's jitter."""
+"""The colour of waits, as of the report's jitter."""
 
 COLOURS = {
     "own": "#2f6fb3",
@@ -31,14 +31,14 @@ COLOURS = {
     "interference": "#d0743c",
     "overhead": "#7a8490",
 }
-"""Of the kinds of slices, as the report's bars have them."""
+"""The colours of the kinds of slices, as in the report's bars."""
 
 LEGIBLE_GROWTH = 10.0
 """Factors above this are cut off in the picture."""
 
 
 def figure_svg(figure: Figure) -> str:
-    """The picture on nothing, its text and axes in the colour of the page around it."""
+    """The transparent picture, its text and axes in the colour of the page around it."""
     out = io.StringIO()
     with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "ravenchart"}):
         figure.savefig(out, format="svg", transparent=True, metadata={"Date": None})
@@ -47,7 +47,7 @@ def figure_svg(figure: Figure) -> str:
 
 
 def room(factors: Sequence[tuple[str, float]], whole: float | None) -> Figure:
-    """How far the execution times of each task can be scaled alone; a line for all together."""
+    """The factors of the execution times of each task alone; a line for all together."""
     figure = Figure(figsize=(11, 1.1 + 0.3 * len(factors)), layout="constrained")
     axes = figure.subplots()
     names = [name for name, _ in factors]
@@ -68,7 +68,7 @@ def room(factors: Sequence[tuple[str, float]], whole: float | None) -> Figure:
 
 
 def gantt(slices: Sequence[RunningSlice], deadline: int, blocked: str = "in a section") -> Figure:
-    """A critical instant; ``deadline`` counts from its beginning, ``blocked`` says how one is."""
+    """A critical instant; ``deadline`` counts from its beginning, ``blocked`` labels blocking."""
     label = _labels(slices, blocked)
     order: dict[str, int] = {}
     for piece in sorted(slices, key=_depth):
@@ -94,7 +94,7 @@ def gantt(slices: Sequence[RunningSlice], deadline: int, blocked: str = "in a se
 
 
 Piece = tuple[str, int, int, int]
-"""A hop: its name, when it begins, how long it waits, how long it takes."""
+"""A hop: its name, its beginning, its wait, and its response."""
 
 
 def hop_pieces(found: Latency) -> list[Piece]:
@@ -135,7 +135,7 @@ BINS = 30
 
 
 def histogram(times: Sequence[int], lines: Sequence[tuple[str, int]], seen: str) -> Figure:
-    """How often something was ``seen`` to take that time, beside a bound and perhaps a limit."""
+    """How often each time was observed, beside a bound and perhaps a limit."""
     unit, factor = ("ms", 1e6) if max(*times, lines[0][1]) >= MS else ("us", 1e3)
     figure = Figure(figsize=(11, 2.4), layout="constrained")
     axes = figure.subplots()
@@ -153,7 +153,7 @@ def histogram(times: Sequence[int], lines: Sequence[tuple[str, int]], seen: str)
 
 
 def _lines(axes: Axes, lines: Sequence[tuple[str, int]], factor: float = 1e6) -> None:
-    """Times in ns that bound what is drawn, each with its name."""
+    """Vertical lines at bounds and limits in ns, each with its name."""
     for name, time in lines:
         limit = name == "limit"
         colour = COLOURS["interference"] if limit else INK
@@ -164,13 +164,13 @@ def _lines(axes: Axes, lines: Sequence[tuple[str, int]], factor: float = 1e6) ->
 
 
 def _depth(piece: RunningSlice) -> tuple[int, int]:
-    """What is above all first, the task itself last, blocking before it."""
+    """The order of the rows: overhead first, the task itself last, blocking before it."""
     order = {"overhead": 0, "interference": 1, "blocking": 2, "own": 3}
     return order[piece.kind], piece.start
 
 
 def _labels(slices: Sequence[RunningSlice], blocked: str) -> dict[tuple[str, str], str]:
-    """The row of each slice: rivals whose names differ in the last part only share one."""
+    """The row of each slice; interfering tasks that differ only in the last part share one."""
     rivals = dict.fromkeys(piece.name for piece in slices if piece.kind == "interference")
     family = {member: name for name, members in families(rivals).items() for member in members}
     return {
@@ -182,7 +182,7 @@ def _labels(slices: Sequence[RunningSlice], blocked: str) -> dict[tuple[str, str
 
 
 def _plain(axes: Axes) -> None:
-    """Axes without what says nothing."""
+    """Axes without unneeded lines."""
     axes.tick_params(colors=INK, labelsize=8.5)
     axes.grid(axis="x", color=INK, alpha=0.13, linewidth=0.6)
     axes.set_axisbelow(True)

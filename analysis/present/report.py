@@ -36,15 +36,15 @@ from .rows import chain_picture, histogram_of, hop_cells, instants_of
 from .sentences import binding_lines, families, growth_line, offset_lines, verdict_line
 
 SHOWN_CHAINS = 40
-"""How many chains the report lists at most."""
+"""Chains that the report lists at most."""
 
 SCALED = 12
-"""Of how many tasks it looks for the factors."""
+"""Tasks at most for which the report has a factor."""
 
 
 @dataclass(frozen=True, slots=True)
 class StepRow:
-    """One step of a scenario: what it asked, how it ended, when (s from the start)."""
+    """One step of a scenario: its text, its outcome, its time (s from the start)."""
 
     text: str
     outcome: str
@@ -65,8 +65,8 @@ class FrameRow:
 class Comparison:
     """Longest response seen of one task, beside its bound (None: none known).
 
-    ``withheld`` is the longest time for which the host kept the core to itself, as
-    far as the controller measured it: the analysis does not know of that.
+    ``withheld`` is the longest time for which the host withheld the core, as far as the
+    controller measured it. The analysis does not count this time.
     """
 
     task: str
@@ -78,12 +78,12 @@ class Comparison:
 
     @property
     def explained(self) -> bool:
-        """What was seen is above the bound by no more than the host withheld."""
+        """Whether the observed response is above the bound by no more than the host withheld."""
         return self.exceeded and self.observed <= (self.bound or 0) + self.withheld
 
     @property
     def word(self) -> str:
-        """How the task fared: in order, by the host's fault, or not."""
+        """The verdict on the task: in order, late because of the host, or late."""
         if not self.misses and not self.exceeded:
             return "ok"
         if self.explained:
@@ -92,7 +92,7 @@ class Comparison:
 
     @property
     def exceeded(self) -> bool:
-        """What was seen is longer than the bound."""
+        """Whether the observed response is longer than the bound."""
         return self.bound is not None and self.observed > self.bound
 
     @property
@@ -103,10 +103,10 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class RunReport:
-    """What a run adds to the report. ``pictures`` are (caption, SVG text).
+    """The part of a report about a run. ``pictures`` are (caption, SVG text).
 
-    ``comparable`` is false where the controller had no real-time priorities: what
-    was seen then says nothing about the bounds.
+    ``comparable`` is false where the controller had no real-time priorities: the
+    bounds do not hold for such a run.
     """
 
     title: str
@@ -123,7 +123,7 @@ class RunReport:
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """Longest execution seen of one row, beside its WCET; ``times`` has all that are known."""
+    """Longest observed execution of one row, beside its WCET; ``times`` has all known ones."""
 
     row: str
     observed: int
@@ -132,7 +132,7 @@ class Execution:
 
     @property
     def exceeded(self) -> bool:
-        """What was seen is longer than the WCET."""
+        """Whether the observed execution is longer than the WCET."""
         return self.observed > self.wcet
 
 
@@ -149,9 +149,9 @@ def executions(analysis: Analysis, seen: Observation) -> tuple[Execution, ...]:
 def _withheld(analysis: Analysis, bounds: Mapping[str, int | None], late: Ns, stolen: Ns) -> Ns:
     """The longest time for which the host may have kept the core from one response.
 
-    A stall can begin right after a probe woke, which sees of it what is left at its next
-    wake-up: up to a period less. Several stalls in one response are no more than was
-    stolen in all. A probe within its own bound has seen none.
+    A stall can begin right after a probe woke. The probe measures the rest of the stall at its
+    next wake-up: up to a period less. Several stalls in one response are no longer than the
+    whole stolen time. A probe within its own bound has seen none.
     """
     unseen = [
         node.probe.period
@@ -185,17 +185,17 @@ def render_report(
     earlier: Differences | None = None,
     programs: Mapping[str, Memory | None] | None = None,
 ) -> str:
-    """The report as HTML text; ``earlier`` is what changed since another version.
+    """The report as HTML text; ``earlier`` has the differences from another version.
 
-    ``programs`` are the stacks and the memory of the program of each node, None where it is not
-    built. Without it the report has no such section.
+    ``programs`` has the stacks and the memory of the program of each node, None where the
+    program is not built. Without ``programs`` the report has no such section.
     """
     context = _context(analysis, run) | {"compared_with": earlier, "programs": programs}
     return page("report.html", context)
 
 
 def _context(analysis: Analysis, run: RunReport | None) -> dict[str, Any]:
-    """What the template shows."""
+    """The variables of the template."""
     system = analysis.system
     picture = draw(component_view(system))
     factors = _factors(analysis)
@@ -298,7 +298,7 @@ def _whole(analysis: Analysis) -> float | None:
 
 
 def _factors(analysis: Analysis) -> list[tuple[str, float]]:
-    """How far each of the tightest tasks can be scaled alone; a driver's work together."""
+    """The factor of each of the tightest tasks alone; a driver's work counts together."""
     tight = [name for name in analysis.worst_first() if name in analysis.tasks]
     found = []
     for name, members in list(families(tight).items())[:SCALED]:
@@ -319,7 +319,7 @@ def _instants(analysis: Analysis) -> list[tuple[str, int, Markup]]:
 
 
 def _histograms(run: RunReport | None) -> list[tuple[str, Markup]]:
-    """How often the chains were seen to react in what time."""
+    """How often each reaction time of the chains was observed."""
     return [
         (
             one.chain,

@@ -17,7 +17,7 @@ from ravenchart.analysis.system.critical import frame_schedule, schedule
 from . import plots
 
 SHOWN_INSTANTS = 6
-"""How many critical instants of each kind a report draws."""
+"""Critical instants of each kind that a report draws at most."""
 
 HOPS = {
     HopKind.RELEASED: "at once",
@@ -25,11 +25,11 @@ HOPS = {
     HopKind.QUEUED: "takes the oldest of a queue",
     HopKind.WOKEN: "released by a queue",
 }
-"""How data come to a step of a chain, in words."""
+"""How data reach a step of a chain, in words."""
 
 
 def hop_cells(found: Latency) -> list[tuple[str, str, int | None, int | None, int | None]]:
-    """Each hop: its name, how data come to it, what it waits, takes and is renewed after."""
+    """Each hop: its name, how data reach it, its wait, its response and its renewal."""
     return [
         (hop.step.name, HOPS[hop.step.hop], hop.wait, hop.response, hop.renewal)
         for hop in found.hops
@@ -45,12 +45,12 @@ def chain_picture(found: Latency) -> Markup | None:
 
 
 def histogram_of(times: Sequence[int], lines: Sequence[tuple[str, int]], seen: str) -> Markup:
-    """How often each time was seen, beside what bounds it."""
+    """How often each time was observed, beside its bounds."""
     return Markup(plots.figure_svg(plots.histogram(times, lines, seen)))
 
 
 def instants_of(found: Holistic, names: Iterable[str]) -> list[tuple[str, int, Markup]]:
-    """Pictures of the first critical instants that can be drawn, with where they end."""
+    """Pictures of the first critical instants that can be drawn, each with its end."""
     drawn: list[tuple[str, int, Markup]] = []
     for name in names:
         if name in found.ends:

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The outcome of an analysis in sentences: verdict, loads, room left, and what limits it."""
+"""The outcome of an analysis in sentences: verdict, loads, room left, and its limit."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ WORDS = {Verdict.MET: "ok", Verdict.MISSED: "MISS", Verdict.NO_BOUND: "NONE"}
 
 @dataclass(frozen=True, slots=True)
 class TextPart:
-    """Something that a window is made of: its kind, what it is, and how it adds up."""
+    """A part of a window: its kind, its name, and its sum."""
 
     kind: str
     """``jitter``, ``own``, ``blocking``, ``interference`` or ``overhead``."""
@@ -58,7 +58,7 @@ def verdict_line(analysis: Analysis) -> str:
 
 
 def overload_lines(loads: Mapping[str, Fraction]) -> tuple[str, ...]:
-    """One line for each core or bus that is asked for more than all of its time."""
+    """One line for each core or bus that needs more than all of its time."""
     return tuple(
         f"{name or 'the core'} is overloaded: what runs on it needs {percent(share)} of its time"
         for name, share in loads.items()
@@ -67,7 +67,7 @@ def overload_lines(loads: Mapping[str, Fraction]) -> tuple[str, ...]:
 
 
 def load_lines(analysis: Analysis) -> tuple[str, ...]:
-    """The load of each core and bus, how far the execution times may grow, and what limits them."""
+    """The load of each core and bus, the growth of execution times, and the limit of growth."""
     system = analysis.system
     lines = list(overload_lines(analysis.loads))
     lines += [
@@ -95,7 +95,7 @@ def growth_line(analysis: Analysis) -> str:
 
 
 def binding(analysis: Analysis) -> str | None:
-    """What fails worst or, where nothing does, what would fail first as execution times grow."""
+    """The worst failing item or, if none fails, the first to fail as execution times grow."""
     if failed := analysis.failed():
         return failed[0]
     return None if analysis.scaling is None else analysis.scaling.binding
@@ -120,7 +120,7 @@ def binding_lines(analysis: Analysis) -> tuple[str, ...]:
 
 
 def window_parts(analysis: Analysis, name: str) -> tuple[TextPart, ...]:
-    """What the time of a task or message is made of, its lateness at the start included."""
+    """The parts of the response of a task or message, its lateness at the start included."""
     return response_parts(analysis.found.responses[name], analysis.network.released_by.get(name))
 
 
@@ -139,7 +139,7 @@ def response_parts(
 
 
 def offset_lines(found: Iterable[Response | FrameResponse]) -> tuple[str, ...]:
-    """Which responses come of offsets, in one sentence; none where all hold for any."""
+    """The responses that hold by offsets, in one sentence; none where all hold for any."""
     names = [r.task.name for r in found if isinstance(r, Response) and r.alignment is not None]
     if not names:
         return ()
@@ -147,7 +147,7 @@ def offset_lines(found: Iterable[Response | FrameResponse]) -> tuple[str, ...]:
 
 
 def distance_lines(found: Holistic) -> tuple[str, ...]:
-    """Which responses are shorter as the steps of a chain do not all meet, in two sentences."""
+    """The responses that the distances in chains make shorter, in two sentences."""
     if not found.ends:
         return ()
     names = ", ".join(found.ends)
@@ -203,8 +203,8 @@ def _frame_parts(response: FrameResponse) -> list[TextPart]:
 def families(elements: Iterable[str]) -> dict[str, list[str]]:
     """Elements by a common name: those that differ in their last part only share one.
 
-    ``bus.driver_rx.a`` and ``bus.driver_rx.b`` are ``bus.driver_rx.*``; what stands
-    alone keeps its own name.
+    ``bus.driver_rx.a`` and ``bus.driver_rx.b`` are ``bus.driver_rx.*``; a single
+    element keeps its own name.
     """
     found: dict[str, list[str]] = {}
     for element in elements:

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The event queue: arrivals, what completes and what that releases, in order of time."""
+"""The event queue: arrivals, completions and the releases by them, in order of time."""
 
 from __future__ import annotations
 
@@ -36,12 +36,14 @@ class Stretch:
 
 @dataclass(slots=True)
 class ObservedTimes:
-    """What happened, in ticks; names are those of tasks and messages.
+    """The observed times, in ticks.
 
-    ``longest``    longest time from the event of the chain to a completion
-    ``rows``       longest time from the arrival of a job to the end of a row, by both names
-    ``completed``  instances that were completed
-    ``stretches``  who had the core or bus when, where that was to be recorded
+    The names are those of tasks and messages.
+
+        ``longest``    longest time from the event of the chain to a completion
+        ``rows``       longest time from the arrival of a job to the end of a row, by both names
+        ``completed``  instances that were completed
+        ``stretches``  the use of cores and buses, where it was recorded
     """
 
     longest: dict[str, int] = field(default_factory=dict)
@@ -52,7 +54,7 @@ class ObservedTimes:
 
 @dataclass(frozen=True, slots=True, order=True)
 class _Release:
-    """Instance ``number`` of an item is released at ``time``; ``order`` tells equals apart."""
+    """Instance ``number`` of an item is released at ``time``; ``order`` decides between equals."""
 
     time: int
     order: int
@@ -65,7 +67,7 @@ class _Release:
 def simulate(
     network: Network, scenario: PhaseScenario, until: int, *, record: bool = False
 ) -> ObservedTimes:
-    """What is observed up to the time ``until``, every job executing its full cost.
+    """The observed times up to ``until``, with every job executing its whole C.
 
     ValueError for cores with overheads, which are not simulated, and as `ceilings`; and
     where the simulation takes more than `EVENTS` events.
@@ -103,7 +105,7 @@ class _Engine:
                 self._arrive(name, 0, self._phase(name).first)
 
     def run(self) -> ObservedTimes:
-        """Event after event, at one time first what ends, then what begins."""
+        """Process the events; at one time first the ends, then the beginnings."""
         for _ in range(EVENTS):
             due = [c.due for c in self.cores.values()] + [w.due for w in self.wires.values()]
             times = [time for time in due if time is not None]
@@ -127,7 +129,7 @@ class _Engine:
         return self.scenario.phases.get(name, Phase(offset) if offset else _SYNCHRONOUS)
 
     def _arrive(self, name: str, number: int, arrival: int, event: int | None = None) -> None:
-        """Note when an instance that arrives then is released, never before the one before it."""
+        """Note the release of an instance that arrives then, never before the previous one's."""
         late = self._phase(name).late(number)
         if not 0 <= late <= self.items[name].jitter:
             raise ValueError(f"{name} must be released at most {self.items[name].jitter} late")
@@ -157,7 +159,7 @@ class _Engine:
             self._complete(one.name, one.number, one.event, one.time)
 
     def _end(self, now: int) -> None:
-        """All that ends at ``now``, on every core and bus."""
+        """Process all that ends at ``now``, on every core and bus."""
         for name, core in self.cores.items():
             job, start = core.running, core.now
             if self.record and job is not None:
@@ -180,7 +182,7 @@ class _Engine:
                     self._complete(sent.frame.name, sent.number, sent.event, now)
 
     def _note(self, stretch: Stretch) -> None:
-        """Record who ran, in one piece with what is already recorded of it."""
+        """Record a stretch, joined with the recorded one that it continues."""
         if stretch.start == stretch.end:
             return
         key = (stretch.resource, stretch.name, stretch.number, stretch.start)
@@ -193,7 +195,7 @@ class _Engine:
         self.pieces[*key[:3], stretch.end] = at
 
     def _complete(self, name: str, number: int, event: int, now: int) -> None:
-        """Note a completion, and let it release what it releases."""
+        """Note a completion, and release the items that follow it."""
         seen = self.seen
         seen.longest[name] = max(seen.longest.get(name, 0), now - event)
         seen.completed[name] = seen.completed.get(name, 0) + 1

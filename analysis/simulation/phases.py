@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""When things arrive and how late they are released: what the analysis leaves open."""
+"""Arrivals and late releases of jobs: the choices that the analysis leaves open."""
 
 from __future__ import annotations
 
@@ -33,14 +33,16 @@ class InsideSection:
 
 @dataclass(frozen=True, slots=True)
 class Phase:
-    """One way in which a task or message can behave; all times in ticks.
+    """One way in which a task or message can behave.
 
-    ``first``   arrival of the first job: the offset of a task that has one; unused for what
-                another item releases
-    ``late``    from arrival to release of job k, at most its jitter
-    ``more``    how much more than a period passes between the arrivals of jobs k and k + 1
-    ``frame``   the frame of the table that the first job executes
-    ``inside``  the sections of a job, in order, none overlapping another
+    All times are in ticks.
+
+        ``first``   arrival of the first job: the offset of a task that has one; unused for
+                    an item that another one releases
+        ``late``    from arrival to release of job k, at most its jitter
+        ``more``    how much more than a period passes between the arrivals of jobs k and k + 1
+        ``frame``   the job of the table's cycle that the first job executes
+        ``inside``  the sections of a job, in order, none overlapping another
     """
 
     first: int = 0
@@ -55,7 +57,7 @@ class PhaseScenario:
     """The phases of a network's items by name (all others arrive at 0, or at their offsets) and
     faults of buses.
 
-    ``faults`` gives, by bus, the instants at which what is being sent is destroyed, in order.
+    ``faults`` has, by bus, the instants at which the frame being sent is destroyed, in order.
     """
 
     phases: Mapping[str, Phase] = field(default_factory=dict)
@@ -63,7 +65,7 @@ class PhaseScenario:
 
 
 def chance_scenario(network: Network, chance: random.Random, until: int) -> PhaseScenario:
-    """Phases, delays, frames, places of sections and allowed faults at random."""
+    """Phases, delays, jobs of cycles, places of sections and allowed faults at random."""
     phases = {
         name: _chance_phase(item, network.sections, chance)
         for name, item in network.items().items()

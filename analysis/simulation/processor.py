@@ -35,7 +35,7 @@ class Job:
     segments: list[JobStretch] = field(default_factory=list)
 
     def urgency(self) -> tuple[int, bool, int]:
-        """Its priority now, whether it is inside an object, and who came first."""
+        """Its priority now, whether it is inside an object, and its order of arrival."""
         segment = self.segments[0]
         if segment.begun:
             return segment.level, segment.level > self.task.priority, -self.order
@@ -45,7 +45,7 @@ class Job:
 def segments_of(
     task: Task, frame: int, inside: tuple[InsideSection, ...], ceilings: Mapping[str, int]
 ) -> list[JobStretch]:
-    """The stretches of a job that executes ``frame``: cut where a row or a section ends."""
+    """The stretches of job ``frame`` of the table's cycle: cut where a row or a section ends."""
     rows = list(_rows(task, frame))
     cuts = {end for end, _ in rows}
     for one in inside:
@@ -68,7 +68,7 @@ def segments_of(
 
 
 def _rows(task: Task, frame: int) -> Iterator[tuple[int, str]]:
-    """Where each row ends within the job, the task's own work before all of them."""
+    """The end of each row within the job; the task's own work comes before all rows."""
     at = task.wcet
     yield at, ""
     for row in task.frames[frame]:
@@ -86,7 +86,7 @@ class SimulatedProcessor:
 
     @property
     def due(self) -> int | None:
-        """When the running job's segment ends, if nothing happens before."""
+        """When the running job's segment ends, if no event comes before."""
         return None if self.running is None else self.now + self.running.segments[0].left
 
     def advance(self, now: int) -> tuple[Job, JobStretch] | None:
@@ -107,11 +107,11 @@ class SimulatedProcessor:
         return job, segment
 
     def release(self, job: Job) -> None:
-        """Make a job ready; one that has nothing to execute is not for here."""
+        """Make a job ready that has something to execute."""
         self.ready.append(job)
 
     def dispatch(self) -> None:
-        """Choose who runs from now on: of equals, who runs, then who came first."""
+        """Choose the job that runs from now on: of equals the running one, then the oldest."""
         self.running = max(
             self.ready,
             key=lambda job: (job.urgency()[:2], job is self.running, job.urgency()),

@@ -12,7 +12,7 @@ from ravenchart.analysis.core.bus import ERROR_BITS, Bus, Frame
 
 @dataclass(slots=True)
 class QueuedFrame:
-    """A queued instance of ``frame``; ``event`` began its chain, ``order`` tells who came first."""
+    """A queued instance of ``frame``; ``event`` began its chain, ``order`` is that of arrival."""
 
     frame: Frame
     number: int
@@ -24,8 +24,8 @@ class QueuedFrame:
 class Wire:
     """The state of one bus.
 
-    Arbitration begins when the bus is free and something is queued; what is queued less
-    than a bit later takes part. Of a first-in first-out queue only the oldest competes.
+    Arbitration begins when the bus is free and a frame is queued. A frame that is queued less
+    than a bit later takes part. Of a first-in first-out queue only the oldest frame competes.
     """
 
     bus: Bus
@@ -39,7 +39,7 @@ class Wire:
 
     @property
     def due(self) -> int | None:
-        """The end of arbitration or of what is sent, or the fault that comes before."""
+        """The end of arbitration or of the transmission, or the fault that comes before."""
         if self.arbitrating:
             return self.start + self.bus.bit_time
         if self.sending is not None:
@@ -51,7 +51,7 @@ class Wire:
         return self.free if self.queued else None
 
     def advance(self, now: int) -> QueuedFrame | None:
-        """Do what is due at ``now``; the message that has been sent."""
+        """Process the event due at ``now``; the message that has been sent."""
         if self.arbitrating:
             self.arbitrating = False
             self.sending = min(self._competing(), key=lambda m: (m.frame.rank, m.order))
@@ -73,14 +73,14 @@ class Wire:
         self.queued.append(message)
 
     def dispatch(self, now: int) -> None:
-        """Begin arbitration where the bus is free and something is queued."""
+        """Begin arbitration where the bus is free and a frame is queued."""
         if self.queued and self.sending is None and not self.arbitrating and self.free <= now:
             self.start, self.arbitrating = now, True
             while (fault := self._next_fault()) is not None and fault <= now:
                 self._fault += 1
 
     def _competing(self) -> list[QueuedFrame]:
-        """What the nodes offer: all, but of each first-in first-out queue only the oldest."""
+        """The offered frames: all, but of each first-in first-out queue only the oldest."""
         oldest: dict[str, QueuedFrame] = {}
         for message in self.queued:
             if message.frame.queue:

@@ -3,9 +3,10 @@
 
 """The phases that bring one task or message to its bound, where theory has such phases.
 
-All rivals are released together at one instant, each with its whole jitter, and from then
-on without any; one tick before, the blocking section has been entered; one bit before,
-the blocking frame has begun. Where offsets are used, only what can be released then is.
+All interfering items are released together at one instant, each with its whole jitter, and
+from then on without jitter. One tick before that instant the blocking section has been
+entered, or one bit before, the blocking frame has begun. Where offsets are used, only the
+jobs that can be released at that instant are.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from .phases import Choice, InsideSection, Phase, PhaseScenario
 
 @dataclass(frozen=True, slots=True)
 class WorstCase:
-    """A scenario and how long it must run for the worst completion to be seen."""
+    """A scenario, and the time that it must run until the worst completion."""
 
     scenario: PhaseScenario
     until: int
@@ -33,8 +34,8 @@ class WorstCase:
 def of_task(response: Response) -> WorstCase:
     """The worst case of a task that has a bound; ValueError where it has none.
 
-    It attains the bound, one tick of the blocking less, for tasks of one frame and of
-    priorities that differ, unless the task's own job ends inside an object.
+    It attains the bound, one tick of the blocking less, for tasks whose jobs are alike and
+    whose priorities differ, unless the task's own job ends inside an object.
     """
     task = response.task
     if response.bound is None:
@@ -55,7 +56,7 @@ def of_task(response: Response) -> WorstCase:
 
 
 def _of_aligned(response: Response, alignment: Alignment) -> WorstCase:
-    """As late into the pattern of offsets as all tasks have arrived before."""
+    """The worst case with offsets, so late in their pattern that all tasks have arrived."""
     task, level = response.task, response.level
     order = level.order[: level.reach]
     known = [other for other in order if response.uses_offset_of(other)]
@@ -85,7 +86,7 @@ def _until(start: int, task: Task) -> Choice:
 
 
 def _never(lead: int, response: Response) -> int:
-    """After the worst completion."""
+    """A time after the worst completion."""
     return lead + response.jobs * response.task.period + response.window + 1
 
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the authentication of each message comes to, in numbers."""
+"""The authentication of each message, in numbers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Authenticated:
     message: Message
     authentication: Authentication
     tolerated: Ns | None
-    """Time over which frames may be lost, and the next one is used; None: any time."""
+    """The time of lost frames after which the next one is still used; None: any time."""
     silences: tuple[PortSilence, ...]
 
 

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The times of each required command: in its caller's WCET, or until somebody else has done it.
+"""The times of each required command: in its caller's WCET, or until another row executes it.
 
-A direct call is part of its caller's execution. A queued one waits for the row that serves
-it, and a call to another node for frames and receptions besides. All times count from the
+A direct call is part of its caller's execution. A queued call waits for the row that serves
+it. A call to another node also waits for frames and receptions. All times count from the
 release of the caller.
 """
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class CommandTimes:
     """A required command of a row; times in ns, None where there is no bound.
 
-    ``how`` it is provided: ``direct``, ``queued``, over a bus, ``copied`` or by a stand-in.
+    ``how`` is ``direct``, ``queued``, over a bus, ``copied`` or ``stand-in`` (a fallback).
     """
 
     caller: str
@@ -34,15 +34,15 @@ class CommandTimes:
     provider: str
     how: str
     wcet: int
-    """Of one call: the part of its caller's."""
+    """C of one call, as part of its caller's."""
     executed: int | None = 0
-    """Until the provider's row has executed it."""
+    """The time until the provider's row has executed it."""
     answered: int | None = None
-    """Until the reply from another node has arrived; of what is read there, its age."""
+    """The time until the reply from another node has arrived; the age of a value read there."""
     limit: int | None = None
-    """Of that."""
+    """The limit of ``answered``."""
     waits: bool = False
-    """Whether somebody else executes it."""
+    """Whether another row executes it."""
 
 
 def command_times(analysis: Analysis) -> Iterator[CommandTimes]:

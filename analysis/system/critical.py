@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The critical instant of a task or frame as a schedule: the worst that its bound stands for.
+"""The critical instant of a task or frame as a schedule: the worst case behind its bound.
 
-Everything that can delay the task is released when its busy period begins, each with
-its whole jitter, and again as soon as it may be, or as its offset places it; the longest
-section below has just begun. What the schedule needs until the worst job is done is the
+Every interfering job is released when the busy period begins, with its whole jitter. It is
+released again as soon as it may be, or as its offset places it. The longest section of a
+less urgent task has just begun. The schedule is as long, until the worst job is done, as the
 response's window.
 """
 
@@ -20,15 +20,15 @@ from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.core.window import releases_in
 
 GIVEN = "its given blocking"
-"""The name of what holds a task up besides the sections."""
+"""The name of the blocking that is given besides the sections."""
 
 MOST_JOBS = 400
-"""A schedule of more jobs than this says nothing to the eye."""
+"""A schedule of more jobs than this is not legible."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunningSlice:
-    """Something that runs without a break, in ticks from the beginning of the busy period."""
+    """A part that runs without a break, in ticks from the beginning of the busy period."""
 
     name: str
     kind: str
@@ -107,7 +107,7 @@ def frame_schedule(response: FrameResponse) -> tuple[RunningSlice, ...]:
 
 
 def _add(found: list[RunningSlice], piece: RunningSlice) -> None:
-    """A slice, joined with the one before it where that only goes on."""
+    """Add a slice, joined with the one before that it continues."""
     before = found[-1] if found else None
     if before and (before.name, before.kind, before.end) == (piece.name, piece.kind, piece.start):
         found[-1] = RunningSlice(piece.name, piece.kind, before.start, piece.end)
@@ -116,7 +116,7 @@ def _add(found: list[RunningSlice], piece: RunningSlice) -> None:
 
 
 def _jobs(response: Response) -> list[Job]:
-    """Everything that is released within the window, and the task's own jobs up to the worst."""
+    """All jobs released within the window, and the task's own jobs up to the worst one."""
     level, window = response.level, response.window
     platform = level.platform
     others = [task for task in level.order[: level.reach] if task.name != response.task.name]
@@ -141,11 +141,11 @@ def _jobs(response: Response) -> list[Job]:
 
 
 def _times(task: Task, response: Response) -> list[int]:
-    """When a task is released, at the soonest, within the window."""
+    """The earliest releases of a task within the window."""
     return [time for time, _ in response.released(task)]
 
 
 def _released(task: Task, response: Response, place: int, kind: str) -> list[Job]:
-    """The jobs of a rival, in known frames or those in which they cost most."""
+    """The jobs of an interfering task, with its known jobs of the cycle or the longest ones."""
     costs = demand_of(task, response.level.platform).costs
     return [(time, place, costs[frame], task.name, kind) for time, frame in response.released(task)]

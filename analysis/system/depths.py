@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The queues of a system: what may wait in each, against the depth that the model gives it.
+"""The queues of a system: the values that may wait in each, against its depth in the model.
 
-Every bound of a response or latency supposes that nothing is lost. Of a message that is
-in a queue for at most W after its event, and comes no closer than T, ceil(W / T) are in
-there at once. Where the reader takes one in each separation S, the last of n that wait
-together waits (n - 1) S: so there are no more than W / S + 1.
+Every bound of a response or latency supposes that no value is lost. Let a message be
+in a queue for at most W after its event, and come no closer than T. Then ceil(W / T) of them
+are in the queue at once. Where the reader takes one in each separation S, the last of n that
+wait together waits (n - 1) S. So no more than W / S + 1 wait.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Depth:
-    """A queue; ``needed`` is the depth that loses nothing, None where none is known to.
+    """A queue; ``needed`` is the depth with which no value is lost, None where none is known.
 
-    ``what`` may wait in it, in words; ``key`` is what the model calls its depth.
+    ``what`` may wait in it, in words; ``key`` is the key of its depth in the model.
     """
 
     what: str
@@ -46,16 +46,16 @@ class Depth:
 
     @property
     def holds(self) -> bool:
-        """Nothing is lost."""
+        """Whether no value can be lost."""
         return self.needed is not None and self.needed <= self.given
 
 
 def depths(analysis: Analysis) -> Iterator[Depth]:
-    """Every queue between the parts of a system, with what it must hold.
+    """Every queue between the parts of a system, with the depth that it needs.
 
-    Not those of a bus whose frames or their reception have no bound, and not those of
-    which the model says what becomes of values that do not fit, where no
-    limit of a chain depends on them.
+    Queues of a bus are left out where its frames or their reception have no bound. A queue is
+    also left out where the model declares the handling of values that do not fit, and no
+    limit of a chain depends on the queue.
     """
     system = analysis.system
     for bus, node in product(system.buses, system.nodes):
@@ -89,7 +89,7 @@ def depths(analysis: Analysis) -> Iterator[Depth]:
 
 
 def _together(times: Sequence[tuple[int | None, int]]) -> int | None:
-    """How many are in a queue at once, by how long each is there and how often it comes."""
+    """The number of values in a queue at once, from the stay and the period of each."""
     counts = [None if within is None else -(-within // period) for within, period in times]
     known = [count for count in counts if count is not None]
     return sum(known) if len(known) == len(counts) else None
@@ -121,9 +121,9 @@ def _of_port(instance: Instance, port: Port, analysis: Analysis) -> Iterator[Dep
 def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> Iterator[Depth]:
     """The requests of an interface; its server takes all that wait.
 
-    Of a command of another node with a reply one call waits at most. Nothing is expected to
-    be lost where other nodes call, for they are not told; where none does, callers may
-    say what becomes of a call that does not fit.
+    Of a command of another node with a reply one call waits at most. Where other nodes call,
+    no call may be lost, because the caller is not notified. Where none does, callers may
+    declare the handling of a call that does not fit.
     """
     system = analysis.system
     afar = calls_from_afar(system, instance.name, provided)

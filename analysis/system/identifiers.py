@@ -3,14 +3,14 @@
 
 """Orders of CAN identifiers that meet all deadlines of a bus, for `identifiers: audsley`.
 
-Audsley's assignment over the analysis of the bus alone (`core.assignment`). A message
+This is Audsley's assignment over the analysis of the bus alone (`core.assignment`). A message
 counts as it is declared, its sender without delay: the response of a sender may depend on
-received messages, so on the identifiers that are looked for. Of a queue of this node any
-frame may go before any other, and those have the same response in every order.
+received messages, so on the identifiers that are searched for. In a queue of this node any
+frame may go before any other. So its frames have the same response in every order.
 
-Identifiers that the model gives bind places: the messages that have them keep their order,
-and between two of them there is room for so many others. Where that is room for all that
-are left or for none, an order is found whenever there is one; otherwise perhaps not.
+Identifiers that the model gives bind places. The messages that have them keep their order, and
+the room for others between two of them is limited. Where this room suffices for all that are left
+or for none, an order is found whenever one exists; otherwise perhaps not.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ NO_ORDER = "RV-0908"
 """No order of the identifiers of a bus meets all deadlines."""
 
 LARGEST = 3
-"""How many messages that do not fit a diagnostic names besides the first."""
+"""Messages that do not fit and that a diagnostic names besides the first."""
 
 PLACES = 1 << 11
 """Values of the 11 bits that decide between frames first; others count from 1."""
@@ -41,7 +41,7 @@ PLACES = 1 << 11
 
 @dataclass(frozen=True, slots=True)
 class IdentifierPlaces:
-    """Where the frames of a bus may go; ``given`` are those whose rank is bound."""
+    """The places of the frames of a bus; ``given`` are those whose rank is bound."""
 
     model_order: tuple[str, ...]
     given: frozenset[str]
@@ -49,8 +49,8 @@ class IdentifierPlaces:
     def candidates(self, left: Sequence[Frame], placed: Sequence[Frame]) -> list[Frame]:
         """The frames for the lowest place that is left, in the order to try.
 
-        The longest deadline first, of equal ones the later in the model; but a given one
-        above which not all others have room comes last.
+        The longest deadline comes first, of equal ones the later in the model. But a given
+        frame above which not all others have room comes last.
         """
         bound = sorted((f for f in left if f.name in self.given), key=lambda frame: frame.rank)
         open_ = [f for f in left if f.name not in self.given]
@@ -72,7 +72,7 @@ class IdentifierPlaces:
 
 
 def order_of(bus: Bus, system: System) -> tuple[str, ...] | Diagnostic:
-    """The elements of the bus, most urgent first, when all deadlines are met; else why not."""
+    """The elements of the bus, most urgent first, when all deadlines are met; else the error."""
     network = network_of(system)
     frames, wire = network.frames[bus.name], network.buses[bus.name]
     given = frozenset(m.element for m in system.frames if m.given)
@@ -91,7 +91,7 @@ def _refusal(
     places: IdentifierPlaces,
     response: Callable[[Frame, Sequence[Frame], Sequence[Frame]], FrameResponse],
 ) -> Diagnostic:
-    """What cannot go to the lowest place that is left, and why."""
+    """The error for the lowest place left: the messages that cannot have it, and why."""
     by_name = {frame.name: frame for frame in frames}
     messages = {message.element: message for message in system.frames}
     left = [by_name[name] for name in order.unplaced]
@@ -140,7 +140,7 @@ def _some(number: int) -> str:
 
 
 def _needs(response: FrameResponse) -> str:
-    """How a message misses its deadline at a place."""
+    """The words for a missed deadline of a message at a place."""
     if response.bound is None:
         load = percent(response.level.load)
         return f"has no bound: it and the messages before it need {load} of the bus"

@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""How long values took along the chains of a system in a run, from its trace.
+"""The observed times of values along the chains of a system in a run, from its trace.
 
-A journey begins when the first row of a chain runs, or a message from outside arrives,
-and goes on with what comes next in the trace at each place of the chain's way. The
-reaction that a journey shows is that to an input which the run before its first row
+A journey begins when the first row of a chain runs, or a message from outside arrives. It
+goes on with the next record in the trace at each place of the chain's way. The
+reaction of a journey is that to an input which the run before its first row
 has just missed. A row that sends only from some of its jobs reacts in these: a journey
-ends where a job sends nothing. Frames are told apart by their order only: where several
+ends where a job sends nothing. Frames are distinguished by their order only. Where several
 of a message are under way, a journey may look shorter than it was, never longer.
 """
 
@@ -25,7 +25,7 @@ from .timing import Analysis
 
 @dataclass(frozen=True, slots=True)
 class Journey:
-    """The longest reaction that a run showed of a chain, of so many, beside its bound, in ns."""
+    """The longest of ``count`` observed reactions of a chain, beside its bound, in ns."""
 
     chain: str
     count: int
@@ -35,24 +35,24 @@ class Journey:
     places: int = 1
     """Rows and messages on the way, each of which a host can delay."""
     times: tuple[int, ...] = field(default=(), compare=False)
-    """Every reaction that was seen."""
+    """Every observed reaction."""
 
     @property
     def exceeded(self) -> bool:
-        """What was seen is longer than the bound."""
+        """Whether the observed reaction is longer than the bound."""
         return self.observed > self.bound
 
     def is_explained(self, withheld: int) -> bool:
-        """It is longer by no more than a host takes that withholds the core at each place."""
+        """Whether it is longer by no more than a host that withholds the core at each place."""
         return self.exceeded and self.observed <= self.bound + self.places * withheld
 
 
 Stage = tuple[Sequence[int], Sequence[int]]
-"""When something happened at a place, and the starts of the row whose job it was then."""
+"""The times of the records at a place, and the starts of the row whose job wrote them."""
 
 
 def journeys(analysis: Analysis, seen: Observation) -> tuple[Journey, ...]:
-    """The chains whose reaction has a bound and a limit, and was seen."""
+    """The chains whose reaction has a bound and a limit, and was observed."""
     found = []
     for chain, latency in analysis.limited:
         if chain.reaction is not None and latency.reaction is not None:
@@ -80,7 +80,7 @@ def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
 
 
 def _end(start: int, stages: Sequence[Stage]) -> int | None:
-    """When what began then has come through all stages; None when it has not."""
+    """The end of the journey that began at ``start``; None when it does not end."""
     now = start
     for times, jobs in stages:
         place, following = bisect_left(times, now), bisect_right(jobs, now)
@@ -93,7 +93,7 @@ def _end(start: int, stages: Sequence[Stage]) -> int | None:
 
 
 def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
-    """When something happened at each place of a chain's way that the trace tells of."""
+    """The stage of each place of a chain's way that the trace records."""
     messages = {message.name: message for message in system.messages}
     inputs = {f"{i.name}.{port.name}" for i in system.instances for port in i.component.inputs()}
     rows = {slot.element for slot in system.slots}

@@ -4,15 +4,15 @@
 """Latencies from end to end through the rows of a system.
 
 A way of values through messages, ports, rows and data is taken hop by hop. A row
-that runs later in the same job than the row before it follows at once; any other row
-samples what it reads at its own times, or takes one value in a job from a queued
-port, of as many as the writer puts there. A region that takes its occurrences one by
-one has no bound: nothing is known here of how many wait.
+that runs later in the same job than the row before it follows at once. Any other row
+samples its input at its own times, or takes one value in a job from a queued port,
+where the writer may put several in a job. A region that takes its occurrences one by
+one has no bound, because the number of waiting occurrences is not known here.
 
 A received frame waits in the queue of its bus for the reception, which takes
 one at a time and keeps its least separation.
 
-`core.chains` does the sums. It gets the rows as items of their own, each with its
+`core.chains` computes the sums. It gets the rows as items of their own, each with its
 period and its response inside the job.
 """
 
@@ -42,10 +42,10 @@ __all__ = ["Delivery", "HopKind", "Latencies", "Latency", "deliveries"]
 
 @dataclass(frozen=True, slots=True)
 class Delivery:
-    """How long a received message takes from its event until it is handed over on a node.
+    """The time of a received message from its event until it is handed over on a node.
 
-    ``bound`` is None where frames come faster than they are taken; ``wait`` is the part
-    spent in the queue.
+    ``bound`` is None where frames come faster than they are taken; ``wait`` is the time
+    in the queue.
     """
 
     reception: Reception
@@ -54,7 +54,7 @@ class Delivery:
 
     @property
     def message(self) -> Message:
-        """What is received."""
+        """The received message."""
         return self.reception.message
 
 
@@ -80,10 +80,10 @@ def deliveries(system: System, found: Holistic) -> dict[str, Delivery]:
 
 
 def reception_frames(processor: Processor, system: System, found: Holistic) -> list[Frame]:
-    """What waits for a reception, as frames of one sender: each takes the separation.
+    """The frames that wait for a reception, as frames of one sender: each takes the separation.
 
-    First come, first served, like a first-in first-out queue of a bus. None where the
-    time of an arrival has no bound.
+    They are served in the order of arrival, like a first-in first-out queue of a bus. Empty
+    where the time of an arrival has no bound.
     """
     frames = []
     received = system.received(processor.released_by, processor.node)
@@ -172,14 +172,14 @@ class Latencies:
         return latency(TimedChain(name, tuple(steps), reaction, age), network, self.found)
 
     def _whole(self, step: ChainStep, received: Reception | None) -> ChainStep:
-        """The handing over of a value in several frames: one at a time travels."""
+        """The handing over of a value in several frames; only one value travels at a time."""
         travel = None if received is None else self.travels.get(received.element)
         if travel is None or travel.cycle is None:
             return step
         return replace(step, longest=travel.cycle, delay=travel.cycle - travel.message.period)
 
     def _input(self, place: str) -> Port | None:
-        """An input port; None for what is none."""
+        """The input port of a place; None for a place that is none."""
         instance, _, name = place.rpartition(".")
         for port in self.system.instance(instance).component.inputs():
             if port.name == name:
@@ -187,9 +187,9 @@ class Latencies:
         return None
 
     def _seldom(self, first: Stop) -> str:
-        """Why nothing bounds the time to the next frame of the message that a way begins with.
+        """Why the time to the next frame of the first message of a way has no bound.
 
-        "" where something does, or where that follows from the message alone.
+        "" where it has one, or where this follows from the message alone.
         """
         if not isinstance(first, Carried):
             return ""
@@ -202,7 +202,7 @@ class Latencies:
         return next(filter(None, kept), "")
 
     def _kept(self, row: str, following: Stop | None) -> str:
-        """Why jobs of a row may leave what it leads to as it was; "" where none does."""
+        """Why jobs of a row may leave the next place unchanged; "" where none does."""
         owner, _, name = row.rpartition(".")
         component = self.system.instance(owner).component
         item = named(component.runnables(), name)
@@ -249,8 +249,8 @@ class Latencies:
     def _rare(self, step: ChainStep, processor: Processor, sender: str) -> ChainStep:
         """The row that begins a release of a processor that a port releases.
 
-        No values pile up where they come no sooner than its separation, and each release
-        completes within that.
+        Values do not pile up where they come no sooner than the separation of the processor,
+        and each release completes within this separation.
         """
         response = self.found.responses[processor.name].bound
         if step.hop is HopKind.SAMPLED:
@@ -311,5 +311,5 @@ def _of_message(
 
 
 def _item(name: str, period: int, cost: int) -> Task:
-    """A row or a handing over, as far as chains look at it."""
+    """A row or a handing over, as an item of chains."""
     return Task(name, 0, period, period, cost)

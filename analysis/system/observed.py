@@ -1,18 +1,21 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What one run of a controller showed: its trace file, read with the generator's map.
+"""The observation of one run of a controller: its trace file, read with the generator's map.
 
-The file holds one record a line, times in nanoseconds from the controller's start:
-``E clock``, the machine's clock at that start, ``M digest`` of the model that the program was
-generated from, ``T time kind element value``, ``V time element value`` of recorded values, then
-the counts ``P processor releases misses worst_response last_response``,
-``A row worst_execution``, ``Q region waiting highest`` of the queue of a chart, ``H fault count``,
-``L what count``, ``W host_latency``, ``N now`` before the counts that were read then,
-``F feeds``, and ``END``. A ``P`` line of an older program ends with the worst response. Counts
-come at the end, and ten times a second where a monitor can watch: the last ones are those of the
-run. Without ``END`` the run was cut off. A board repeats its ``M`` line.
-The map tells what each element number stands for.
+The file holds one record a line. Times are in nanoseconds from the controller's start. Counts
+come after the ``T`` and ``V`` lines, and ten times a second where a monitor can watch. The last
+counts are those of the run. Without ``END`` the run was cut off. The map names each element number.
+
+    E clock, M digest                           clock at the start (a board repeats M); the model's
+    T time kind element value                   an event
+    V time element value                        a recorded value
+    P processor releases misses worst_response last_response    (the last not in older programs)
+    A row worst_execution
+    Q region waiting highest                    the queue of a chart
+    H fault count, L what count, W host_latency, F feeds
+    N now                                       before the counts that were read then
+    END
 """
 
 from __future__ import annotations
@@ -27,7 +30,7 @@ from ravenchart.gen.language.terms import NO_TIME, Ns
 KINDS = frozenset(
     {"sent", "arrived", "handled", "raised", "activity", "transition", "state", "fault"}
 )
-"""What a T line may tell, in lower case."""
+"""The kinds of T lines, in lower case."""
 
 FAULTS = (
     "Deadline_Miss", "Overrun", "Queue_Overflow", "Stale_Input", "Can_Error_Passive", "Can_Bus_Off",
@@ -36,20 +39,20 @@ FAULTS = (
 """The faults in the order of their numbers, which is that of Ravenchart.Health.Fault_Kind."""
 
 TRACE = "trace"
-"""What an L line calls the records that found the trace full."""
+"""The word of the L line that counts records lost because the trace was full."""
 
 VALUE = "value"
-"""The kind of a V line, and of the elements that have such."""
+"""The kind of a V line, and of the elements that have V lines."""
 
 VALUES = "values"
-"""What an L line calls the recorded values that found the buffer full."""
+"""The word of the L line that counts values lost because the buffer was full."""
 
 _GOOD = ("sent", "received")
 """Last words of the L lines that count no losses."""
 
 
 class TraceError(Exception):
-    """A trace or map that cannot be read; the text names the file's line."""
+    """A trace or map that cannot be read; the text names the line of the file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,14 +74,14 @@ class NumberedElement:
 
 @dataclass(frozen=True, slots=True)
 class TraceMap:
-    """The generator's map: which model, and its numbered elements."""
+    """The generator's map: the model, and its numbered elements."""
 
     system: str
     digest: str
     elements: Mapping[int, NumberedElement]
 
     def named(self, name: str, kind: str) -> NumberedElement:
-        """The element of that kind and name, whatever their case; KeyError where none is."""
+        """The element of that kind and name, in any case; KeyError where there is none."""
         for element in self.elements.values():
             if element.kind == kind and element.name.lower() == name.lower():
                 return element
@@ -91,7 +94,7 @@ class TraceMap:
 
 @dataclass(frozen=True, slots=True)
 class TraceRecord:
-    """One T or V line; ``kind`` in lower case, ``text`` the state or transition it tells of."""
+    """One T or V line; ``kind`` in lower case, ``text`` the name of the state or transition."""
 
     time: Ns
     kind: str
@@ -106,16 +109,16 @@ class TraceRecord:
 
     @property
     def fault(self) -> str | None:
-        """The name of the fault that it tells of; None where it tells of none, or of an unknown."""
+        """The name of its fault; None where the record is of no fault, or of an unknown one."""
         known = self.kind == "fault" and 0 <= self.value < len(FAULTS)
         return FAULTS[self.value] if known else None
 
 
 @dataclass(frozen=True, slots=True)
 class Releases:
-    """How one processor fared: releases, deadlines missed, longest and last response.
+    """The counts of one processor: releases, deadlines missed, longest and last response.
 
-    The counts were read at ``now`` or a little later; None where the trace does not say when.
+    The counts were read at ``now`` or a little later; None where the trace has no such time.
     ``last_response`` is that of the release that completed last; None in an older trace.
     """
 
@@ -145,7 +148,7 @@ class Visit:
 
 @dataclass(slots=True)
 class Observation:
-    """Everything that one trace file says; keys are element names or words of the file."""
+    """The contents of one trace file; keys are element names or words of the file."""
 
     map: TraceMap
     records: list[TraceRecord] = field(default_factory=list)
@@ -157,7 +160,7 @@ class Observation:
     """The queues of events, by region."""
     faults: dict[str, int] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
-    """The L lines: frames that went well, and everything that was lost."""
+    """The L lines: frames sent and received, and all losses."""
     host_latency: Ns | None = None
     """Longest time for which the host withheld the core, where a probe measured it."""
     stolen: Ns | None = None

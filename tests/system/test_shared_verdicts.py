@@ -14,7 +14,7 @@ from ravenchart.proof import proving, verdicts
 from ravenchart.proof.spark_results import Results
 from ravenchart.proof.verdicts import Memcached
 from ravenchart.tools import toolchain
-from tests.unit.test_verdicts import memcached
+from tests.unit.ravenchart.test_verdicts import memcached
 
 pytestmark = pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")
 

@@ -16,7 +16,7 @@ from ravenchart.building import checking
 from ravenchart.command_line import main
 from ravenchart.failures import OK, WRONG
 
-PUMP = Path(__file__).parents[2] / "examples" / "pump"
+PUMP = Path(__file__).parents[3] / "examples" / "pump"
 MODEL = PUMP / "model.yaml"
 
 

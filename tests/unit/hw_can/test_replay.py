@@ -16,7 +16,7 @@ from ravenchart.hw_can.bench.scenario import ScenarioError, load_scenario, parse
 from ravenchart.running import scenarios
 from tests.support.bench_files import scenario_text, write_files
 from tests.support.processes import ROOT
-from tests.unit.test_bench_run import run
+from tests.unit.hw_can.test_bench_run import run
 
 STEPS = """\
   - wait: 50 ms

@@ -14,7 +14,7 @@ from ravenchart.hw_can.bench.scenario import ScenarioError, load_scenario, parse
 from ravenchart.hw_can.bench.steps import STEPS, Expect, SendStep, WaitFor
 from tests.support.bench_files import scenario_text
 
-ROBOT = Path(__file__).parents[2] / "examples" / "cartesian_robot"
+ROBOT = Path(__file__).parents[3] / "examples" / "cartesian_robot"
 ONE_STEP = "  - wait: 1 s\n"
 
 

@@ -17,7 +17,7 @@ from ravenchart.gen.origins import Origin
 from ravenchart.gen.pipeline import load
 from tests.support.pump import PUMP, changed, codes, loaded, system_of
 
-ROOT = Path(__file__).parent.parent.parent
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize("name", ["cartesian_robot", "three_components"])

@@ -17,7 +17,7 @@ from ravenchart.command_line import main
 from ravenchart.failures import OK
 from ravenchart.gen.pipeline import load
 
-ROBOT = Path(__file__).parents[2] / "examples" / "cartesian_robot"
+ROBOT = Path(__file__).parents[3] / "examples" / "cartesian_robot"
 
 
 def analysed(path: Path) -> Analysis:

@@ -26,8 +26,8 @@ from ravenchart.hw_can.bench.peer import Codec
 from ravenchart.hw_can.bench.scenario import load_scenario
 from ravenchart.paths import ROOT
 from ravenchart.running.scenarios import problems
-from tests.unit.test_export_dbc import modelled
-from tests.unit.test_import_database import HEAD, system_of, whole
+from tests.unit.ravenchart.test_export_dbc import modelled
+from tests.unit.ravenchart.test_import_database import HEAD, system_of, whole
 
 LONG = "A_Message_Of_A_Very_Long_Name_That_Goes_On"
 LONG_SIGNAL = "A_Signal_Of_A_Very_Long_Name_That_Goes_On"

@@ -20,7 +20,7 @@ from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import positions
 from ravenchart.gen.model.system import System
-from tests.unit.test_import_database import database, system_of, whole
+from tests.unit.ravenchart.test_import_database import database, system_of, whole
 
 
 def taken_in(folder: Path, text: str, node: str = "ecu") -> tuple[Imported, Message, System]:

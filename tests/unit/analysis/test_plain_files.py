@@ -24,7 +24,7 @@ from ravenchart.analysis.units import ratio
 from ravenchart.command_line import main
 from tests.support.core_cases import two_nodes
 
-HERE = Path(__file__).parents[1] / "plain"
+HERE = Path(__file__).parents[2] / "plain"
 CSV = (HERE / "two_nodes.csv").read_text(encoding="utf-8")
 JSON = (HERE / "two_nodes.json").read_text(encoding="utf-8")
 

@@ -17,7 +17,7 @@ from ravenchart.command_line import main
 from ravenchart.failures import OK
 from ravenchart.gen.pipeline import load
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 MODELS = [EXAMPLES / name / "model.yaml" for name in ("cartesian_robot", "three_components")]
 
 

@@ -16,7 +16,7 @@ from ravenchart.gen.files.located import grow
 from ravenchart.gen.files.reference import TITLES, pages, schema
 from ravenchart.gen.pipeline import load
 
-ROOT = Path(__file__).parent.parent.parent
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize("name", sorted(pages()))

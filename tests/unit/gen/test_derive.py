@@ -16,7 +16,7 @@ from ravenchart.gen.model.system import Processor, System
 from ravenchart.gen.pipeline import load
 from tests.support.pump import system_of
 
-ROOT = Path(__file__).parent.parent.parent
+ROOT = Path(__file__).parents[3]
 
 
 def example(name: str) -> System:

@@ -208,7 +208,7 @@ record: [probe_*.level]
 
 @pytest.mark.parametrize("to", ["probe_*.tick", "[probe_*.tick]"])
 def test_a_message_goes_to_all_elements_and_their_values_are_recorded(to: str) -> None:
-    head = (ROOT / "tests/unit/test_arrays.yaml").read_text(encoding="utf-8")
+    head = (ROOT / "tests/unit/gen/test_arrays.yaml").read_text(encoding="utf-8")
     ports = "      level_1: {in: Level}\n      level_2: {in: Level}"
     head = head.replace("PORTS", ports).replace("LARGEST", "max(level_1, level_2)")
     head = head.replace("critical_section: 2 us", "critical_section: 2 us, trace: 64")
@@ -222,7 +222,7 @@ def test_a_message_goes_to_all_elements_and_their_values_are_recorded(to: str) -
 WHEEL = "  wheel:\n    component: Wheel\n    node: board\n    count: 4\n"
 """The first keys of an array."""
 
-MISTAKES = yaml.safe_load((ROOT / "tests/unit/test_arrays_mistakes.yaml").read_text("utf-8"))
+MISTAKES = yaml.safe_load((ROOT / "tests/unit/gen/test_arrays_mistakes.yaml").read_text("utf-8"))
 
 
 @pytest.mark.parametrize("made", MISTAKES, ids=lambda made: made["message"][:40])
@@ -300,7 +300,7 @@ def random_pair(seed: int) -> tuple[str, str]:
     listed = {name: dice.random() < 0.5 for name in sizes}
     order = list(sizes)
     dice.shuffle(order)
-    head = (ROOT / "tests/unit/test_arrays.yaml").read_text(encoding="utf-8")
+    head = (ROOT / "tests/unit/gen/test_arrays.yaml").read_text(encoding="utf-8")
     ports = "".join(f"      level_{n + 1}: {{in: Level}}\n" for n in range(long))
     largest = "level_1"
     for number in range(2, long + 1):

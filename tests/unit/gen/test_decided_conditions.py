@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 from ravenchart.gen.language.terms import Literal, Operation
-from tests.unit.test_expressions import checked, refused, tree
+from tests.unit.gen.test_expressions import checked, refused, tree
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,8 @@ import pytest
 from ravenchart.independent.check import checked
 from ravenchart.independent.findings import Disagreement, UnusableError
 from ravenchart.paths import ROOT
-from tests.unit.test_composites import ARM
-from tests.unit.test_independent import _altered, _generated, _line
+from tests.unit.gen.test_composites import ARM
+from tests.unit.ravenchart.test_independent import _altered, _generated, _line
 
 FEATURE = ROOT / "tests/feature/composites/model.yaml"
 

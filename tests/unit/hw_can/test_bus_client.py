@@ -21,7 +21,7 @@ from tests.support.can_frames import WAIT, taken, within
 
 pytestmark = pytest.mark.clock
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture

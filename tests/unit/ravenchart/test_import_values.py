@@ -16,7 +16,7 @@ from ravenchart.gen.language.terms import EnumerationType, IntegerType
 from ravenchart.gen.model.signals import Signal
 from ravenchart.hw_can.bench.scenario import parse_scenario
 from ravenchart.running import scenarios
-from tests.unit.test_import_degraded import taken_in
+from tests.unit.ravenchart.test_import_degraded import taken_in
 
 MESSAGE = 'BO_ 1 odd: 8 {} \n SG_ x : {} "{}" {}\nVAL_ 1 x {} ;'
 

@@ -15,7 +15,7 @@ from ravenchart.command_line import main
 from ravenchart.databases.database import Imported, Periods, imported
 from ravenchart.failures import OK
 from ravenchart.gen.model.system import System
-from tests.unit.test_import_database import HEAD
+from tests.unit.ravenchart.test_import_database import HEAD
 
 PLAIN = """BO_ 1 first: 8 ecu
  SG_ speed : 0|16@1+ (0.1,0) [0|100] "m/s" other

@@ -17,23 +17,23 @@ HERE = {"analyse", "check", "check-certificate", "explain", "generate", "simulat
 """Commands that take seconds and leave the examples as they are."""
 
 ELSEWHERE = {
-    "allocate": "tests/unit/test_allocate_command.py",
+    "allocate": "tests/unit/ravenchart/test_allocate_command.py",
     "build": "tests/system/test_wheel.py",
     "bus": "tests/system/test_wheel.py",
     "doctor": "tests/system/test_wheel.py",
-    "evidence": "tests/unit/test_evidence.py",
-    "export-dbc": "tests/unit/test_export_dbc.py",
-    "import": "tests/unit/test_import_database.py",
+    "evidence": "tests/unit/ravenchart/test_evidence.py",
+    "export-dbc": "tests/unit/ravenchart/test_export_dbc.py",
+    "import": "tests/unit/ravenchart/test_import_database.py",
     "loopback": "tests/system/test_wheel.py",
     "measure": "tests/system/test_measure.py",
     "monitor": "tests/system/test_watched_controllers.py",
     "new": "tests/system/test_wheel.py",
     "prove": "tests/system/test_wheel.py",
-    "requirements": "tests/unit/test_evidence.py",
+    "requirements": "tests/unit/ravenchart/test_evidence.py",
     "run": "tests/system/test_wheel.py",
     "shell": "tests/system/test_shell_sessions.py",
-    "tests": "tests/unit/test_cases.py",
-    "trace": "tests/unit/test_recorded_values.py",
+    "tests": "tests/unit/behaviour/test_cases.py",
+    "trace": "tests/unit/gen/test_recorded_values.py",
     "workbench": "tests/support/workbench.py",
 }
 """Commands of other listings, and a file of the tests that calls them."""

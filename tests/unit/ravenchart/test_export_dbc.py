@@ -16,7 +16,7 @@ from cantools.database import Database
 from ravenchart.command_line import main
 from ravenchart.databases.database import Periods, imported
 from ravenchart.failures import OK, WRONG
-from tests.unit.test_import_database import HEAD, whole
+from tests.unit.ravenchart.test_import_database import HEAD, whole
 
 LINE = (
     HEAD

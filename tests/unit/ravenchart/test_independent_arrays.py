@@ -13,7 +13,7 @@ import pytest
 from ravenchart.independent.check import checked
 from ravenchart.independent.findings import UnusableError
 from ravenchart.paths import ROOT
-from tests.unit.test_independent import _altered, _generated
+from tests.unit.ravenchart.test_independent import _altered, _generated
 
 PATH = ROOT / "tests/feature/arrays/model.yaml"
 

@@ -242,9 +242,11 @@ def test_settings_of_editors_close_what_they_open(listing: Listing) -> None:
 
 OUTPUT = {
     ("docs/architecture.md", "model.yaml ──load──> System"): "a drawing",
-    ("docs/boards.md", "model.yaml:12:3: error: the offset"): "tests/unit/test_targets.py",
+    ("docs/boards.md", "model.yaml:12:3: error: the offset"):
+        "tests/unit/ravenchart/test_targets.py",
     ("docs/command-line.md", "--- 14:03:22 check model.yaml ---"): "tests/system/test_watch.py",
-    ("docs/command-line.md", "compile controller: 31 of 55"): "tests/unit/test_progress.py",
+    ("docs/command-line.md", "compile controller: 31 of 55"):
+        "tests/unit/ravenchart/test_progress.py",
     ("docs/contracts.md", "generated/tank_house-upper.adb:105:22"):
         "tests/system/test_contracts_proved.py",
     ("docs/execution-times.md", "execution times: Home, two moves"): "figures of an emulated board",
