@@ -25,7 +25,7 @@ SHOWN = 3
 """Errors that the notes repeat."""
 
 
-def explained(
+def blamed_on_a_bus(
     analysis: Analysis,
     found: tuple[Diagnostic, ...],
     judged: Callable[[Analysis], Sequence[Diagnostic]],

@@ -20,7 +20,7 @@ from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import Carried, Chain, Gap
 from ravenchart.gen.origins import Origin
 
-from .bit_rates import explained
+from .bit_rates import blamed_on_a_bus
 from .causes import Causes, is_full
 
 MISSED = "RV-0901"
@@ -55,7 +55,7 @@ def findings(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnostic,
     def judged(one: Analysis) -> tuple[Diagnostic, ...]:
         return _judged(one, but)
 
-    return explained(analysis, judged(analysis), judged)
+    return blamed_on_a_bus(analysis, judged(analysis), judged)
 
 
 def _judged(analysis: Analysis, but: Collection[str]) -> tuple[Diagnostic, ...]:

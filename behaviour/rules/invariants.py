@@ -38,7 +38,7 @@ Pairs = Sequence[tuple[Term, Term]]
 
 
 @dataclass(frozen=True, slots=True)
-class Unproved:
+class OpenInvariant:
     """An invariant that is violated, or that a step may violate as far as its proof can tell."""
 
     invariant: Invariant
@@ -52,14 +52,14 @@ class Unproved:
 
 def invariants_hold(reach: Reachable, system: System) -> Iterator[Diagnostic]:
     """Each declared invariant holds in every reachable situation."""
-    for one in unproved(reach, system):
+    for one in open_invariants(reach, system):
         if one.violation is None:
             yield _not_inductive(one)
         else:
             yield _violated(reach, one.invariant, one.violation)
 
 
-def unproved(reach: Reachable, system: System) -> Iterator[Unproved]:
+def open_invariants(reach: Reachable, system: System) -> Iterator[OpenInvariant]:
     """The invariants of the component that are not proved; `Exhausted` behind the last one."""
     for invariant in reach.component.invariants:
         bad = logic.term(invariant.condition, reach.symbol)
@@ -75,9 +75,9 @@ def unproved(reach: Reachable, system: System) -> Iterator[Unproved]:
         try:
             violation = next((v for v in map(WaySearch.violation, searches) if v), None)
         except Exhausted:
-            yield Unproved(invariant, broken, None, sum(search.looked for search in searches))
+            yield OpenInvariant(invariant, broken, None, sum(search.looked for search in searches))
             raise
-        yield Unproved(invariant, broken, violation, sum(search.looked for search in searches))
+        yield OpenInvariant(invariant, broken, violation, sum(search.looked for search in searches))
 
 
 # --- Proof ---------------------------------------------------------------------------
@@ -291,7 +291,7 @@ def _violated(reach: Reachable, invariant: Invariant, found: Violation) -> Diagn
     return error(VIOLATED, invariant.origin, message, notes=notes)
 
 
-def _not_inductive(one: Unproved) -> Diagnostic:
+def _not_inductive(one: OpenInvariant) -> Diagnostic:
     invariant, broken = one.invariant, one.broken
     message = f"the invariant {invariant.name} is not proved: {broken.step} may violate it"
     data = f"when {broken.data}" if broken.data else "whatever the data"

@@ -12,14 +12,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.derive.followed import Client, clients, followed, misuses
+from ravenchart.gen.derive.followed import Client, clients, misuses, watched_client
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.model.component import Activity, Component
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 
 from .budget import Budget
-from .invariants import Unproved, unproved
+from .invariants import OpenInvariant, open_invariants
 from .reach import Reachable
 
 MISUSED = "RV-1112"
@@ -39,8 +39,8 @@ def protocols_followed(
             yield _not_shown(client, callers[0], reason)
             continue
         known = {one.literal: one for one in misuses(client.protocol)}
-        reach = Reachable(followed(client, callers[0]), system, budget)
-        for found in unproved(reach, system):
+        reach = Reachable(watched_client(client, callers[0]), system, budget)
+        for found in open_invariants(reach, system):
             misuse = known[found.invariant.name]
             allowed = ", ".join(client.protocol.allowed(misuse.state)) or "no command"
             what = f"{misuse.command} in the state {misuse.state} of {client.protocol.name}"
@@ -58,7 +58,7 @@ def _hindrance(callers: tuple[Region | Activity, ...]) -> str | None:
     return None
 
 
-def _misused(client: Client, found: Unproved, what: str, allowed: str) -> Diagnostic:
+def _misused(client: Client, found: OpenInvariant, what: str, allowed: str) -> Diagnostic:
     """A misuse that happens, or one that is not excluded."""
     name, protocol = client.component.name, client.protocol
     origin = found.invariant.origin

@@ -103,7 +103,7 @@ def misuses(protocol: Protocol) -> tuple[Misuse, ...]:
     )
 
 
-def followed(client: Client, caller: Region | Activity) -> Component:
+def watched_client(client: Client, caller: Region | Activity) -> Component:
     """The component of a client with the item that ``caller`` sets, and invariants against misuse.
 
     The name of an invariant is the literal of a `Misuse`.

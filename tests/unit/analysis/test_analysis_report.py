@@ -169,7 +169,7 @@ def test_a_tight_system_is_told_what_gives_it_room_and_one_with_room_nothing() -
     text = printed(system(tasks))
     assert "To let all execution times grow by 20.0 %, one of these is enough:" in text
     assert "WCET of a less by 23.4 %" in text  # 1.2 (383 + 450) <= 1000
-    assert "What to change" in render_report(analyse(system(tasks)))
+    assert "Possible changes" in render_report(analyse(system(tasks)))
     for some in ([tasks[0]], []):
         assert advice.of_model(analyse(system(some))) is None
 

@@ -12,7 +12,7 @@ import pytest
 
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.system.timing import analyse
-from ravenchart.behaviour.rules.invariants import Broken, Unproved, _not_inductive
+from ravenchart.behaviour.rules.invariants import Broken, OpenInvariant, _not_inductive
 from ravenchart.building import checking
 from ravenchart.command_line import main
 from ravenchart.failures import Refused
@@ -111,7 +111,8 @@ def test_without_a_search_no_number_of_situations_is_told() -> None:
     invariant = Invariant("bad", HERE, None)  # type: ignore[arg-type]
     broken = Broken("A -Go-> B", BUILT_IN, "")
     none, some = (
-        _not_inductive(Unproved(invariant, broken, None, looked)).hint or "" for looked in (0, 5)
+        _not_inductive(OpenInvariant(invariant, broken, None, looked)).hint or ""
+        for looked in (0, 5)
     )
     assert "situations" not in none
     assert none.startswith("there was no time left to look for a way")
